@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Where a body stands: a rotation and a translation, object to world, in double precision.
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include "hierarchies/geometry/scalar.hpp"
+
+namespace bvlab {
+
+struct Pose {
+  Mat3<double> rotation = Mat3<double>::Identity();  ///< orthonormal up to rounding
+  Vec3<double> translation = Vec3<double>::Zero();   ///< in units of the mesh
+
+  /// The vertex `v` as it stands in the world.
+  ///
+  /// This is the one place in which a vertex is moved, and its order of operations is part of the
+  /// definition of every exact answer: ((R_i0 x + R_i1 y) + R_i2 z) + t_i, each step rounded to
+  /// float64, nothing contracted (the build sets -ffp-contract=off).
+  Vec3<double> operator()(const Vec3<double>& v) const {
+    Vec3<double> world;
+    for (int i = 0; i < 3; ++i)
+      world[i] = ((rotation(i, 0) * v[0] + rotation(i, 1) * v[1]) + rotation(i, 2) * v[2]) +
+                 translation[i];
+    return world;
+  }
+
+  friend bool operator==(const Pose& a, const Pose& b) {
+    return a.rotation == b.rotation && a.translation == b.translation;
+  }
+};
+
+/// The pose with the given translation and rotation; the quaternion (w, x, y, z) need not be of
+/// unit length. Nothing where the quaternion is zero or a number is not finite.
+inline std::optional<Pose> pose_from(const Vec3<double>& translation, double w, double x, double y,
+                                     double z) {
+  const Eigen::Vector4d quaternion(w, x, y, z);
+  const double largest = quaternion.cwiseAbs().maxCoeff();
+  if (!quaternion.allFinite() || !translation.allFinite() || largest == 0) return std::nullopt;
+  // A power of two changes no digit, and keeps the squares from under- and overflowing.
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  if (exponent < -300 || exponent > 300) {
+    w = std::ldexp(w, -exponent), x = std::ldexp(x, -exponent);
+    y = std::ldexp(y, -exponent), z = std::ldexp(z, -exponent);
+  }
+  const double norm = std::sqrt(w * w + x * x + y * y + z * z);
+  w /= norm, x /= norm, y /= norm, z /= norm;
+  Pose pose;
+  pose.rotation << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),  //
+      2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),               //
+      2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
+  pose.translation = translation;
+  return pose;
+}
+
+}  // namespace bvlab

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The scalar `S` of a volume: float, double, or a SIMD batch of either.
+///
+/// A batch holds W independent problems, one per lane. Code written over `S` uses `+ - * /`,
+/// `sqrt`, `min`, `max` and comparisons; a comparison gives `Mask<S>`, which is `bool` for one
+/// problem and one bit per lane for a batch.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+#include <experimental/simd>
+#include <limits>
+#include <type_traits>
+
+namespace bvlab {
+
+namespace stdx = std::experimental;
+
+/// W values of type T in vector registers.
+template <class T, int W>
+using Batch = stdx::simd<T, stdx::simd_abi::deduce_t<T, W>>;
+
+template <class S>
+concept Batched = stdx::is_simd_v<S>;
+
+namespace detail {
+template <class S>
+struct ElementOf {
+  using type = S;
+};
+template <Batched S>
+struct ElementOf<S> {
+  using type = typename S::value_type;
+};
+}  // namespace detail
+
+/// The floating-point type of one lane.
+template <class S>
+using Element = typename detail::ElementOf<S>::type;
+
+template <class S>
+concept Scalar = std::is_floating_point_v<Element<S>>;
+
+/// What a comparison of two `S` gives.
+template <Scalar S>
+using Mask = decltype(std::declval<S>() < std::declval<S>());
+
+/// Number of problems held by one `S`.
+template <Scalar S>
+constexpr int width() {
+  if constexpr (Batched<S>)
+    return static_cast<int>(S::size());
+  else
+    return 1;
+}
+
+/// Bit i is set where lane i of the mask is true.
+inline std::uint64_t bits(bool mask) { return mask ? 1u : 0u; }
+template <class T, class Abi>
+std::uint64_t bits(const stdx::simd_mask<T, Abi>& mask) {
+  return mask.__to_bitset().to_ullong();
+}
+
+/// `condition ? yes : no`, lane by lane.
+template <class T>
+  requires std::is_floating_point_v<T>
+T select(bool condition, T yes, T no) {
+  return condition ? yes : no;
+}
+template <Batched S>
+S select(const typename S::mask_type& condition, const S& yes, const S& no) {
+  S result = no;
+  stdx::where(condition, result) = yes;
+  return result;
+}
+
+/// Half the distance from 1 to the next number: one rounded operation is off by at most this
+/// factor, so long as nothing underflows.
+template <class T>
+constexpr Element<T> unit_roundoff = std::numeric_limits<Element<T>>::epsilon() / 2;
+
+/// The next larger (smaller) number; infinity stays where it is.
+template <class T>
+  requires std::is_floating_point_v<T>
+T next_up(T x) {
+  return std::nextafter(x, std::numeric_limits<T>::infinity());
+}
+template <class T>
+  requires std::is_floating_point_v<T>
+T next_down(T x) {
+  return std::nextafter(x, -std::numeric_limits<T>::infinity());
+}
+
+/// A float (or double) that is not below (not above) `x`.
+template <class T>
+T rounded_up(double x) {
+  const T y = static_cast<T>(x);
+  return static_cast<double>(y) < x ? next_up(y) : y;
+}
+template <class T>
+T rounded_down(double x) {
+  const T y = static_cast<T>(x);
+  return static_cast<double>(y) > x ? next_down(y) : y;
+}
+
+template <class S>
+using Vec3 = Eigen::Matrix<S, 3, 1>;
+template <class S>
+using Mat3 = Eigen::Matrix<S, 3, 3>;
+
+}  // namespace bvlab
