@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What CGAL says in rational numbers about two closed triangles: slow, and independent of
+/// everything in this project.
+#pragma once
+
+#include "hierarchies/geometry/triangle_mesh.hpp"
+
+namespace bvlab::oracle {
+
+/// Whether the closed triangles share a point; either may be a segment or a point.
+bool intersect(const Triangle& a, const Triangle& b);
+
+}  // namespace bvlab::oracle

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Whether two closed triangles share a point, exactly, for any finite corners: zero-area
+/// triangles (segments and points), coplanar ones and touching included.
+///
+/// Plane sides first, then at most two orientations of mixed corners [guigue2003], each sign
+/// exact. Flat pairs (coplanar or of zero area) are decided in a projection by exact separating
+/// lines.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "hierarchies/geometry/predicates.hpp"
+#include "hierarchies/geometry/triangle_mesh.hpp"
+
+namespace bvlab {
+
+namespace detail {
+
+using Point = Vec3<double>;
+
+inline bool lexicographically_less(const Point& a, const Point& b) {
+  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
+/// The convex hull of a triangle: itself, a segment, or a point.
+struct Hull {
+  std::array<Point, 3> corner;
+  int corners = 3;
+
+  explicit Hull(const Triangle& t) : corner(t) {
+    for (int i = 0; i < 3; ++i)
+      if (orientation(t[0], t[1], t[2], i, (i + 1) % 3) != 0) return;
+    // Points of one line stand in it as they stand in the dictionary.
+    const auto [first, last] = std::minmax_element(t.begin(), t.end(), lexicographically_less);
+    const Point ends[] = {*first, *last};
+    corner = {ends[0], ends[1], ends[1]};
+    corners = ends[0] == ends[1] ? 1 : 2;
+  }
+  std::span<const Point> points() const {
+    return {corner.data(), static_cast<std::size_t>(corners)};
+  }
+};
+
+/// True where a line along an edge of `a` has the hull of `b` strictly on its other side; seen in
+/// the plane of coordinates i and j, in which `a` must not be collinear if it is a triangle.
+inline bool separated_by_an_edge(const Hull& a, const Hull& b, int i, int j) {
+  if (a.corners == 1) return false;
+  const int turn = a.corners == 3 ? orientation(a.corner[0], a.corner[1], a.corner[2], i, j) : 0;
+  for (int k = 0; k < (a.corners == 3 ? 3 : 1); ++k) {
+    const Point& from = a.corner[k];
+    const Point& to = a.corner[(k + 1) % 3];
+    bool all_left = turn <= 0, all_right = turn >= 0;
+    for (const Point& p : b.points()) {
+      const int side = orientation(from, to, p, i, j);
+      all_left = all_left && side > 0;
+      all_right = all_right && side < 0;
+    }
+    if (all_left || all_right) return true;
+  }
+  return false;
+}
+
+/// Both in one plane that coordinates i and j map without folding. Two convex polygons are apart
+/// exactly where an edge of one of them separates them, unless all lie in one line.
+inline bool intersect_in_plane(const Hull& a, const Hull& b, int i, int j) {
+  return !separated_by_an_edge(a, b, i, j) && !separated_by_an_edge(b, a, i, j);
+}
+
+/// Segment (or point) against triangle, in space.
+inline bool segment_intersects_triangle(const Hull& s, const Hull& t) {
+  const auto& [a, b, c] = t.corner;
+  const Point& p = s.corner[0];
+  const Point& q = s.corner[1];
+  const int side_of_p = orientation(a, b, c, p);
+  const int side_of_q = orientation(a, b, c, q);
+  if (side_of_p * side_of_q > 0) return false;
+  if (side_of_p == 0 && side_of_q == 0) {
+    int i = 0;
+    while (orientation(a, b, c, i, (i + 1) % 3) == 0) ++i;
+    return intersect_in_plane(s, t, i, (i + 1) % 3);
+  }
+  // The line crosses the plane in one point; it lies in the triangle if no two edges disagree.
+  const int sides[] = {orientation(p, q, a, b), orientation(p, q, b, c), orientation(p, q, c, a)};
+  const auto [least, greatest] = std::minmax_element(sides, sides + 3);
+  return *least * *greatest >= 0;
+}
+
+/// Segments or points against each other, in space.
+inline bool segments_intersect(const Hull& s, const Hull& t) {
+  const Point& p = s.corner[0];
+  const Point& q = s.corner[1];
+  const Point& r = t.corner[0];
+  const Point& w = t.corner[1];
+  if (orientation(p, q, r, w) != 0) return false;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    if (orientation(p, q, r, i, j) || orientation(p, q, w, i, j) || orientation(p, r, w, i, j) ||
+        orientation(q, r, w, i, j))
+      return intersect_in_plane(s, t, i, j);
+  }
+  return !lexicographically_less(q, r) && !lexicographically_less(w, p);  // all in one line
+}
+
+/// Coplanar triangles, or at least one without area.
+inline bool flat_intersect(const Triangle& a, const Triangle& b) {
+  const Hull hull_a(a), hull_b(b);
+  if (hull_a.corners < 3)
+    return hull_b.corners < 3 ? segments_intersect(hull_a, hull_b)
+                              : segment_intersects_triangle(hull_a, hull_b);
+  if (hull_b.corners < 3) return segment_intersects_triangle(hull_b, hull_a);
+  int i = 0;
+  while (orientation(a[0], a[1], a[2], i, (i + 1) % 3) == 0) ++i;
+  return intersect_in_plane(hull_a, hull_b, i, (i + 1) % 3);
+}
+
+/// The corner that lies alone on its side of the other triangle's plane, given the three sides
+/// (not all of one strict sign, not all 0), and which side that is.
+struct Apex {
+  int corner;
+  int side;
+
+  explicit Apex(const std::array<int, 3>& sides) {
+    for (corner = 0; corner < 3; ++corner) {
+      const int s = sides[corner], t = sides[(corner + 1) % 3], r = sides[(corner + 2) % 3];
+      side = s;
+      if (s != 0 && s * t <= 0 && s * r <= 0) return;
+      // In the plane, with the others strictly on one side: as if beyond it.
+      side = -t;
+      if (s == 0 && t * r > 0) return;
+    }
+  }
+};
+
+inline std::array<int, 3> sides_of(const Triangle& plane, const Triangle& points) {
+  return {orientation(plane[0], plane[1], plane[2], points[0]),
+          orientation(plane[0], plane[1], plane[2], points[1]),
+          orientation(plane[0], plane[1], plane[2], points[2])};
+}
+
+inline bool all_on_one_side(const std::array<int, 3>& s) {
+  return s[0] != 0 && s[0] == s[1] && s[1] == s[2];
+}
+
+inline bool exactly_intersect(const Triangle& a, const Triangle& b) {
+  for (int i = 0; i < 3; ++i)
+    if (std::max({a[0][i], a[1][i], a[2][i]}) < std::min({b[0][i], b[1][i], b[2][i]}) ||
+        std::max({b[0][i], b[1][i], b[2][i]}) < std::min({a[0][i], a[1][i], a[2][i]}))
+      return false;
+  const auto sides_a = sides_of(b, a);
+  if (all_on_one_side(sides_a)) return false;
+  const auto sides_b = sides_of(a, b);
+  if (all_on_one_side(sides_b)) return false;
+  constexpr std::array<int, 3> in_plane{};
+  if (sides_a == in_plane || sides_b == in_plane) return flat_intersect(a, b);
+  // Both have area, and their planes cross in a line. Turned and flipped so that each apex lies
+  // above the other's plane, the intervals that the two cut from the line overlap unless one of
+  // two orientations is positive.
+  const Apex apex_a(sides_a), apex_b(sides_b);
+  const Point *p = &a[apex_a.corner], *q = &a[(apex_a.corner + 1) % 3],
+              *r = &a[(apex_a.corner + 2) % 3];
+  const Point *s = &b[apex_b.corner], *t = &b[(apex_b.corner + 1) % 3],
+              *w = &b[(apex_b.corner + 2) % 3];
+  if (apex_a.side < 0) std::swap(t, w);
+  if (apex_b.side < 0) std::swap(q, r);
+  return orientation(*q, *t, *s, *p) <= 0 && orientation(*p, *s, *r, *w) <= 0;
+}
+
+}  // namespace detail
+
+/// Whether the closed triangles share a point; exact for finite corners.
+inline bool intersect(const Triangle& a, const Triangle& b) {
+  return detail::exactly_intersect(a, b);
+}
+
+}  // namespace bvlab
