@@ -8,7 +8,10 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <type_traits>
 
 #include "hierarchies/geometry/scalar.hpp"
 #include "hierarchies/geometry/wide_integer.hpp"
@@ -17,18 +20,13 @@ namespace bvlab {
 
 namespace detail {
 
-template <class T>
-int sign_of(const T& x) {
-  return (x > 0) - (x < 0);
-}
-
 /// Coordinates of at most 64 N - 3 binary digits: a difference has 64 N - 2, a product of two
 /// differences 128 N - 4, a difference of two products 128 N - 3, its product with a third
 /// difference 192 N - 5, and the sum of three such products fewer than 192 N - 3. All fit with a
 /// sign.
 template <int N>
-int exact_orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c,
-                      const Vec3<double>& d, int bottom) {
+int wide_orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c,
+                     const Vec3<double>& d, int bottom) {
   using Integer = WideInteger<N>;
   Integer u[3], v[3], w[3];
   for (int i = 0; i < 3; ++i) {
@@ -43,7 +41,7 @@ int exact_orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<d
 }
 
 template <int N>
-int exact_orientation(const double* a, const double* b, const double* c, int i, int j, int bottom) {
+int wide_orientation(const double* a, const double* b, const double* c, int i, int j, int bottom) {
   using Integer = WideInteger<N>;
   const Integer x = Integer::scaled(a[i], bottom), y = Integer::scaled(a[j], bottom);
   return ((Integer::scaled(b[i], bottom) - x) * (Integer::scaled(c[j], bottom) - y) -
@@ -51,34 +49,98 @@ int exact_orientation(const double* a, const double* b, const double* c, int i, 
       .sign();
 }
 
+/// Float64 coordinates as 60-bit integers of one common unit, where they are such: a scaling, a
+/// conversion and a comparison each, and most of what a filter leaves open passes.
+template <int N>
+struct FixedPoint {
+  std::int64_t at[N];
+  bool exact;
+
+  explicit FixedPoint(const double (&x)[N]) {
+    double largest = 0;
+    for (int i = 0; i < N; ++i) largest = std::max(largest, std::abs(x[i]));
+    const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(largest) >> 52);
+    // 2^60 / 2^(exponent - 1022) has to be a normal number.
+    exact = exponent > 60 && exponent < 2046;
+    if (!exact) return;
+    const auto scale =
+        std::bit_cast<double>(static_cast<std::uint64_t>(2045 + 60 - exponent) << 52);
+    int off = 0;
+    for (int i = 0; i < N; ++i) {
+      const double scaled = x[i] * scale;
+      at[i] = static_cast<std::int64_t>(scaled);
+      off |= static_cast<double>(at[i]) != scaled;
+    }
+    exact = off == 0;
+  }
+};
+
+__extension__ typedef __int128 Int128;
+__extension__ typedef unsigned __int128 UInt128;
+
+/// The sign of the determinant of three differences below 2^61: minors stay below 2^123. A minor
+/// is 2^64 high + low; high times a difference is below 2^120, low times one below 2^125, and three
+/// of either fit.
+inline int sign_of_determinant(const std::int64_t (&u)[3], const std::int64_t (&v)[3],
+                               const std::int64_t (&w)[3]) {
+  Int128 upper = 0, lower = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const Int128 minor = static_cast<Int128>(u[j]) * v[k] - static_cast<Int128>(u[k]) * v[j];
+    upper += static_cast<Int128>(static_cast<std::int64_t>(minor >> 64)) * w[i];
+    lower += static_cast<Int128>(static_cast<std::uint64_t>(minor)) * w[i];
+  }
+  upper += lower >> 64;
+  if (upper != 0) return upper > 0 ? 1 : -1;
+  return static_cast<std::uint64_t>(lower) != 0;
+}
+
 /// Calls `f` with the number of limbs that coordinates of so many binary digits need. Float64
 /// spans 2^-1074 to 2^1024, so 33 limbs hold anything.
 template <class F>
 int with_limbs(int bits, const F& f) {
-  if (bits <= 64 - 3) return f(std::integral_constant<int, 1>{});
   if (bits <= 2 * 64 - 3) return f(std::integral_constant<int, 2>{});
   if (bits <= 5 * 64 - 3) return f(std::integral_constant<int, 5>{});
   return f(std::integral_constant<int, 33>{});
 }
 static_assert(33 * 64 - 3 >= 1074 + 1024);
 
-inline int exact_orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c,
-                             const Vec3<double>& d) {
+[[gnu::noinline]] inline int wide_orientation(const Vec3<double>& a, const Vec3<double>& b,
+                                              const Vec3<double>& c, const Vec3<double>& d) {
   BinaryRange range;
   for (const auto* p : {&a, &b, &c, &d})
     for (int i = 0; i < 3; ++i) range.include((*p)[i]);
   return with_limbs(range.bits(), [&](auto limbs) {
-    return exact_orientation<limbs()>(a, b, c, d, range.bottom);
+    return wide_orientation<limbs()>(a, b, c, d, range.bottom);
   });
 }
 
-inline int exact_orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c,
-                             int i, int j) {
+[[gnu::noinline]] inline int wide_orientation(const Vec3<double>& a, const Vec3<double>& b,
+                                              const Vec3<double>& c, int i, int j) {
   BinaryRange range;
   for (const auto* p : {&a, &b, &c}) range.include((*p)[i]), range.include((*p)[j]);
   return with_limbs(range.bits(), [&](auto limbs) {
-    return exact_orientation<limbs()>(a.data(), b.data(), c.data(), i, j, range.bottom);
+    return wide_orientation<limbs()>(a.data(), b.data(), c.data(), i, j, range.bottom);
   });
+}
+
+[[gnu::noinline]] inline int exact_orientation(const Vec3<double>& a, const Vec3<double>& b,
+                                               const Vec3<double>& c, const Vec3<double>& d) {
+  const FixedPoint<12> x({a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], d[0], d[1], d[2]});
+  if (!x.exact) return wide_orientation(a, b, c, d);
+  std::int64_t u[3], v[3], w[3];
+  for (int i = 0; i < 3; ++i)
+    u[i] = x.at[3 + i] - x.at[i], v[i] = x.at[6 + i] - x.at[i], w[i] = x.at[9 + i] - x.at[i];
+  return sign_of_determinant(u, v, w);
+}
+
+[[gnu::noinline]] inline int exact_orientation(const Vec3<double>& a, const Vec3<double>& b,
+                                               const Vec3<double>& c, int i, int j) {
+  const FixedPoint<6> x({a[i], a[j], b[i], b[j], c[i], c[j]});
+  if (!x.exact) return wide_orientation(a, b, c, i, j);
+  const Int128 left = static_cast<Int128>(x.at[2] - x.at[0]) * (x.at[5] - x.at[1]);
+  const Int128 right = static_cast<Int128>(x.at[3] - x.at[1]) * (x.at[4] - x.at[0]);
+  return (left > right) - (left < right);
 }
 
 }  // namespace detail

@@ -71,15 +71,42 @@ void expect_right(const Pair& pair) {
       const Triangle b = {pair[1][order_b[0]], pair[1][order_b[1]], pair[1][order_b[2]]};
       ASSERT_EQ(intersect(a, b), truth) << shown(pair);
       ASSERT_EQ(intersect(b, a), truth) << shown(pair);
+      ASSERT_LE(truth, intersect<Float64>(a, b)) << shown(pair);
+      ASSERT_LE(truth, intersect<Float32>(a, b)) << shown(pair);
     } while (std::next_permutation(order_b, order_b + 3));
   } while (std::next_permutation(order_a, order_a + 3));
+}
+
+template <class Precision>
+void expect_one_by_one(const std::vector<Pair>& batch) {
+  const Triangle *a[64], *b[64];
+  std::uint64_t hits = 0;
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    a[i] = &batch[i][0], b[i] = &batch[i][1];
+    hits |= std::uint64_t{intersect<Precision>(*a[i], *b[i])} << i;
+  }
+  ASSERT_EQ(intersect_batch<Precision>(a, b, static_cast<int>(batch.size())), hits)
+      << Precision::name;
+}
+
+/// A batch says of each pair what is said of it alone, at every precision.
+void expect_right_at_once(std::vector<Pair>& batch) {
+  std::apply([&](auto... precision) { (expect_one_by_one<decltype(precision)>(batch), ...); },
+             Precisions{});
+  batch.clear();
 }
 
 /// The set is worth its name only if it holds pairs of both kinds.
 template <class F>
 void expect_right_on(int pairs, const F& make) {
   meeting = apart = 0;
-  for (int i = 0; i < pairs && !testing::Test::HasFatalFailure(); ++i) expect_right(make());
+  std::vector<Pair> batch;
+  for (int i = 0; i < pairs && !testing::Test::HasFatalFailure(); ++i) {
+    batch.push_back(make());
+    expect_right(batch.back());
+    // Batches of 1 to 64, as they come.
+    if (batch.size() == static_cast<std::size_t>(1 + i % 64)) expect_right_at_once(batch);
+  }
   EXPECT_GT(meeting, pairs / 100);
   EXPECT_GT(apart, pairs / 100);
 }

@@ -9,10 +9,15 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "hierarchies/geometry/predicates.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
+#include "traversal/primitives/precisions.hpp"
+#include "traversal/primitives/triangle_filter.hpp"
 
 namespace bvlab {
 
@@ -122,36 +127,62 @@ struct Apex {
   int side;
 
   explicit Apex(const std::array<int, 3>& sides) {
-    for (corner = 0; corner < 3; ++corner) {
-      const int s = sides[corner], t = sides[(corner + 1) % 3], r = sides[(corner + 2) % 3];
-      side = s;
-      if (s != 0 && s * t <= 0 && s * r <= 0) return;
+    for (corner = 0; corner < 2; ++corner) {
+      const int t = sides[(corner + 1) % 3], r = sides[(corner + 2) % 3];
+      side = sides[corner];
+      if (side != 0 && side * t <= 0 && side * r <= 0) return;
       // In the plane, with the others strictly on one side: as if beyond it.
-      side = -t;
-      if (s == 0 && t * r > 0) return;
+      if (side == 0 && t * r > 0) {
+        side = -t;
+        return;
+      }
     }
+    side = sides[2] != 0 ? sides[2] : -sides[0];
   }
 };
-
-inline std::array<int, 3> sides_of(const Triangle& plane, const Triangle& points) {
-  return {orientation(plane[0], plane[1], plane[2], points[0]),
-          orientation(plane[0], plane[1], plane[2], points[1]),
-          orientation(plane[0], plane[1], plane[2], points[2])};
-}
 
 inline bool all_on_one_side(const std::array<int, 3>& s) {
   return s[0] != 0 && s[0] == s[1] && s[1] == s[2];
 }
 
-inline bool exactly_intersect(const Triangle& a, const Triangle& b) {
+inline std::array<int, 3> exact_sides(const Triangle& t, const Triangle& points,
+                                      const std::array<double, 3>& computed, double bound) {
+  std::array<int, 3> sides;
   for (int i = 0; i < 3; ++i)
-    if (std::max({a[0][i], a[1][i], a[2][i]}) < std::min({b[0][i], b[1][i], b[2][i]}) ||
-        std::max({b[0][i], b[1][i], b[2][i]}) < std::min({a[0][i], a[1][i], a[2][i]}))
-      return false;
-  const auto sides_a = sides_of(b, a);
-  if (all_on_one_side(sides_a)) return false;
-  const auto sides_b = sides_of(a, b);
+    sides[i] = computed[i] > bound    ? 1
+               : computed[i] < -bound ? -1
+                                      : exact_orientation(t[0], t[1], t[2], points[i]);
+  return sides;
+}
+
+inline Corners<double> corners_of(const Triangle& t) {
+  return {{{t[0][0], t[0][1], t[0][2]}, {t[1][0], t[1][1], t[1][2]}, {t[2][0], t[2][1], t[2][2]}}};
+}
+
+inline bool share_a_corner(const Triangle& a, const Triangle& b) {
+  for (const Point& p : a)
+    for (const Point& q : b)
+      if (p == q) return true;
+  return false;
+}
+
+/// What is left where the boxes overlap: the filter's determinants, and exact ones where needed.
+inline bool exactly_intersect(const Triangle& a, const Triangle& b) {
+  const Corners<double> x = corners_of(a), y = corners_of(b);
+  const filter::BoxAndBound<double> box(x, y, CornersAre::given);
+  if (box.apart) return false;
+  const auto computed_b = filter::sides_of<double>(x, y);
+  if (filter::all_beyond<double>(computed_b, box.bound)) return false;
+  const auto computed_a = filter::sides_of<double>(y, x);
+  if (filter::all_beyond<double>(computed_a, box.bound)) return false;
+  if (!(filter::all_known<double>(computed_a, box.bound) &&
+        filter::all_known<double>(computed_b, box.bound)) &&
+      share_a_corner(a, b))
+    return true;
+  const auto sides_b = exact_sides(a, b, computed_b, box.bound);
   if (all_on_one_side(sides_b)) return false;
+  const auto sides_a = exact_sides(b, a, computed_a, box.bound);
+  if (all_on_one_side(sides_a)) return false;
   constexpr std::array<int, 3> in_plane{};
   if (sides_a == in_plane || sides_b == in_plane) return flat_intersect(a, b);
   // Both have area, and their planes cross in a line. Turned and flipped so that each apex lies
@@ -167,11 +198,71 @@ inline bool exactly_intersect(const Triangle& a, const Triangle& b) {
   return orientation(*q, *t, *s, *p) <= 0 && orientation(*p, *s, *r, *w) <= 0;
 }
 
+/// One corner after the other, one pair a lane, rounded to the element of S.
+template <Batched S>
+Corners<S> gathered(const Triangle* const* triangles) {
+  Corners<S> corners;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      corners[i][j] =
+          S([&](auto lane) { return static_cast<Element<S>>((*triangles[lane])[i][j]); });
+  return corners;
+}
+
 }  // namespace detail
 
-/// Whether the closed triangles share a point; exact for finite corners.
-inline bool intersect(const Triangle& a, const Triangle& b) {
-  return detail::exactly_intersect(a, b);
+/// Whether the closed triangles share a point, with finite corners. At `Exact` that is so; at a
+/// cheaper precision `false` is certain and `true` is what could not be told apart.
+template <class Precision = Exact>
+bool intersect(const Triangle& a, const Triangle& b) {
+  if constexpr (Precision::has_fallback) {
+    return detail::exactly_intersect(a, b);
+  } else if constexpr (std::is_same_v<typename Precision::Number, double>) {
+    return !certainly<double>(detail::corners_of(a), detail::corners_of(b)).apart;
+  } else {
+    using Number = typename Precision::Number;
+    const auto rounded = [](const Triangle& t) {
+      Corners<Number> corners;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) corners[i][j] = static_cast<Number>(t[i][j]);
+      return corners;
+    };
+    return !certainly<Number>(rounded(a), rounded(b), CornersAre::rounded).apart;
+  }
+}
+
+/// Pairs decided at once in one vector register.
+template <class Precision>
+constexpr int batch_width = 64 / sizeof(typename Precision::Number);
+
+/// The same for `count` (at most 64) pairs (*a[i], *b[i]): bit i of the answer is pair i's.
+template <class Precision = Exact>
+std::uint64_t intersect_batch(const Triangle* const* a, const Triangle* const* b, int count) {
+  using Number = typename Precision::Number;
+  constexpr int width = batch_width<Precision>;
+  using S = Batch<Number, width>;
+  std::uint64_t hits = 0;
+  for (int first = 0; first < count; first += width) {
+    const Triangle *a_lanes[width], *b_lanes[width];
+    const int used = std::min(width, count - first);
+    for (int lane = 0; lane < width; ++lane) {
+      a_lanes[lane] = a[first + std::min(lane, used - 1)];
+      b_lanes[lane] = b[first + std::min(lane, used - 1)];
+    }
+    const auto verdict =
+        certainly<S>(detail::gathered<S>(a_lanes), detail::gathered<S>(b_lanes),
+                     std::is_same_v<Number, double> ? CornersAre::given : CornersAre::rounded);
+    const std::uint64_t lanes = used == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << used) - 1;
+    std::uint64_t answer = ~bits(verdict.apart) & lanes;
+    if constexpr (Precision::has_fallback)
+      for (std::uint64_t open = answer & ~bits(verdict.meeting); open != 0; open &= open - 1) {
+        const int lane = std::countr_zero(open);
+        if (!detail::exactly_intersect(*a_lanes[lane], *b_lanes[lane]))
+          answer &= ~(std::uint64_t{1} << lane);
+      }
+    hits |= answer << first;
+  }
+  return hits;
 }
 
 }  // namespace bvlab

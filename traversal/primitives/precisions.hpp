@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// THE list of precisions: how much arithmetic a verdict on two triangles is given, and which kind
+/// of error that can make. Every cheaper level errs on one side only.
+#pragma once
+
+#include <string_view>
+#include <tuple>
+
+namespace bvlab {
+
+struct Exact {
+  static constexpr std::string_view name = "exact";
+  static constexpr std::string_view description =
+      "float64 filter, integers where it cannot decide: never wrong";
+  using Number = double;
+  static constexpr bool has_fallback = true;
+};
+
+struct Float64 {
+  static constexpr std::string_view name = "float64";
+  static constexpr std::string_view description =
+      "float64 filter alone: what it cannot tell apart is called touching, so no contact is missed";
+  using Number = double;
+  static constexpr bool has_fallback = false;
+};
+
+struct Float32 {
+  static constexpr std::string_view name = "float32";
+  static constexpr std::string_view description =
+      "corners rounded to float32, float32 throughout: what it cannot tell apart is called "
+      "touching, so no contact is missed";
+  using Number = float;
+  static constexpr bool has_fallback = false;
+};
+
+using Precisions = std::tuple<Exact, Float64, Float32>;
+
+}  // namespace bvlab

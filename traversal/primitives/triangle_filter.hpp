@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What rounded arithmetic can say for certain about two closed triangles, written once over S.
+///
+/// All signs taken are those of determinants of three difference vectors between corners of the
+/// pair, so one bound, computed once a pair from the box of all six corners, serves them all.
+///
+/// The bound. Let W_x, W_y, W_z be the sides of that box, u the unit roundoff, and D_x the most by
+/// which a computed difference of x coordinates is wrong: u W_x for its own rounding, and 2 u M_x
+/// more where the corners themselves were rounded to S first (M_x their largest |x|).
+/// A determinant is the sum of six products of a difference along each axis. Wrong differences
+/// change it by at most 6 (D_x W_y W_z + W_x D_y W_z + W_x W_y D_z) to first order. On its way to
+/// the result each product is rounded at most five times (twice multiplied, thrice added):
+/// 6 * 5 u W_x W_y W_z. Without rounded corners that is 48 u W_x W_y W_z. The factors of 49 / 48,
+/// and of 1 + 64 u, below cover the terms of higher order, the roundings of W and of the bound
+/// itself. Underflow: a product is off by at most half the least positive number, h; the six of the
+/// minors are then multiplied by at most W; so do the products in the bound itself: 32 h max(W, 1)
+/// is more than their sum. Overflow: nothing is certain unless every W is below a reach R with 6
+/// R^3 still finite.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "hierarchies/geometry/scalar.hpp"
+#include "hierarchies/geometry/triangle_mesh.hpp"
+
+namespace bvlab {
+
+/// Three corners each in W lanes: x, y, z of one corner after the other.
+template <Scalar S>
+using Corners = std::array<std::array<S, 3>, 3>;
+
+/// Whether the corners stand in S as they were given, or were rounded to it.
+enum class CornersAre { given, rounded };
+
+namespace filter {
+
+using std::abs, std::max, std::min;
+using stdx::abs, stdx::max, stdx::min;
+
+template <class M>
+bool everywhere(const M& mask) {
+  if constexpr (std::is_same_v<M, bool>)
+    return mask;
+  else
+    return stdx::all_of(mask);
+}
+
+template <Scalar S>
+using Vector = std::array<S, 3>;
+
+template <Scalar S>
+Vector<S> operator-(const Vector<S>& a, const Vector<S>& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+template <Scalar S>
+Vector<S> cross(const Vector<S>& u, const Vector<S>& v) {
+  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+}
+
+template <Scalar S>
+S dot(const Vector<S>& u, const Vector<S>& v) {
+  return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+
+template <Scalar S>
+Vector<S> choose(const Mask<S>& condition, const Vector<S>& yes, const Vector<S>& no) {
+  return {select(condition, yes[0], no[0]), select(condition, yes[1], no[1]),
+          select(condition, yes[2], no[2])};
+}
+
+/// Whether the boxes are apart (a comparison of corners, hence exact, and true of the given corners
+/// if it is true of rounded ones), and how wrong a determinant can be.
+template <Scalar S>
+struct BoxAndBound {
+  Mask<S> apart;
+  S bound;
+
+  BoxAndBound(const Corners<S>& a, const Corners<S>& b, CornersAre corners) {
+    using T = Element<S>;
+    constexpr T u = unit_roundoff<S>;
+    constexpr T least = std::numeric_limits<T>::denorm_min();
+    constexpr T reach = sizeof(T) == 8 ? T(0x1p340) : T(0x1p41);
+    S side[3], wrong[3];
+    for (int i = 0; i < 3; ++i) {
+      const S low_a = min(min(a[0][i], a[1][i]), a[2][i]),
+              high_a = max(max(a[0][i], a[1][i]), a[2][i]);
+      const S low_b = min(min(b[0][i], b[1][i]), b[2][i]),
+              high_b = max(max(b[0][i], b[1][i]), b[2][i]);
+      const Mask<S> gap = (high_a < low_b) || (high_b < low_a);
+      apart = i == 0 ? gap : apart || gap;
+      const S low = min(low_a, low_b), high = max(high_a, high_b);
+      side[i] = high - low;
+      if (corners == CornersAre::rounded) {
+        wrong[i] = T(2) * (u * max(abs(low), abs(high)) + least) + u * side[i];
+        side[i] = side[i] + wrong[i];
+      }
+    }
+    const S longest = max(max(side[0], side[1]), max(side[2], S(1)));
+    const S underflow = (16 * least) * longest;
+    if (corners == CornersAre::given)
+      bound = (49 * u) * ((side[0] * side[1]) * side[2]) + underflow;
+    else
+      bound = (1 + 64 * u) * (6 * (wrong[0] * side[1] * side[2] + side[0] * wrong[1] * side[2] +
+                                   side[0] * side[1] * wrong[2]) +
+                              (30 * u) * ((side[0] * side[1]) * side[2])) +
+              underflow;
+    bound = select(longest < S(reach), bound, S(std::numeric_limits<T>::infinity()));
+  }
+};
+
+/// Determinants that tell on which side of the plane of `t` three points lie.
+template <Scalar S>
+Vector<S> sides_of(const Corners<S>& t, const Corners<S>& points) {
+  const Vector<S> normal = cross<S>(t[1] - t[0], t[2] - t[0]);
+  return {dot<S>(normal, points[0] - t[0]), dot<S>(normal, points[1] - t[0]),
+          dot<S>(normal, points[2] - t[0])};
+}
+
+template <Scalar S>
+Mask<S> all_beyond(const Vector<S>& sides, const S& bound) {
+  return (min(min(sides[0], sides[1]), sides[2]) > bound) ||
+         (max(max(sides[0], sides[1]), sides[2]) < -bound);
+}
+
+template <Scalar S>
+Mask<S> all_known(const Vector<S>& sides, const S& bound) {
+  return min(min(abs(sides[0]), abs(sides[1])), abs(sides[2])) > bound;
+}
+
+/// The corners turned so that the first is alone on its side; `above` says whether that is the
+/// positive one. For known sides, not all the same.
+template <Scalar S>
+struct Turned {
+  Vector<S> apex, next, last;
+  Mask<S> above;
+
+  Turned(const Corners<S>& t, const Vector<S>& sides) {
+    const Mask<S> p0 = sides[0] > 0, p1 = sides[1] > 0, p2 = sides[2] > 0;
+    const Mask<S> last_alone = !(p0 ^ p1), next_alone = !(p0 ^ p2);
+    apex = choose<S>(last_alone, t[2], choose<S>(next_alone, t[1], t[0]));
+    next = choose<S>(last_alone, t[0], choose<S>(next_alone, t[2], t[1]));
+    last = choose<S>(last_alone, t[1], choose<S>(next_alone, t[0], t[2]));
+    above = (last_alone && p2) || (!last_alone && ((next_alone && p1) || (!next_alone && p0)));
+  }
+};
+
+}  // namespace filter
+
+template <Scalar S>
+struct Certainly {
+  Mask<S> apart, meeting;
+};
+
+/// Neither is set where rounding leaves the question open.
+template <Scalar S>
+Certainly<S> certainly(const Corners<S>& a, const Corners<S>& b,
+                       CornersAre corners = CornersAre::given) {
+  using namespace filter;
+  const BoxAndBound<S> box(a, b, corners);
+  const S bound = box.bound;
+  Certainly<S> verdict{box.apart, Mask<S>(false)};
+  if (everywhere(verdict.apart)) return verdict;
+  const Vector<S> sides_b = sides_of<S>(a, b);
+  verdict.apart = verdict.apart || all_beyond<S>(sides_b, bound);
+  if (everywhere(verdict.apart)) return verdict;
+  const Vector<S> sides_a = sides_of<S>(b, a);
+  verdict.apart = verdict.apart || all_beyond<S>(sides_a, bound);
+  const Mask<S> known = all_known<S>(sides_a, bound) && all_known<S>(sides_b, bound);
+  if (everywhere(verdict.apart || !known)) return verdict;
+  // The planes cross in a line from which each triangle cuts an interval. With each apex above the
+  // other's plane, they overlap unless one of two determinants is positive [guigue2003].
+  Turned<S> p(a, sides_a), s(b, sides_b);
+  const Vector<S> q = choose<S>(s.above, p.next, p.last), r = choose<S>(s.above, p.last, p.next);
+  const Vector<S> t = choose<S>(p.above, s.next, s.last), w = choose<S>(p.above, s.last, s.next);
+  const S first = dot<S>(cross<S>(t - q, s.apex - q), p.apex - q);
+  const S second = dot<S>(cross<S>(s.apex - p.apex, r - p.apex), w - p.apex);
+  verdict.apart = verdict.apart || (known && max(first, second) > bound);
+  verdict.meeting = known && !verdict.apart && max(first, second) < -bound;
+  return verdict;
+}
+
+}  // namespace bvlab
