@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A trace played through one variant of the engine: volume, strategy, query.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hierarchies/bounding_volume.hpp"
+#include "hierarchies/geometry/pose.hpp"
+#include "hierarchies/geometry/triangle_mesh.hpp"
+
+namespace bvlab {
+
+/// A scene's poses, frame by frame: x y z qw qx qy qz for each object.
+struct Trace {
+  std::size_t frames = 0, objects = 0;
+  std::vector<double> values;  ///< C order, shape (frames, objects, 7)
+
+  std::size_t pairs() const { return objects > 0 ? objects * (objects - 1) / 2 : 0; }
+
+  /// The poses of one frame into `poses`, which has one entry for each object.
+  void poses(std::size_t frame, std::span<Pose> poses) const;
+};
+
+/// Refuses what is not a trace: shape, NaN, infinity, zero quaternions.
+Trace read_trace(const std::string& path);
+
+enum class Count { off, on };
+
+struct Variant {
+  std::string volume = "sphere";
+  std::string strategy = "recursive";  ///< a name, or name:parameter
+  std::string query = "touching";
+  std::string build = "top-down-principal";
+  std::uint32_t leaf_size = 1;
+};
+
+struct ReplayOptions {
+  Count count = Count::off;
+  unsigned threads = 1;
+  bool keep_answers = true;  ///< fill `touching` or `contacts`
+  bool keep_series = false;  ///< fill `series`
+};
+
+/// Counts of one frame, all pairs together.
+struct FrameCounts {
+  std::uint64_t n_u = 0, n_v = 0, n_p = 0, front = 0, hits = 0;
+};
+
+struct ReplayResult {
+  double seconds = 0;        ///< posing and querying every frame
+  double first_seconds = 0;  ///< the first frame alone
+  double build_seconds = 0;
+  std::uint64_t n_u = 0, n_v = 0, n_p = 0;  ///< where counted
+  double front = 0;                         ///< mean entries per pair and frame
+  std::uint64_t hits = 0;                   ///< touching pairs, or contacts, over all frames
+  std::vector<std::uint8_t> touching;       ///< (frames, pairs)
+  std::vector<std::array<std::uint32_t, 5>> contacts;  ///< frame, i, j, triangle of i, of j; sorted
+  std::vector<FrameCounts> series;                     ///< one for each frame
+};
+
+/// Object i uses mesh i mod meshes.size(). Throws Unusable for unknown names.
+ReplayResult replay(std::span<const TriangleMesh> meshes, const Trace& trace,
+                    const Variant& variant, const ReplayOptions& options);
+
+/// `replay` for one volume; the variant's names have been checked. Each is compiled by itself.
+template <BoundingVolume V>
+ReplayResult replay_with(std::span<const TriangleMesh> meshes, const Trace& trace,
+                         const Variant& variant, const ReplayOptions& options);
+
+/// Throws Unusable with the names that exist where the variant names something unknown.
+void check(const Variant& variant);
+
+}  // namespace bvlab

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What a bounding volume has to be able to do, and the laws it keeps.
+#pragma once
+
+#include <concepts>
+#include <span>
+#include <string_view>
+
+#include "hierarchies/geometry/placement.hpp"
+#include "hierarchies/geometry/scalar.hpp"
+
+namespace bvlab {
+
+/// The volume V over another scalar: `Over<Sphere<float>, Batch<float, 8>>` is eight spheres.
+template <class V, class S>
+using Over = typename V::template over<S>;
+
+/// What V becomes where tests are made.
+template <class V>
+using Posed = decltype(posed(std::declval<const V&>(),
+                             std::declval<const Placement<Element<typename V::scalar>>&>()));
+
+/// A solid that encloses points and can be compared cheaply with its own kind.
+///
+/// A volume is a plain aggregate of scalars S (float, double, or a SIMD batch of either), with free
+/// functions found by argument-dependent lookup. Laws, checked by tests/laws for every entry of
+/// `Volumes`:
+///   enclosure     every point given to `enclosing` is inside; merging and posing keep it so,
+///                 rounding included: a vertex moved by Pose lies in the posed volume;
+///   conservatism  if a point lies in both, `disjoint` is false, also where numbers overflow;
+///   gap           `gap` never exceeds the true distance, and is 0 where a point lies in both;
+///   batches       lane by lane, a batch says what the scalar says.
+template <class V>
+concept BoundingVolume = requires(const V a, const V b, std::span<const Vec3<double>> points,
+                                  const Placement<typename V::scalar> placement, const Posed<V> p,
+                                  const Posed<V> q) {
+  { V::name } -> std::convertible_to<std::string_view>;
+  { V::description } -> std::convertible_to<std::string_view>;
+  { V::enclosing(points) } -> std::same_as<V>;  // one point or more
+  { merge(a, b) } -> std::same_as<V>;
+  {posed(a, placement)};                     // one N_u
+  { disjoint(p, q) } -> std::same_as<bool>;  // one N_v; a mask where S is a batch
+  { gap(p, q) } -> std::same_as<typename V::scalar>;
+  { size(a) } -> std::same_as<typename V::scalar>;   // the larger one is descended
+  { reach(a) } -> std::same_as<typename V::scalar>;  // how far from the frame's origin it extends
+};
+
+/// `size(volume)` and `reach(volume)` where a member of that name is in the way.
+template <BoundingVolume V>
+typename V::scalar size_of(const V& volume) {
+  return size(volume);
+}
+template <BoundingVolume V>
+typename V::scalar reach_of(const V& volume) {
+  return reach(volume);
+}
+
+}  // namespace bvlab

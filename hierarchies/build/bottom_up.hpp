@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Bottom-up, as the talk builds its sphere tree: clusters merge with the neighbour with which they
+/// make the smallest cluster, until one is left.
+///
+/// Locally-ordered clustering (meister2018parallel): clusters are kept in Morton order, each looks
+/// for its partner among `radius` neighbours on either side, and pairs that choose each other
+/// merge. O(n radius log n) instead of the O(n^2) of the exact greedy rule.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "hierarchies/build/topology.hpp"
+#include "hierarchies/geometry/triangle_mesh.hpp"
+
+namespace bvlab {
+
+struct BottomUp {
+  std::uint32_t leaf_size = 1;  ///< a leaf holds at most so many triangles
+  std::uint32_t radius = 16;    ///< neighbours looked at on either side
+
+  Topology operator()(const TriangleMesh& mesh) const;
+};
+
+namespace detail {
+
+class Clustering {
+ public:
+  Clustering(const TriangleMesh& mesh, const BottomUp& options) : options_(options) {
+    const std::size_t count = mesh.triangles.size();
+    boxes_.resize(count);
+    Eigen::AlignedBox3d all;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (const auto& corner : mesh.corners(i)) boxes_[i].extend(corner);
+      all.extend(boxes_[i]);
+    }
+    active_.resize(count);
+    std::iota(active_.begin(), active_.end(), 0u);
+    std::vector<std::uint64_t> codes(count);
+    for (std::size_t i = 0; i < count; ++i) codes[i] = morton(boxes_[i].center(), all);
+    std::stable_sort(active_.begin(), active_.end(),
+                     [&](auto i, auto j) { return codes[i] < codes[j]; });
+    children_.resize(count);
+    sizes_.assign(count, 1);
+  }
+
+  Topology build() {
+    while (active_.size() > 1) merge_round();
+    return flattened();
+  }
+
+ private:
+  struct Children {
+    std::uint32_t left = 0, right = 0;
+  };
+
+  static std::uint64_t morton(const Vec3<double>& p, const Eigen::AlignedBox3d& all) {
+    std::uint64_t code = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double length = all.max()[axis] - all.min()[axis];
+      const double t = length > 0 ? (p[axis] - all.min()[axis]) / length : 0;
+      const auto cell = static_cast<std::uint64_t>(std::clamp(t, 0.0, 1.0) * ((1 << 21) - 1));
+      for (int bit = 0; bit < 21; ++bit) code |= (cell >> bit & 1) << (3 * bit + axis);
+    }
+    return code;
+  }
+
+  double cost(std::uint32_t i, std::uint32_t j) const {
+    const Vec3<double> d = boxes_[i].merged(boxes_[j]).sizes();
+    return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
+  }
+
+  void merge_round() {
+    const std::size_t n = active_.size(), radius = std::max(1u, options_.radius);
+    std::vector<std::size_t> partner(n, n);
+    std::vector<double> least(n, std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = i + 1; j < std::min(n, i + radius + 1); ++j) {
+        const double c = cost(active_[i], active_[j]);
+        if (partner[i] == n || c < least[i]) least[i] = c, partner[i] = j;
+        if (partner[j] == n || c < least[j]) least[j] = c, partner[j] = i;
+      }
+    // Some least pair choose each other, unless equal costs run in a circle: then the first pair
+    // is made to.
+    bool any = false;
+    for (std::size_t i = 0; i < n && !any; ++i) any = partner[partner[i]] == i;
+    if (!any) partner[partner[0]] = 0;
+    std::vector<std::uint32_t> next;
+    next.reserve(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t j = partner[i];
+      if (partner[j] != i)
+        next.push_back(active_[i]);
+      else if (i < j)
+        next.push_back(merged(active_[i], active_[j]));
+    }
+    active_ = std::move(next);
+  }
+
+  std::uint32_t merged(std::uint32_t i, std::uint32_t j) {
+    boxes_.push_back(boxes_[i].merged(boxes_[j]));
+    children_.push_back({i, j});
+    sizes_.push_back(sizes_[i] + sizes_[j]);
+    return static_cast<std::uint32_t>(boxes_.size() - 1);
+  }
+
+  bool is_leaf(std::uint32_t cluster) const {
+    return sizes_[cluster] <= std::max(1u, options_.leaf_size);
+  }
+
+  void collect(std::uint32_t cluster, std::vector<std::uint32_t>& primitives) const {
+    std::vector<std::uint32_t> open{cluster};
+    while (!open.empty()) {
+      const auto c = open.back();
+      open.pop_back();
+      if (sizes_[c] == 1)
+        primitives.push_back(c);
+      else
+        open.push_back(children_[c].right), open.push_back(children_[c].left);
+    }
+  }
+
+  Topology flattened() const {
+    Topology topology;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> open{{0, active_.front()}};
+    topology.nodes.emplace_back();
+    while (!open.empty()) {
+      const auto [node, cluster] = open.back();
+      open.pop_back();
+      if (is_leaf(cluster)) {
+        topology.nodes[node] = {static_cast<std::uint32_t>(topology.primitives.size()),
+                                sizes_[cluster]};
+        collect(cluster, topology.primitives);
+        continue;
+      }
+      const auto child = static_cast<std::uint32_t>(topology.nodes.size());
+      topology.nodes[node] = {child, 0};
+      topology.nodes.resize(topology.nodes.size() + 2);
+      open.emplace_back(child + 1, children_[cluster].right);
+      open.emplace_back(child, children_[cluster].left);
+    }
+    return topology;
+  }
+
+  const BottomUp& options_;
+  std::vector<Eigen::AlignedBox3d> boxes_;
+  std::vector<Children> children_;
+  std::vector<std::uint32_t> sizes_;
+  std::vector<std::uint32_t> active_;
+};
+
+}  // namespace detail
+
+inline Topology BottomUp::operator()(const TriangleMesh& mesh) const {
+  return detail::Clustering(mesh, *this).build();
+}
+
+}  // namespace bvlab

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// THE list of ways to build a topology, each a builder and its options under one name.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "hierarchies/build/bottom_up.hpp"
+#include "hierarchies/build/top_down.hpp"
+#include "hierarchies/geometry/type_list.hpp"
+
+namespace bvlab {
+
+namespace builds {
+
+template <SplitAxis kAxis, SplitAt kAt>
+struct Down {
+  static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size) {
+    return TopDown{kAxis, kAt, leaf_size}(mesh);
+  }
+};
+
+struct TopDownMean : Down<SplitAxis::longest, SplitAt::mean> {
+  static constexpr std::string_view name = "top-down-mean";
+  static constexpr std::string_view description = "longest axis, at the mean of the centroids";
+};
+struct TopDownMedian : Down<SplitAxis::longest, SplitAt::median> {
+  static constexpr std::string_view name = "top-down-median";
+  static constexpr std::string_view description = "longest axis, equal counts";
+};
+struct TopDownSurfaceArea : Down<SplitAxis::longest, SplitAt::surface_area> {
+  static constexpr std::string_view name = "top-down-surface-area";
+  static constexpr std::string_view description =
+      "longest axis, surface-area heuristic over 32 bins";
+};
+struct TopDownPrincipal : Down<SplitAxis::principal, SplitAt::mean> {
+  static constexpr std::string_view name = "top-down-principal";
+  static constexpr std::string_view description =
+      "principal axis of the centroids, at their mean (Gottschalk 1996)";
+};
+struct BottomUpLocal {
+  static constexpr std::string_view name = "bottom-up";
+  static constexpr std::string_view description =
+      "clusters that choose each other merge (Meister and Bittner 2018)";
+  static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size) {
+    return BottomUp{leaf_size}(mesh);
+  }
+};
+
+}  // namespace builds
+
+using Builds = TypeList<builds::TopDownPrincipal, builds::TopDownMean, builds::TopDownMedian,
+                        builds::TopDownSurfaceArea, builds::BottomUpLocal>;
+
+}  // namespace bvlab

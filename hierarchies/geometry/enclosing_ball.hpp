@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The smallest ball around points, as an LP-type problem: at most four points support it; while a
+/// point lies outside, the farthest enters the support and a new basis is found among the five
+/// (Gaertner, gartner1999miniball). Each step makes the ball larger, so it ends; in practice after
+/// about ten passes over the points.
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <span>
+
+#include "hierarchies/geometry/scalar.hpp"
+
+namespace bvlab {
+
+struct Ball {
+  Vec3<double> centre = Vec3<double>::Zero();
+  double squared_radius = -1;  ///< negative: no point yet
+};
+
+namespace detail {
+
+/// The smallest ball with all the points (at most four) on its boundary; nothing of use where they
+/// are affinely dependent, which `basis_ball` notices because that ball misses a point.
+inline Ball circumscribed(std::span<const Vec3<double>> points) {
+  if (points.empty()) return {};
+  const auto m = static_cast<Eigen::Index>(points.size()) - 1;
+  Ball ball{points[0], 0};
+  if (m == 0) return ball;
+  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> edges(3, m);
+  for (Eigen::Index i = 0; i < m; ++i)
+    edges.col(i) = points[static_cast<std::size_t>(i) + 1] - points[0];
+  // |x - p_i| = |x - p_0| with x - p_0 = edges * lambda.
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> gram =
+      edges.transpose() * edges;
+  const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> half = gram.diagonal() / 2;
+  const Vec3<double> offset = edges * gram.fullPivLu().solve(half);
+  if (!offset.allFinite()) return {};
+  ball.centre = points[0] + offset;
+  ball.squared_radius = offset.squaredNorm();
+  return ball;
+}
+
+}  // namespace detail
+
+/// The smallest ball around the points, up to rounding: its centre is what counts, and a caller
+/// who needs enclosure takes the largest distance from it. Any number of points, repeated and
+/// dependent ones included; none gives a negative squared radius.
+inline Ball enclosing_ball(std::span<const Vec3<double>> points) {
+  if (points.empty()) return {};
+  std::array<Vec3<double>, 5> support;  // the last one is the newcomer
+  std::size_t supports = 1;
+  support[0] = points[0];
+  Ball ball{points[0], 0};
+  for (int pass = 0; pass < 100; ++pass) {
+    const Vec3<double>* farthest = nullptr;
+    double largest = ball.squared_radius * (1 + 1e-14);
+    for (const auto& p : points)
+      if (const double d = (p - ball.centre).squaredNorm(); d > largest) largest = d, farthest = &p;
+    if (!farthest) break;
+    support[supports] = *farthest;
+    // The smallest ball through the newcomer and some of the others that contains them all.
+    Ball best;
+    unsigned chosen = 0;
+    for (unsigned subset = 0; subset < 1u << supports; ++subset) {
+      if (std::popcount(subset) > 3) continue;
+      std::array<Vec3<double>, 4> on;
+      std::size_t count = 0;
+      on[count++] = *farthest;
+      for (std::size_t i = 0; i < supports; ++i)
+        if (subset >> i & 1) on[count++] = support[i];
+      const Ball candidate = detail::circumscribed(std::span(on).first(count));
+      if (candidate.squared_radius < 0) continue;
+      if (best.squared_radius >= 0 && candidate.squared_radius >= best.squared_radius) continue;
+      const bool holds_all = std::all_of(
+          support.begin(), support.begin() + static_cast<long>(supports) + 1, [&](const auto& p) {
+            return (p - candidate.centre).squaredNorm() <= candidate.squared_radius * (1 + 1e-12);
+          });
+      if (holds_all) best = candidate, chosen = subset;
+    }
+    // Rounding may leave no ball, or none that is larger: then this one is as good as it gets.
+    if (!(best.squared_radius > ball.squared_radius)) break;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < supports; ++i)
+      if (chosen >> i & 1) support[kept++] = support[i];
+    support[kept++] = *farthest;
+    supports = kept;
+    ball = best;
+  }
+  return ball;
+}
+
+}  // namespace bvlab

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A tree of bounding volumes over one mesh, flat: siblings adjacent, 32-bit indices, the volumes
+/// in an array of their own because posing reads nothing else.
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <vector>
+
+#include "hierarchies/bounding_volume.hpp"
+#include "hierarchies/build/topology.hpp"
+#include "hierarchies/geometry/triangle_mesh.hpp"
+
+namespace bvlab {
+
+template <BoundingVolume V>
+class Hierarchy {
+ public:
+  struct Node {
+    std::uint32_t first;  ///< inner: the first of two adjacent children; leaf: of its primitives
+    std::uint32_t count;  ///< number of primitives of a leaf; 0 for an inner node
+    typename V::scalar size;  ///< of its volume: the larger one is descended
+  };
+
+  /// Fits V to a topology of the mesh, which must have a triangle. A parent takes the smaller of
+  /// what encloses its two children and what encloses its triangles (quinlan1994efficient).
+  /// O(n log n) for balanced trees.
+  Hierarchy(const TriangleMesh& mesh, const Topology& topology)
+      : primitives_(topology.primitives), volumes_(topology.nodes.size()) {
+    nodes_.reserve(topology.nodes.size());
+    for (const auto& [first, count] : topology.nodes) nodes_.push_back({first, count, 0});
+    ranges_of(topology);
+    for (std::size_t i = nodes_.size(); i-- > 0;) fit(i, mesh);
+    for (const auto& v : volumes_) reach_ = std::max(reach_, static_cast<double>(reach_of(v)));
+    for (const auto& v : mesh.vertices) reach_ = std::max(reach_, v.stableNorm());
+    reach_ *= 1 + 8 * unit_roundoff<typename V::scalar>;
+    begin_.clear(), end_.clear();
+  }
+
+  std::size_t size() const { return nodes_.size(); }
+  bool is_leaf(std::uint32_t node) const { return nodes_[node].count > 0; }
+  const Node& node(std::uint32_t node) const { return nodes_[node]; }
+  const V& volume(std::uint32_t node) const { return volumes_[node]; }
+  /// The triangle that stands at a place in a leaf's range.
+  std::uint32_t primitive(std::uint32_t place) const { return primitives_[place]; }
+  std::size_t primitives() const { return primitives_.size(); }
+  /// No vertex and no volume's reference point is farther than this from the mesh's own origin.
+  double reach() const { return reach_; }
+
+ private:
+  /// The range of primitives below each node: children come after their parent, leaf by leaf.
+  void ranges_of(const Topology& topology) {
+    begin_.resize(nodes_.size()), end_.resize(nodes_.size());
+    for (std::size_t i = nodes_.size(); i-- > 0;) {
+      const auto& [first, count] = topology.nodes[i];
+      begin_[i] = count ? first : std::min(begin_[first], begin_[first + 1]);
+      end_[i] = count ? first + count : std::max(end_[first], end_[first + 1]);
+    }
+  }
+
+  void fit(std::size_t i, const TriangleMesh& mesh) {
+    corners_.clear();
+    for (std::uint32_t place = begin_[i]; place < end_[i]; ++place)
+      for (const auto vertex : mesh.triangles[primitives_[place]]) corners_.push_back(vertex);
+    std::sort(corners_.begin(), corners_.end());
+    corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+    points_.clear();
+    for (const auto vertex : corners_) points_.push_back(mesh.vertices[vertex]);
+    volumes_[i] = V::enclosing(points_);
+    if (const Node& node = nodes_[i]; node.count == 0) {
+      const V both = merge(volumes_[node.first], volumes_[node.first + 1]);
+      // Written so that a size that is not a number loses.
+      if (!(size_of(volumes_[i]) <= size_of(both))) volumes_[i] = both;
+    }
+    nodes_[i].size = size_of(volumes_[i]);
+  }
+
+  std::vector<std::uint32_t> primitives_;
+  std::vector<Node> nodes_;
+  std::vector<V> volumes_;
+  double reach_ = 0;
+  // Only while fitting:
+  std::vector<std::uint32_t> begin_, end_, corners_;
+  std::vector<Vec3<double>> points_;
+};
+
+}  // namespace bvlab

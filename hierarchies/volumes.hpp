@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// THE list of bounding volumes: one include and one line each. Programs are compiled one volume
+/// at a time, so keep one entry a line.
+#pragma once
+
+#include "hierarchies/bounding_volume.hpp"
+#include "hierarchies/geometry/type_list.hpp"
+#include "hierarchies/volumes/sphere.hpp"
+
+namespace bvlab {
+
+using Volumes = TypeList<  //
+    Sphere<float>>;
+
+}  // namespace bvlab

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A ball: the cheapest volume to pose (one point) and to test (one distance), and the one of the
+/// talk (quinlan1994efficient, hubbard1993interactive).
+///
+/// One N_u is 15 multiplications and additions, one N_v is 9.
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <string_view>
+
+#include "hierarchies/geometry/enclosing_ball.hpp"
+#include "hierarchies/geometry/placement.hpp"
+
+namespace bvlab {
+
+template <Scalar S>
+struct Sphere {
+  static constexpr std::string_view name = "sphere";
+  static constexpr std::string_view description =
+      "ball; smallest around the points or around two others (Quinlan 1994)";
+  using scalar = S;
+  template <class Other>
+  using over = Sphere<Other>;
+
+  Vec3<S> centre;
+  S radius;
+
+  /// The smallest ball around the points (one or more).
+  static Sphere enclosing(std::span<const Vec3<double>> points) requires(!Batched<S>) {
+    Sphere sphere;
+    sphere.centre = enclosing_ball(points).centre.template cast<S>();
+    const Vec3<double> centre = sphere.centre.template cast<double>();
+    double squared = 0;
+    for (const auto& p : points) squared = std::max(squared, (p - centre).squaredNorm());
+    sphere.radius = safe_radius(std::sqrt(squared));
+    return sphere;
+  }
+
+  /// A radius computed in float64 from at most eight roundings, made safe: the first factor pays
+  /// for those and the smallest normal number for underflow.
+  static S safe_radius(double radius) requires(!Batched<S>) {
+    return rounded_up<S>(radius * (1 + 16 * unit_roundoff<double>)+std::ldexp(
+                                      1.0, std::numeric_limits<double>::min_exponent / 2));
+  }
+};
+
+/// The smallest ball around two balls.
+template <class S>
+Sphere<S> merge(const Sphere<S>& a, const Sphere<S>& b) {
+  const Vec3<double> from = a.centre.template cast<double>(), to = b.centre.template cast<double>();
+  const double ra = a.radius, rb = b.radius, distance = (to - from).norm();
+  if (distance + rb <= ra * (1 - 8 * unit_roundoff<double>)) return a;
+  if (distance + ra <= rb * (1 - 8 * unit_roundoff<double>)) return b;
+  const double along = distance > 0 ? (distance + rb - ra) / (2 * distance) : 0;
+  Sphere<S> both;
+  both.centre = (from + along * (to - from)).template cast<S>();
+  const Vec3<double> centre = both.centre.template cast<double>();
+  both.radius =
+      Sphere<S>::safe_radius(std::max((centre - from).norm() + ra, (centre - to).norm() + rb));
+  return both;
+}
+
+template <class S>
+Sphere<S> posed(const Sphere<S>& sphere, const Placement<Element<S>>& placement) {
+  return {placement.moved(sphere.centre), placement.grown(sphere.radius)};
+}
+
+/// Squares and sums are off by less than 16 unit roundoffs in all; `slack` keeps them from
+/// underflowing. A NaN (from an overflow) compares as not disjoint.
+template <class S>
+Mask<S> disjoint(const Sphere<S>& a, const Sphere<S>& b) {
+  const S radii = a.radius + b.radius;
+  return (a.centre - b.centre).squaredNorm() > radii * radii * S(1 + 16 * unit_roundoff<S>);
+}
+
+/// At most the distance between the two balls; 0 where they may meet.
+template <class S>
+S gap(const Sphere<S>& a, const Sphere<S>& b) {
+  using std::max, std::sqrt;
+  constexpr Element<S> e = unit_roundoff<S>;
+  const S distance = sqrt((a.centre - b.centre).squaredNorm());
+  return max(S(0), distance * S(1 - 8 * e) - (a.radius + b.radius) * S(1 + 2 * e));
+}
+
+template <class S>
+S size(const Sphere<S>& sphere) {
+  return sphere.radius;
+}
+
+/// The farthest that a point of the volume is from the origin of its frame, and its centre too.
+template <class S>
+S reach(const Sphere<S>& sphere) {
+  return sphere.centre.norm() + sphere.radius;
+}
+
+}  // namespace bvlab

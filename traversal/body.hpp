@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A mesh with its hierarchy, standing somewhere. Volumes and triangles are posed when they are
+/// first asked for and never twice until the body moves; a body that stays is never posed again.
+///
+/// All bodies are posed into one frame (the world's, about a common origin), so that what is posed
+/// for one pair serves all the others.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hierarchies/hierarchy.hpp"
+
+namespace bvlab {
+
+template <BoundingVolume V>
+class Body {
+ public:
+  /// Both must outlive the body; `hierarchy` is over `mesh`. Equal meshes share one hierarchy.
+  Body(const TriangleMesh& mesh, const Hierarchy<V>& hierarchy)
+      : mesh_(&mesh),
+        hierarchy_(&hierarchy),
+        volumes_(hierarchy.size()),
+        volume_epochs_(hierarchy.size() / 2 + 1, 0),
+        triangles_(hierarchy.primitives()),
+        triangle_epochs_(hierarchy.primitives(), 0) {}
+
+  /// Puts the body where `pose` says; `origin` is the same for all bodies that are to be compared.
+  /// Says whether anything moved.
+  bool move(const Pose& pose, const Vec3<double>& origin) {
+    if (epoch_ > 0 && pose == pose_ && origin == origin_) return false;
+    pose_ = pose;
+    origin_ = origin;
+    placement_ = Placement<typename V::scalar>(pose, origin, hierarchy_->reach());
+    if (++epoch_ == 0) forget();
+    return true;
+  }
+
+  const Hierarchy<V>& hierarchy() const { return *hierarchy_; }
+  const Pose& pose() const { return pose_; }
+
+  /// Poses the node and its sibling unless that has been done since the body moved.
+  template <class Counter>
+  void require(std::uint32_t node, Counter& counter) {
+    const std::uint32_t siblings = (node + 1) / 2;
+    if (volume_epochs_[siblings] == epoch_) return;
+    volume_epochs_[siblings] = epoch_;
+    if (siblings == 0) {
+      volumes_[0] = posed(hierarchy_->volume(0), placement_);
+      counter.posed(1);
+    } else {
+      for (const std::uint32_t i : {2 * siblings - 1, 2 * siblings})
+        volumes_[i] = posed(hierarchy_->volume(i), placement_);
+      counter.posed(2);
+    }
+  }
+
+  /// The posed volumes; only those that were required stand where the body stands.
+  const Posed<V>* volumes() const { return volumes_.data(); }
+
+  /// The triangle at a place of the hierarchy's primitives, in the world.
+  const Triangle& triangle(std::uint32_t place) {
+    if (triangle_epochs_[place] != epoch_) {
+      triangle_epochs_[place] = epoch_;
+      const Triangle corners = mesh_->corners(hierarchy_->primitive(place));
+      for (int i = 0; i < 3; ++i) triangles_[place][i] = pose_(corners[i]);
+    }
+    return triangles_[place];
+  }
+
+ private:
+  void forget() {
+    std::fill(volume_epochs_.begin(), volume_epochs_.end(), 0u);
+    std::fill(triangle_epochs_.begin(), triangle_epochs_.end(), 0u);
+    epoch_ = 1;
+  }
+
+  const TriangleMesh* mesh_;
+  const Hierarchy<V>* hierarchy_;
+  Pose pose_;
+  Vec3<double> origin_ = Vec3<double>::Zero();
+  Placement<typename V::scalar> placement_;
+  std::uint32_t epoch_ = 0;
+  std::vector<Posed<V>> volumes_;
+  std::vector<std::uint32_t> volume_epochs_;  // one for two siblings
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> triangle_epochs_;
+};
+
+}  // namespace bvlab

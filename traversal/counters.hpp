@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The counts of T = N_u C_u + N_v C_v + N_p C_p (gottschalk1996obbtree, li1998incremental), or
+/// nothing at all.
+#pragma once
+
+#include <cstdint>
+
+namespace bvlab {
+
+/// Counts where things happen.
+struct Counting {
+  static constexpr bool counts = true;
+  std::uint64_t n_u = 0;  ///< volumes posed
+  std::uint64_t n_v = 0;  ///< pairs of volumes tested
+  std::uint64_t n_p = 0;  ///< pairs of primitives tested
+
+  void posed(std::uint64_t volumes) { n_u += volumes; }
+  void tested(std::uint64_t pairs) { n_v += pairs; }
+  void primitives(std::uint64_t pairs) { n_p += pairs; }
+};
+
+/// Compiles to nothing.
+struct NotCounting {
+  static constexpr bool counts = false;
+  static constexpr std::uint64_t n_u = 0, n_v = 0, n_p = 0;
+
+  void posed(std::uint64_t) {}
+  void tested(std::uint64_t) {}
+  void primitives(std::uint64_t) {}
+};
+
+}  // namespace bvlab

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// THE list of strategies.
+///
+/// A strategy belongs to one pair of bodies and lives as long as the pair. It is default
+/// constructible, and
+///   run<B>(a, b, query, counter, workspace)   answers the query for the bodies as they stand now;
+///   front_size()                              the entries it keeps.
+/// Law: in every run, whatever happened between runs, the query ends up with the answer that
+/// `Recursive` gives.
+#pragma once
+
+#include "hierarchies/geometry/type_list.hpp"
+#include "traversal/strategies/recursive.hpp"
+#include "traversal/strategies/separation_list.hpp"
+
+namespace bvlab {
+
+using Strategies = TypeList<Recursive, SeparationList, Deferred>;
+
+}  // namespace bvlab

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The loop: pairs of nodes are tested W at a time; a pair that the query excludes is an end, a
+/// pair of leaves hands its primitives to the query, any other is replaced by two pairs, the larger
+/// node being descended.
+///
+/// Started from the two roots it is the recursive algorithm, depth first up to W - 1 pairs; started
+/// from a front it visits the front's entries in order and keeps the front up to date. Volume,
+/// query, counter, width and whether a front is kept are template parameters; nothing here knows
+/// which.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "traversal/body.hpp"
+#include "traversal/front.hpp"
+#include "traversal/gather.hpp"
+#include "traversal/queries/candidate.hpp"
+
+namespace bvlab {
+
+/// A query says which pairs of volumes need no further look, and takes the primitives of the rest.
+///   excludes(p, q)        a mask over posed volumes p of body a and q of body b
+///   primitives(pending)   takes one candidate or more; says which one (by its index) ends the
+///                         traversal, or a number that is not below pending.size() to go on
+///   patience              so many candidates may be held back before `primitives` must be called
+template <class Q, class P>
+concept Query = requires(Q query, const P& p, std::span<const Candidate> pending) {
+  { Q::name } -> std::convertible_to<std::string_view>;
+  { Q::description } -> std::convertible_to<std::string_view>;
+  query.excludes(p, p);
+  { query.primitives(pending) } -> std::same_as<std::size_t>;
+  { Q::patience } -> std::convertible_to<std::size_t>;
+};
+
+/// Room that is used again from one traversal to the next.
+struct Workspace {
+  std::vector<NodePair> open;
+  std::vector<Candidate> pending;
+};
+
+/// For `traverse` where no front is kept.
+struct NoFront {
+  static constexpr bool kept = false;
+};
+struct KeptFront {
+  static constexpr bool kept = true;
+  Front& front;
+};
+
+namespace detail {
+
+template <class B, class V, class Query, class Counter, class Keeping>
+class Traversal {
+  static constexpr int W = width<B>();
+
+ public:
+  Traversal(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Keeping keeping,
+            Workspace& workspace)
+      : a_(a),
+        b_(b),
+        query_(query),
+        counter_(counter),
+        keeping_(keeping),
+        open_(workspace.open),
+        pending_(workspace.pending) {}
+
+  bool run() {
+    open_.clear();
+    pending_.clear();
+    bool stopped = false;
+    if constexpr (Keeping::kept) {
+      const std::size_t end = keeping_.front.size();
+      for (std::size_t next = 0; next < end && !stopped;) {
+        const int count = take_front(next, end);
+        stopped = look_at<true>(count, next);
+        next += static_cast<std::size_t>(count);
+        while (open_.size() >= W && !stopped) stopped = look_at<false>(take_open(), 0);
+      }
+    } else {
+      a_.require(0, counter_);
+      b_.require(0, counter_);
+      open_.push_back({0, 0});
+    }
+    while (!open_.empty() && !stopped) stopped = look_at<false>(take_open(), 0);
+    stopped = stopped || flush();
+    if constexpr (Keeping::kept) {
+      // What was pushed but not reached stays to be looked at next time.
+      for (const NodePair& pair : open_) keeping_.front.add(pair);
+      if (stopped) keeping_.front.bring_forward(witness_);
+    }
+    return !stopped;
+  }
+
+ private:
+  int take_open() {
+    const int count = static_cast<int>(std::min<std::size_t>(W, open_.size()));
+    for (int i = 0; i < count; ++i) {
+      const NodePair pair = open_.back();
+      open_.pop_back();
+      nodes_a_[i] = pair.a, nodes_b_[i] = pair.b;
+    }
+    return count;
+  }
+
+  int take_front(std::size_t next, std::size_t end) requires Keeping::kept {
+    const int count = static_cast<int>(std::min<std::size_t>(W, end - next));
+    for (int i = 0; i < count; ++i) {
+      const NodePair pair = keeping_.front[next + static_cast<std::size_t>(i)];
+      nodes_a_[i] = pair.a, nodes_b_[i] = pair.b;
+      a_.require(pair.a, counter_);
+      b_.require(pair.b, counter_);
+    }
+    return count;
+  }
+
+  /// Tests the pairs taken; says whether the query has had enough.
+  template <bool kFromFront>
+  bool look_at(int count, std::size_t first_slot) {
+    counter_.tested(static_cast<std::uint64_t>(count));
+    const std::uint64_t excluded = test(count);
+    if constexpr (Keeping::kept && !kFromFront)
+      for (std::uint64_t rest = excluded; rest; rest &= rest - 1) {
+        const int i = std::countr_zero(rest);
+        keeping_.front.add({nodes_a_[i], nodes_b_[i]});
+      }
+    for (std::uint64_t rest = ~excluded & all(count); rest; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      const NodePair pair{nodes_a_[i], nodes_b_[i]};
+      const auto& a = a_.hierarchy().node(pair.a);
+      const auto& b = b_.hierarchy().node(pair.b);
+      [[maybe_unused]] const std::size_t slot = first_slot + static_cast<std::size_t>(i);
+      if (a.count && b.count) {
+        std::size_t from = 0;
+        if constexpr (Keeping::kept) from = kFromFront ? slot : keeping_.front.add(pair);
+        hold(a, b, from);
+      } else {
+        if constexpr (Keeping::kept && kFromFront) keeping_.front.open(slot);
+        descend(pair, a, b);
+      }
+    }
+    return pending_.size() > Query::patience && flush();
+  }
+
+  static constexpr std::uint64_t all(int count) { return (std::uint64_t{2} << (count - 1)) - 1; }
+
+  std::uint64_t test(int count) {
+    if constexpr (W == 1) {
+      return bits(query_.excludes(a_.volumes()[nodes_a_[0]], b_.volumes()[nodes_b_[0]]));
+    } else {
+      for (int i = count; i < W; ++i) nodes_a_[i] = nodes_a_[0], nodes_b_[i] = nodes_b_[0];
+      return bits(query_.excludes(gather<B>(a_.volumes(), nodes_a_.data()),
+                                  gather<B>(b_.volumes(), nodes_b_.data()))) &
+             all(count);
+    }
+  }
+
+  using Node = typename Hierarchy<V>::Node;
+
+  void descend(const NodePair& pair, const Node& a, const Node& b) {
+    if (a.count || (!b.count && b.size > a.size)) {
+      b_.require(b.first, counter_);
+      open_.push_back({pair.a, b.first + 1});
+      open_.push_back({pair.a, b.first});
+    } else {
+      a_.require(a.first, counter_);
+      open_.push_back({a.first + 1, pair.b});
+      open_.push_back({a.first, pair.b});
+    }
+  }
+
+  void hold(const Node& a, const Node& b, std::size_t slot) {
+    for (std::uint32_t i = a.first; i < a.first + a.count; ++i)
+      for (std::uint32_t j = b.first; j < b.first + b.count; ++j)
+        pending_.push_back({&a_.triangle(i), &b_.triangle(j), a_.hierarchy().primitive(i),
+                            b_.hierarchy().primitive(j), slot});
+  }
+
+  bool flush() {
+    if (pending_.empty()) return false;
+    const std::size_t last = query_.primitives(pending_);
+    const bool enough = last < pending_.size();
+    counter_.primitives(enough ? last + 1 : pending_.size());
+    if (enough) witness_ = pending_[last].slot;
+    pending_.clear();
+    return enough;
+  }
+
+  Body<V>& a_;
+  Body<V>& b_;
+  Query& query_;
+  Counter& counter_;
+  Keeping keeping_;
+  std::vector<NodePair>& open_;
+  std::vector<Candidate>& pending_;
+  std::array<std::uint32_t, W> nodes_a_, nodes_b_;
+  std::size_t witness_ = 0;
+};
+
+}  // namespace detail
+
+/// Runs the query over two bodies from their roots. B is the scalar or batch that volumes are
+/// tested in. Says whether everything was seen: false where the query stopped it.
+template <class B, class V, class Query, class Counter>
+bool traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
+  return detail::Traversal<B, V, Query, Counter, NoFront>(a, b, query, counter, {}, workspace)
+      .run();
+}
+
+/// The same from a front, which is kept up to date: it never shrinks, and stays a partition also
+/// when the query stops the traversal. The entry at which it stopped is the first one then.
+template <class B, class V, class Query, class Counter>
+bool traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace,
+              Front& front) {
+  return detail::Traversal<B, V, Query, Counter, KeptFront>(a, b, query, counter, {front},
+                                                            workspace)
+      .run();
+}
+
+}  // namespace bvlab
