@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/scenes/random_walk.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/scenes/circle.hpp"
+#include "experiments/scenes/random.hpp"
+
+namespace bvlab {
+namespace {
+
+using Quaternion = std::array<double, 4>;  // w, x, y, z
+
+Quaternion product(const Quaternion& a, const Quaternion& b) {
+  return {((a[0] * b[0] - a[1] * b[1]) - a[2] * b[2]) - a[3] * b[3],
+          ((a[0] * b[1] + a[1] * b[0]) + a[2] * b[3]) - a[3] * b[2],
+          ((a[0] * b[2] - a[1] * b[3]) + a[2] * b[0]) + a[3] * b[1],
+          ((a[0] * b[3] + a[1] * b[2]) - a[2] * b[1]) + a[3] * b[0]};
+}
+
+Quaternion normalised(Quaternion q) {
+  const double norm = std::sqrt(((q[0] * q[0] + q[1] * q[1]) + q[2] * q[2]) + q[3] * q[3]);
+  for (double& component : q) component /= norm;
+  return q;
+}
+
+/// One step: a displacement of the centre and a turn about it.
+struct Step {
+  Vec3<double> shift = Vec3<double>::Zero();
+  Quaternion turn = {1, 0, 0, 0};
+  bool turns = false;
+};
+
+struct Place {
+  Vec3<double> centre = Vec3<double>::Zero();
+  Quaternion attitude = {1, 0, 0, 0};
+};
+
+/// A length in units of the mesh.
+double resolved(const Length& length, std::span<const Extent> meshes, const char* option) {
+  double unit = 1;
+  if (length.unit == Length::Unit::leaf) {
+    unit = std::numeric_limits<double>::infinity();
+    for (const Extent& mesh : meshes)
+      if (mesh.leaf_radius > 0) unit = std::min(unit, mesh.leaf_radius);
+    if (!std::isfinite(unit))
+      throw Unusable(std::string(option) +
+                     ": every triangle of the meshes is a point, so that "
+                     "there is no smallest radius");
+  } else if (length.unit == Length::Unit::body) {
+    unit = 0;
+    for (const Extent& mesh : meshes) unit = std::max(unit, mesh.radius);
+  }
+  return length.value * unit;
+}
+
+void need(bool fulfilled, const std::string& what) {
+  if (!fulfilled) throw Unusable(what);
+}
+
+class Walk {
+ public:
+  Walk(const RandomWalk& options, std::span<const Extent> meshes, const TouchesAny& touches)
+      : options_(options),
+        meshes_(meshes),
+        touches_(touches),
+        rejects_(options.contact == "reject"),
+        one_freedom_(options.freedoms == "one"),
+        half_side_(resolved(options.side, meshes, "side") / 2),
+        step_(resolved(options.step, meshes, "step")),
+        random_(options.seed) {
+    const auto [cosine, sine] = cosine_sine(options.degrees / 720);
+    half_cosine_ = cosine, half_sine_ = sine;
+    need(std::isfinite(2 * half_side_ + step_), "side, step: too large");
+    need(step_ <= 2 * half_side_,
+         "step: longer than the side of the cube, " + std::to_string(2 * half_side_));
+  }
+
+  Array<double> run() {
+    Array<double> trace{{options_.frames, options_.objects, 7}, {}};
+    if (options_.frames == 0) return trace;
+    trace.data.reserve(options_.frames * options_.objects * 7);
+    start();
+    append(trace.data);
+    order_.resize(options_.objects);
+    for (std::size_t frame = 1; frame < options_.frames; ++frame) {
+      advance();
+      append(trace.data);
+    }
+    return trace;
+  }
+
+ private:
+  void start() {
+    places_.resize(options_.objects);
+    last_.resize(options_.objects);
+    // Bodies not placed yet are not among the poses, so they touch nothing.
+    for (std::size_t object = 0; object < options_.objects; ++object) {
+      places_[object] = anywhere();
+      if (!rejects_) continue;
+      poses_.push_back(pose_of(object));
+      for (int tries = 1; touches_(object, poses_); ++tries) {
+        need(tries < 1000, "side: no room for body " + std::to_string(object) +
+                               " to start without touching another, in 1000 tries");
+        places_[object] = anywhere();
+        poses_[object] = pose_of(object);
+      }
+    }
+  }
+
+  void advance() {
+    if (options_.teleport > 0 && options_.objects > 0 && random_.happens(options_.teleport))
+      teleport(random_.below(options_.objects));
+    for (const std::size_t object : movers()) {
+      const Step step =
+          last_[object] && random_.happens(options_.persistence) ? *last_[object] : drawn();
+      last_[object] = attempt(object, step);
+    }
+  }
+
+  /// The bodies that make a step now: the first of a random order, in the order of their numbers.
+  std::span<const std::size_t> movers() {
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    const std::size_t n = order_.size(), moving = options_.moving == 0 ? n : options_.moving;
+    if (moving == n) return order_;
+    for (std::size_t i = 0; i < moving; ++i) std::swap(order_[i], order_[i + random_.below(n - i)]);
+    std::sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(moving));
+    return std::span(order_).first(moving);
+  }
+
+  Step drawn() {
+    Step step;
+    if (one_freedom_) {
+      const std::uint64_t choice = random_.below(12);
+      const int axis = static_cast<int>(choice / 2 % 3);
+      const double sign = choice % 2 ? -1 : 1;
+      if (choice < 6) {
+        step.shift[axis] = sign * step_;
+      } else {
+        step.turns = true;
+        step.turn = {half_cosine_, 0, 0, 0};
+        step.turn[static_cast<std::size_t>(axis) + 1] = sign * half_sine_;
+      }
+      return step;
+    }
+    const Vec3<double> heading = random_.direction(), axis = random_.direction();
+    for (int d = 0; d < 3; ++d) step.shift[d] = step_ * heading[d];
+    step.turns = true;
+    step.turn = {half_cosine_, half_sine_ * axis[0], half_sine_ * axis[1], half_sine_ * axis[2]};
+    return step;
+  }
+
+  /// Makes the step if it may be made; what may be repeated next time.
+  std::optional<Step> attempt(std::size_t object, Step step) {
+    const Place before = places_[object];
+    Place& place = places_[object];
+    for (int d = 0; d < 3; ++d) {
+      double x = place.centre[d] + step.shift[d];
+      const double wall = x > half_side_ ? half_side_ : -half_side_;
+      if (x > half_side_ || x < -half_side_) {
+        // A step is no longer than the cube is wide; rounding may still graze the other wall.
+        x = std::clamp(wall + (wall - x), -half_side_, half_side_);
+        step.shift[d] = -step.shift[d];
+      }
+      place.centre[d] = x;
+    }
+    if (step.turns) place.attitude = normalised(product(step.turn, place.attitude));
+    if (!rejects_) return step;
+    const Pose stood = poses_[object];
+    poses_[object] = pose_of(object);
+    if (!touches_(object, poses_)) return step;
+    place = before;
+    poses_[object] = stood;
+    return std::nullopt;
+  }
+
+  void teleport(std::size_t object) {
+    const Place before = places_[object];
+    last_[object].reset();
+    places_[object] = anywhere();
+    if (!rejects_) return;
+    const Pose stood = poses_[object];
+    for (int tries = 1;; ++tries) {
+      poses_[object] = pose_of(object);
+      if (!touches_(object, poses_)) return;
+      if (tries == 1000) break;
+      places_[object] = anywhere();
+    }
+    places_[object] = before;
+    poses_[object] = stood;
+  }
+
+  Place anywhere() {
+    Place place;
+    for (int d = 0; d < 3; ++d) place.centre[d] = random_.uniform(-half_side_, half_side_);
+    place.attitude = random_.rotation();
+    return place;
+  }
+
+  /// What stands in the trace for this body: x y z qw qx qy qz. The mesh's origin is where turning
+  /// about the centre leaves it.
+  std::array<double, 7> row_of(std::size_t object) const {
+    const auto& [centre, q] = places_[object];
+    const Vec3<double>& c = meshes_[object % meshes_.size()].centre;
+    const Quaternion turned =
+        product(product(q, {0, c[0], c[1], c[2]}), {q[0], -q[1], -q[2], -q[3]});
+    return {centre[0] - turned[1],
+            centre[1] - turned[2],
+            centre[2] - turned[3],
+            q[0],
+            q[1],
+            q[2],
+            q[3]};
+  }
+
+  /// Exactly what reading the trace gives.
+  Pose pose_of(std::size_t object) const {
+    const auto row = row_of(object);
+    return *pose_from({row[0], row[1], row[2]}, row[3], row[4], row[5], row[6]);
+  }
+
+  void append(std::vector<double>& data) const {
+    for (std::size_t object = 0; object < options_.objects; ++object) {
+      const auto row = row_of(object);
+      data.insert(data.end(), row.begin(), row.end());
+    }
+  }
+
+  const RandomWalk& options_;
+  std::span<const Extent> meshes_;
+  const TouchesAny& touches_;
+  bool rejects_, one_freedom_;
+  double half_side_, step_;
+  double half_cosine_ = 1, half_sine_ = 0;
+  Random random_;
+  std::vector<Place> places_;
+  std::vector<Pose> poses_;  // of places_; kept where contacts are looked for
+  std::vector<std::optional<Step>> last_;
+  std::vector<std::size_t> order_;
+};
+
+}  // namespace
+
+Array<double> RandomWalk::generate(std::span<const Extent> meshes,
+                                   const TouchesAny& touches) const {
+  need(!meshes.empty(), "no mesh to move");
+  need(freedoms == "one" || freedoms == "all", "freedoms '" + freedoms + "': there are one, all");
+  need(contact == "pass" || contact == "reject",
+       "contact '" + contact + "': there are pass, reject");
+  need(contact == "pass" || touches, "contact: nothing to look for contacts with");
+  need(moving <= objects,
+       "moving: " + std::to_string(moving) + " of " + std::to_string(objects) + " bodies");
+  need(degrees >= 0 && degrees <= 180, "degrees: must be 0 to 180");
+  need(persistence >= 0 && persistence <= 1, "persistence: must be 0 to 1");
+  need(teleport >= 0 && teleport <= 1, "teleport: must be 0 to 1");
+  std::size_t entries = 0;
+  need(!__builtin_mul_overflow(frames, objects, &entries) && entries <= (std::size_t{1} << 32),
+       "frames, objects: more than 2^32 poses");
+  return Walk(*this, meshes, touches).run();
+}
+
+}  // namespace bvlab

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/scenes/read_mesh.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/files/whole_file.hpp"
+#include "experiments/scenes/mesh_formats.hpp"
+
+namespace bvlab {
+namespace {
+
+std::string slurp(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw Unusable(path.string(), "is a directory");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             std::fclose);
+  if (!file) throw Unusable(path.string(), std::strerror(errno));
+  std::string bytes;
+  char block[1 << 16];
+  while (const std::size_t n = std::fread(block, 1, sizeof block, file.get()))
+    bytes.append(block, n);
+  if (std::ferror(file.get())) throw Unusable(path.string(), "cannot be read");
+  return bytes;
+}
+
+std::string extension_of(const std::string& name) {
+  std::string extension = std::filesystem::path(name).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(c < 128 ? std::tolower(c) : c); });
+  return extension;
+}
+
+TriangleMesh checked(TriangleMesh mesh, const std::string& name) {
+  if (mesh.triangles.empty()) throw Unusable(name, "has no triangles");
+  return mesh;
+}
+
+}  // namespace
+
+TriangleMesh parse_mesh(std::string_view bytes, const std::string& name) {
+  if (bytes.empty()) throw Unusable(name, "is empty");
+  const std::string extension = extension_of(name);
+  for (const auto& format : own_formats)
+    if (extension == format.extension) return checked(format.parse(bytes, name), name);
+  return checked(parse_with_assimp(bytes, name, extension), name);
+}
+
+TriangleMesh read_mesh(const std::filesystem::path& path) {
+  const std::string bytes = slurp(path);
+  if (bytes.empty()) throw Unusable(path.string(), "is empty");
+  const std::string extension = extension_of(path.string());
+  for (const auto& format : own_formats)
+    if (extension == format.extension)
+      return checked(format.parse(bytes, path.string()), path.string());
+  return checked(read_with_assimp(path), path.string());
+}
+
+void write_off(const std::filesystem::path& path, const TriangleMesh& mesh) {
+  std::string text = "OFF\n" + std::to_string(mesh.vertices.size()) + " " +
+                     std::to_string(mesh.triangles.size()) + " 0\n";
+  char digits[32];
+  for (const auto& vertex : mesh.vertices)
+    for (int d = 0; d < 3; ++d) {
+      text.append(digits, std::to_chars(digits, digits + sizeof digits, vertex[d]).ptr);
+      text += d == 2 ? '\n' : ' ';
+    }
+  for (const auto& [i, j, k] : mesh.triangles)
+    text += "3 " + std::to_string(i) + " " + std::to_string(j) + " " + std::to_string(k) + "\n";
+  write_whole(path, text);
+}
+
+}  // namespace bvlab
