@@ -5,7 +5,7 @@
 /// about ten passes over the points.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -27,21 +27,21 @@ namespace detail {
 /// are affinely dependent, which `basis_ball` notices because that ball misses a point.
 inline Ball circumscribed(std::span<const Vec3<double>> points) {
   if (points.empty()) return {};
-  const auto m = static_cast<Eigen::Index>(points.size()) - 1;
-  Ball ball{points[0], 0};
-  if (m == 0) return ball;
-  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> edges(3, m);
-  for (Eigen::Index i = 0; i < m; ++i)
-    edges.col(i) = points[static_cast<std::size_t>(i) + 1] - points[0];
-  // |x - p_i| = |x - p_0| with x - p_0 = edges * lambda.
-  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> gram =
-      edges.transpose() * edges;
-  const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> half = gram.diagonal() / 2;
-  const Vec3<double> offset = edges * gram.fullPivLu().solve(half);
+  const auto edge = [&](std::size_t i) -> Vec3<double> { return points[i] - points[0]; };
+  Vec3<double> offset = Vec3<double>::Zero();
+  if (points.size() == 2) {
+    offset = edge(1) / 2;
+  } else if (points.size() == 3) {
+    const Vec3<double> a = edge(1), b = edge(2), n = a.cross(b);
+    offset = (a.squaredNorm() * b - b.squaredNorm() * a).cross(n) / (2 * n.squaredNorm());
+  } else if (points.size() == 4) {
+    const Vec3<double> a = edge(1), b = edge(2), c = edge(3);
+    offset = (a.squaredNorm() * b.cross(c) + b.squaredNorm() * c.cross(a) +
+              c.squaredNorm() * a.cross(b)) /
+             (2 * a.dot(b.cross(c)));
+  }
   if (!offset.allFinite()) return {};
-  ball.centre = points[0] + offset;
-  ball.squared_radius = offset.squaredNorm();
-  return ball;
+  return {points[0] + offset, offset.squaredNorm()};
 }
 
 }  // namespace detail

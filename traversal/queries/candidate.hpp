@@ -2,7 +2,10 @@
 /// Two primitives whose leaves could not be told apart, waiting to be tested.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
+#include <span>
 
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
@@ -14,5 +17,27 @@ struct Candidate {
   std::uint32_t a, b;  ///< their indices in their meshes
   std::size_t slot;    ///< of the front's entry they come from, where a front is kept
 };
+
+/// Which of the pairs (*a[i], *b[i]), i < count <= 64, share a point: bit i is pair i's.
+using TriangleTest = std::uint64_t (*)(const Triangle* const* a, const Triangle* const* b, int count);
+
+/// Calls `hit(i)` for each candidate whose triangles share a point, in order, until it says to
+/// stop; gives the index at which it did, or their number.
+template <class Hit>
+std::size_t for_each_hit(std::span<const Candidate> pending, TriangleTest test, Hit&& hit) {
+  constexpr std::size_t at_once = 16;
+  for (std::size_t first = 0; first < pending.size(); first += at_once) {
+    const auto block = pending.subspan(first, std::min(at_once, pending.size() - first));
+    const Triangle *a[at_once], *b[at_once];
+    for (std::size_t i = 0; i < block.size(); ++i)
+      a[i] = block[i].triangle_a, b[i] = block[i].triangle_b;
+    std::uint64_t hits = test(a, b, static_cast<int>(block.size()));
+    for (; hits; hits &= hits - 1) {
+      const auto i = first + static_cast<std::size_t>(std::countr_zero(hits));
+      if (hit(i)) return i;
+    }
+  }
+  return pending.size();
+}
 
 }  // namespace bvlab

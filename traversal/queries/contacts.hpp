@@ -24,7 +24,8 @@ class Contacts {
   static constexpr std::size_t patience = 15;
 
   /// Contacts are appended to `found`.
-  explicit Contacts(std::vector<Contact>& found) : found_(found) {}
+  explicit Contacts(std::vector<Contact>& found, TriangleTest test = intersect_batch<Exact>)
+      : test_(test), found_(found) {}
 
   template <class P>
   auto excludes(const P& a, const P& b) const {
@@ -32,13 +33,14 @@ class Contacts {
   }
 
   std::size_t primitives(std::span<const Candidate> pending) {
-    for (const auto& candidate : pending)
-      if (intersect(*candidate.triangle_a, *candidate.triangle_b))
-        found_.push_back({candidate.a, candidate.b});
-    return pending.size();
+    return for_each_hit(pending, test_, [&](std::size_t i) {
+      found_.push_back({pending[i].a, pending[i].b});
+      return false;
+    });
   }
 
  private:
+  TriangleTest test_;
   std::vector<Contact>& found_;
 };
 

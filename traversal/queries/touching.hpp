@@ -18,23 +18,23 @@ class Touching {
   static constexpr std::string_view description = "do the two surfaces share a point, yes or no";
   static constexpr std::size_t patience = 0;
 
+  explicit Touching(TriangleTest test = intersect_batch<Exact>) : test_(test) {}
+
   template <class P>
   auto excludes(const P& a, const P& b) const {
     return disjoint(a, b);
   }
 
   std::size_t primitives(std::span<const Candidate> pending) {
-    for (std::size_t i = 0; i < pending.size(); ++i)
-      if (intersect(*pending[i].triangle_a, *pending[i].triangle_b)) {
-        touching_ = true;
-        return i;
-      }
-    return pending.size();
+    const std::size_t first = for_each_hit(pending, test_, [](std::size_t) { return true; });
+    touching_ = first < pending.size();
+    return first;
   }
 
   bool touching() const { return touching_; }
 
  private:
+  TriangleTest test_;
   bool touching_ = false;
 };
 
