@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What a broad-phase method is told when it is made.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "broadphase/box.hpp"
+
+namespace bvlab {
+
+/// Whether a frame may use what the frames before it left behind.
+enum class Coherence { off, on };
+
+/// Whether the pairs that began and ended are reported besides all pairs.
+enum class Changes { unreported, reported };
+
+struct Settings {
+  Coherence coherence = Coherence::on;
+  Changes changes = Changes::unreported;
+  int threads = 1;
+  std::uint32_t cutoff = 1000;  ///< where `hybrid` stops dividing and scans
+};
+
+/// The pairs of this frame that the last one had not, and the other way round; any order.
+struct PairChanges {
+  std::span<const Pair> began;
+  std::span<const Pair> ended;
+};
+
+}  // namespace bvlab

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A tree of blocks over boxes in spatial order: sixteen boxes to a leaf, sixteen nodes to a parent,
+/// no pointers, since the children of node k are 16k .. 16k+15 one level down. It has n/16 leaves
+/// and n/240 other blocks: 28 bytes a box in all in float. Joined with itself by comparing sixteen
+/// nodes at once.
+#pragma once
+
+#include <vector>
+
+#include "broadphase/structures/block.hpp"
+#include "broadphase/structures/radix_sort.hpp"
+
+namespace bvlab {
+
+inline constexpr std::uint32_t no_box = 0xffffffffu;
+
+/// Copies the boxes with these indices into a block; `no_box` leaves its lane empty.
+template <class T>
+inline void gather(Block<T>& block, const std::uint32_t* ids, Boxes<T> boxes) {
+#ifdef __AVX512F__
+  if constexpr (std::is_same_v<T, float>)
+    if (boxes.size() < (1u << 28)) {
+      const __m512i id = _mm512_loadu_si512(ids);
+      const __mmask16 held = _mm512_cmpneq_epi32_mask(id, _mm512_set1_epi32(-1));
+      const __m512i at = _mm512_mullo_epi32(id, _mm512_set1_epi32(6));
+      const float* base = boxes.data()->lo;
+      const __m512 far = _mm512_set1_ps(std::numeric_limits<float>::infinity());
+      const __m512 back = _mm512_set1_ps(-std::numeric_limits<float>::infinity());
+      for (int axis = 0; axis < 3; ++axis) {
+        _mm512_store_ps(block.lo[axis], _mm512_mask_i32gather_ps(far, held, at, base + axis, 4));
+        _mm512_store_ps(block.hi[axis], _mm512_mask_i32gather_ps(back, held, at, base + 3 + axis, 4));
+      }
+      return;
+    }
+#endif
+  for (int lane = 0; lane < block_width; ++lane)
+    block.put(lane, ids[lane] == no_box ? nowhere<T>() : boxes[ids[lane]]);
+}
+
+template <class T>
+class BlockTree {
+ public:
+  std::uint32_t leaves() const { return static_cast<std::uint32_t>(levels_.empty() ? 0 : levels_[0].size()); }
+  Block<T>& leaf(std::uint32_t k) { return levels_[0][k]; }
+  const Block<T>& leaf(std::uint32_t k) const { return levels_[0][k]; }
+  std::uint32_t* ids(std::uint32_t leaf) { return ids_.data() + std::size_t{leaf} * block_width; }
+  const std::uint32_t* ids(std::uint32_t leaf) const { return ids_.data() + std::size_t{leaf} * block_width; }
+
+  /// What the tree believes leaf k to lie in: as wide as its boxes or wider.
+  Box<T> reach(std::uint32_t k) const { return levels_[1][k / block_width].box(k % block_width); }
+  void set_reach(std::uint32_t k, const Box<T>& box) { levels_[1][k / block_width].put(k % block_width, box); }
+
+  /// Fills the leaves with the boxes in this order; then the levels above.
+  void build(std::span<const Keyed<std::uint32_t>> order, Boxes<T> boxes) {
+    resize_leaves(static_cast<std::uint32_t>((order.size() + block_width - 1) / block_width));
+    for (std::size_t k = 0; k < order.size(); ++k) ids_[k] = order[k].id;
+    std::fill(ids_.begin() + static_cast<std::ptrdiff_t>(order.size()), ids_.end(), no_box);
+    for (std::uint32_t k = 0; k < leaves(); ++k) {
+      gather(leaf(k), ids(k), boxes);
+      set_reach(k, bounds(leaf(k)));
+    }
+    refit_above();
+  }
+
+  /// Makes room for that many leaves; new ones are empty.
+  void resize_leaves(std::uint32_t count) {
+    std::size_t depth = 2;
+    for (std::size_t nodes = blocks_over(count); nodes > 1; nodes = blocks_over(nodes)) ++depth;
+    if (levels_.size() < depth) levels_.resize(depth);
+    depth_ = depth;
+    Block<T> empty;
+    for (int lane = 0; lane < block_width; ++lane) empty.put(lane, nowhere<T>());
+    std::size_t nodes = count;
+    for (std::size_t level = 0; level < depth; ++level, nodes = blocks_over(nodes)) {
+      const std::size_t had = levels_[level].size();
+      levels_[level].resize(nodes, empty);
+      // Lanes past the last child must reach nothing, whatever stood there.
+      if (level > 0 && nodes > 0 && nodes <= had)
+        for (std::size_t lane = children_of_last(level); lane < block_width; ++lane)
+          levels_[level].back().put(static_cast<int>(lane), nowhere<T>());
+    }
+    ids_.resize(std::size_t{count} * block_width, no_box);
+  }
+
+  /// Recomputes every level above the leaves' reaches.
+  void refit_above() {
+    for (std::size_t level = 2; level < depth_; ++level)
+      for (std::size_t k = 0; k < levels_[level - 1].size(); ++k)
+        levels_[level][k / block_width].put(static_cast<int>(k % block_width), bounds(levels_[level - 1][k]));
+  }
+
+  /// Calls visit(a, b) for a < b, two leaves whose reaches overlap, and visit(a, a) for every leaf,
+  /// from those under the blocks [first, last) of the top level's children on.
+  template <class Visit>
+  void join(Visit&& visit) const {
+    if (leaves() > 0) join_self(depth_ - 1, 0, visit);
+  }
+
+  /// Calls visit(k) for every leaf whose reach overlaps `box`.
+  template <class Visit>
+  void find(const Box<T>& box, Visit&& visit) const {
+    if (leaves() > 0) find_below(depth_ - 1, 0, box, visit);
+  }
+
+  std::size_t bytes() const {
+    std::size_t sum = ids_.capacity() * sizeof(std::uint32_t);
+    for (const auto& level : levels_) sum += level.capacity() * sizeof(Block<T>);
+    return sum;
+  }
+
+ private:
+  static std::size_t blocks_over(std::size_t nodes) { return (nodes + block_width - 1) / block_width; }
+  std::size_t children_of_last(std::size_t level) const {
+    return levels_[level - 1].size() - (levels_[level].size() - 1) * block_width;
+  }
+
+  template <class Visit>
+  void join_self(std::size_t level, std::uint32_t a, Visit& visit) const {
+    if (level == 0) return visit(a, a);
+    const Block<T>& block = levels_[level][a];
+    const std::size_t first = std::size_t{a} * block_width;
+    const std::size_t count = std::min<std::size_t>(block_width, levels_[level - 1].size() - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      join_self(level - 1, static_cast<std::uint32_t>(first + k), visit);
+      Lanes others = overlapping_lanes<Closed>(block, block.box(static_cast<int>(k))) & (all_lanes << (k + 1));
+      for (; others; others &= others - 1)
+        join_two(level - 1, static_cast<std::uint32_t>(first + k),
+                 static_cast<std::uint32_t>(first) + std::countr_zero(others), visit);
+    }
+  }
+
+  template <class Visit>
+  void join_two(std::size_t level, std::uint32_t a, std::uint32_t b, Visit& visit) const {
+    if (level == 0) return visit(a, b);
+    const Block<T>& left = levels_[level][a];
+    const Block<T>& right = levels_[level][b];
+    Lanes rows = overlapping_lanes<Closed>(left, levels_[level + 1][b / block_width].box(b % block_width));
+    for (; rows; rows &= rows - 1) {
+      const int row = std::countr_zero(rows);
+      Lanes others = overlapping_lanes<Closed>(right, left.box(row));
+      for (; others; others &= others - 1)
+        join_two(level - 1, a * block_width + row, b * block_width + std::countr_zero(others), visit);
+    }
+  }
+
+  template <class Visit>
+  void find_below(std::size_t level, std::uint32_t node, const Box<T>& box, Visit& visit) const {
+    Lanes found = overlapping_lanes<Closed>(levels_[level][node], box);
+    for (; found; found &= found - 1) {
+      const std::uint32_t child = node * block_width + std::countr_zero(found);
+      if (level == 1)
+        visit(child);
+      else
+        find_below(level - 1, child, box, visit);
+    }
+  }
+
+  std::vector<std::vector<Block<T>>> levels_;  ///< [0] the leaves; the one at depth_ - 1 has one block
+  std::size_t depth_ = 0;
+  std::vector<std::uint32_t> ids_;             ///< sixteen to a leaf
+};
+
+}  // namespace bvlab

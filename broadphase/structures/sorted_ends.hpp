@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The boxes in the order of one coordinate. Without coherence a radix sort, O(n); with it the order
+/// of the last frame repaired by insertion sort, O(n + swaps) (BibTeX: cohen1995icollide), given up
+/// for the radix sort once the swaps cost more than that.
+#pragma once
+
+#include <vector>
+
+#include "broadphase/settings.hpp"
+#include "broadphase/structures/radix_sort.hpp"
+
+namespace bvlab {
+
+template <class T>
+class SortedEnds {
+ public:
+  using Key = decltype(sort_key(T{}));
+  using Item = Keyed<Key>;
+
+  explicit SortedEnds(Coherence coherence) : coherence_(coherence) {}
+
+  /// Sorts 0 .. count-1 by `coordinate(k)`; equal ones stay in the order they had.
+  template <class Coordinate>
+  std::span<const Item> operator()(std::uint32_t count, Coordinate&& coordinate) {
+    const bool repair = coherence_ == Coherence::on && items_.size() == count;
+    if (!repair) {
+      items_.resize(count);
+      for (std::uint32_t k = 0; k < count; ++k) items_[k].id = k;
+    }
+    for (auto& item : items_) item.key = sort_key(coordinate(item.id));
+    if (!repair || !repaired()) radix_sort(items_, spare_);
+    return items_;
+  }
+
+  std::size_t bytes() const { return (items_.capacity() + spare_.capacity()) * sizeof(Item); }
+
+ private:
+  /// False, with the items in some order, once there were sixteen swaps an item.
+  bool repaired() {
+    std::size_t swaps_left = 16 * items_.size();
+    for (std::size_t k = 1; k < items_.size(); ++k) {
+      if (items_[k - 1].key <= items_[k].key) continue;
+      const Item item = items_[k];
+      std::size_t hole = k;
+      for (; hole > 0 && items_[hole - 1].key > item.key; --hole) {
+        items_[hole] = items_[hole - 1];
+        if (swaps_left-- == 0) {
+          items_[hole - 1] = item;
+          return false;
+        }
+      }
+      items_[hole] = item;
+    }
+    return true;
+  }
+
+  Coherence coherence_;
+  std::vector<Item> items_, spare_;
+};
+
+}  // namespace bvlab

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// An order of the boxes in which neighbours in the list are neighbours in space and alike in size:
+/// by class (size within a factor of eight, elongation), and within a class along a Morton curve of
+/// the centres. Where more than a few centres share one Morton cell, that run is ordered again in
+/// the run's own bounds, so that one far box, or clusters within clusters, cost nothing but the run.
+/// O(n) for each such level; the keys are integers and the sort is a radix sort.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "broadphase/structures/block.hpp"
+#include "broadphase/structures/radix_sort.hpp"
+
+namespace bvlab {
+
+template <class T>
+class SpatialOrder {
+ public:
+  using Item = Keyed<std::uint32_t>;
+
+  /// The indices of the boxes in their order, as the `id` of each item; valid until the next call.
+  std::span<const Item> operator()(Boxes<T> boxes) {
+    items_.resize(boxes.size());
+    if (boxes.empty()) return {};
+    const Summary all = summary(boxes);
+    classify(boxes, all);
+    const int class_bits = std::bit_width(classes_ - 1u);
+    make_keys(boxes, Cells(all, std::min(10, (32 - class_bits) / 3)));
+    radix_sort(items_, spare_);
+    refine(boxes);
+    return items_;
+  }
+
+ private:
+  static constexpr std::size_t crowd = 2 * block_width;  ///< a run of equal keys worth ordering again
+
+  /// Where the centres lie (a quarter of lo + hi, so that no difference overflows), and the least
+  /// and the largest extent on any axis.
+  struct Summary {
+    T lo[3], hi[3], least, most;
+  };
+  struct Tally {
+    T lo[3][block_width], hi[3][block_width], least[block_width], most[block_width];
+    Tally() {
+      constexpr T far = std::numeric_limits<T>::infinity();
+      std::fill_n(&lo[0][0], 3 * block_width, far), std::fill_n(&hi[0][0], 3 * block_width, -far);
+      std::fill_n(least, block_width, far), std::fill_n(most, block_width, -far);
+    }
+    void add(const Block<T>& block) {
+      for (int axis = 0; axis < 3; ++axis)
+        for (int k = 0; k < block_width; ++k) {
+          const T centre = T(0.25) * block.lo[axis][k] + T(0.25) * block.hi[axis][k];
+          const T extent = block.hi[axis][k] - block.lo[axis][k];
+          lo[axis][k] = centre < lo[axis][k] ? centre : lo[axis][k];
+          hi[axis][k] = centre > hi[axis][k] ? centre : hi[axis][k];
+          least[k] = extent < least[k] ? extent : least[k];
+          most[k] = extent > most[k] ? extent : most[k];
+        }
+    }
+    Summary sum() const {
+      Summary all;
+      for (int axis = 0; axis < 3; ++axis) {
+        all.lo[axis] = *std::min_element(lo[axis], lo[axis] + block_width);
+        all.hi[axis] = *std::max_element(hi[axis], hi[axis] + block_width);
+      }
+      all.least = *std::min_element(least, least + block_width);
+      all.most = *std::max_element(most, most + block_width);
+      return all;
+    }
+  };
+
+  /// Calls visit(block, first, count) for every sixteen boxes of the frame; lanes past the last
+  /// repeat it.
+  template <class Visit>
+  static void for_blocks(Boxes<T> boxes, Visit&& visit) {
+    Block<T> block;
+    std::size_t first = 0;
+    for (; first + block_width <= boxes.size(); first += block_width) {
+      load(block, boxes.data() + first);
+      visit(block, first, std::size_t{block_width});
+    }
+    if (first == boxes.size()) return;
+    for (int lane = 0; lane < block_width; ++lane)
+      block.put(lane, boxes[std::min(first + lane, boxes.size() - 1)]);
+    visit(block, first, boxes.size() - first);
+  }
+  static Summary summary(Boxes<T> boxes) {
+    Tally tally;
+    for_blocks(boxes, [&](const Block<T>& block, std::size_t, std::size_t) { tally.add(block); });
+    return tally.sum();
+  }
+
+  /// Finds the classes in use and numbers them; one where all boxes are about alike.
+  void classify(Boxes<T> boxes, const Summary& all) {
+    classes_ = 1;
+    if (all.most <= 8 * all.least) return;
+    std::array<std::uint32_t, exponents * shapes> used{};
+    for (const Box<T>& box : boxes) used[kind(box)] = 1;
+    // From the largest size down, three powers of two to a class.
+    classes_ = 0;
+    for (int top = exponents - 1; top >= 0; --top) {
+      bool any = false;
+      for (int shape = 0; shape < shapes; ++shape) any |= used[top * shapes + shape];
+      if (!any) continue;
+      const int bottom = std::max(0, top - 2);
+      for (int shape = 0; shape < shapes; ++shape) {
+        bool present = false;
+        for (int e = bottom; e <= top; ++e) present |= used[e * shapes + shape];
+        for (int e = bottom; e <= top; ++e) class_of_[e * shapes + shape] = classes_;
+        classes_ += present;
+      }
+      top = bottom;
+    }
+  }
+
+  static constexpr int exponents = 256;
+  static constexpr int shapes = 7;
+  /// The size's power of two, and whether one axis is four times longer, or shorter, than the next.
+  static int kind(const Box<T>& box) {
+    std::array<T, 3> extent;
+    for (int axis = 0; axis < 3; ++axis) extent[axis] = box.hi[axis] - box.lo[axis];
+    const int longest = extent[0] >= extent[1] ? (extent[0] >= extent[2] ? 0 : 2) : (extent[1] >= extent[2] ? 1 : 2);
+    const int shortest = extent[0] < extent[1] ? (extent[0] < extent[2] ? 0 : 2) : (extent[1] < extent[2] ? 1 : 2);
+    const T size = extent[longest];
+    const int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(static_cast<float>(size)) >> 23);
+    int shape = 0;
+    if (longest != shortest) {
+      const T middle = extent[3 - longest - shortest];
+      if (size > 4 * middle)
+        shape = 1 + longest;
+      else if (middle > 4 * extent[shortest])
+        shape = 4 + shortest;
+    }
+    return exponent * shapes + shape;
+  }
+
+  static std::uint32_t spread(std::uint32_t x) {  // ten bits, two zeros between each
+    x = (x | (x << 16)) & 0x030000ffu;
+    x = (x | (x << 8)) & 0x0300f00fu;
+    x = (x | (x << 4)) & 0x030c30c3u;
+    return (x | (x << 2)) & 0x09249249u;
+  }
+
+  /// A grid of 2^digits cells a side over the centres. Cells are cubes, so that a flat scene does
+  /// not spend its bits across.
+  struct Cells {
+    T low[3], scale, last;
+    int digits;
+    Cells(const Summary& all, int digits) : digits(digits) {
+      T width = 0;
+      for (int axis = 0; axis < 3; ++axis) low[axis] = all.lo[axis], width = std::max(width, all.hi[axis] - all.lo[axis]);
+      scale = static_cast<T>(1 << digits) / width;
+      if (!std::isfinite(scale)) scale = 0;
+      last = static_cast<T>((1 << digits) - 1);
+    }
+    void keys(const Block<T>& block, std::uint32_t* key) const {
+      std::uint32_t sum[block_width] = {};
+      for (int axis = 0; axis < 3; ++axis)
+        for (int k = 0; k < block_width; ++k) {
+          const T centre = T(0.25) * block.lo[axis][k] + T(0.25) * block.hi[axis][k];
+          const T cell = (centre - low[axis]) * scale;
+          sum[k] |= spread(static_cast<std::uint32_t>(static_cast<std::int32_t>(cell < last ? cell : last))) << axis;
+        }
+      std::copy_n(sum, block_width, key);
+    }
+  };
+
+  void make_keys(Boxes<T> boxes, const Cells& cells) {
+    for_blocks(boxes, [&](const Block<T>& block, std::size_t first, std::size_t count) {
+      std::uint32_t key[block_width];
+      cells.keys(block, key);
+      if (classes_ > 1)
+        for (std::size_t k = 0; k < count; ++k)
+          key[k] |= class_of_[kind(boxes[first + k])] << (3 * cells.digits);
+      for (std::size_t k = 0; k < count; ++k)
+        items_[first + k] = {key[k], static_cast<std::uint32_t>(first + k)};
+    });
+  }
+
+  /// Orders every crowded run of equal keys again, in its own bounds.
+  void refine(Boxes<T> boxes) {
+    runs_.clear();
+    push_runs(0, items_.size(), items_.size() + 1);
+    while (!runs_.empty()) {
+      const auto [first, last] = runs_.back();
+      runs_.pop_back();
+      const auto run = std::span(items_).subspan(first, last - first);
+      order_again(boxes, run);
+      std::sort(run.begin(), run.end(), [](const Item& a, const Item& b) {
+        return a.key != b.key ? a.key < b.key : a.id < b.id;
+      });
+      push_runs(first, last, run.size());
+    }
+  }
+  static void order_again(Boxes<T> boxes, std::span<Item> run) {
+    const auto for_run = [&](auto&& visit) {
+      Block<T> block;
+      for (std::size_t first = 0; first < run.size(); first += block_width) {
+        for (int lane = 0; lane < block_width; ++lane)
+          block.put(lane, boxes[run[std::min(first + lane, run.size() - 1)].id]);
+        visit(block, run.subspan(first, std::min<std::size_t>(block_width, run.size() - first)));
+      }
+    };
+    Tally tally;
+    for_run([&](const Block<T>& block, std::span<Item>) { tally.add(block); });
+    const Cells cells(tally.sum(), 10);
+    for_run([&](const Block<T>& block, std::span<Item> items) {
+      std::uint32_t key[block_width];
+      cells.keys(block, key);
+      for (std::size_t k = 0; k < items.size(); ++k) items[k].key = key[k];
+    });
+  }
+  /// Runs as long as `whole` did not get any shorter: their centres are one.
+  void push_runs(std::size_t first, std::size_t last, std::size_t whole) {
+    for (std::size_t k = first; k < last;) {
+      // Most runs are short: look one crowd ahead first.
+      if (last - k <= crowd) return;
+      if (items_[k + crowd].key != items_[k].key) {
+        ++k;
+        continue;
+      }
+      std::size_t end = k + crowd;
+      while (end < last && items_[end].key == items_[k].key) ++end;
+      if (end - k < whole) runs_.push_back({k, end});
+      k = end;
+    }
+  }
+
+  std::vector<Item> items_, spare_;
+  std::vector<std::pair<std::size_t, std::size_t>> runs_;
+  std::array<std::uint32_t, exponents * shapes> class_of_{};
+  std::uint32_t classes_ = 1;
+};
+
+}  // namespace bvlab
