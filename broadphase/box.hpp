@@ -2,7 +2,8 @@
 /// Boxes, pairs of them, and what it means that two overlap.
 ///
 /// A frame is a span of boxes as a box trace holds them: `lo x y z, hi x y z`, one after the other.
-/// Methods copy them into arrays of their own, in their own order, so a frame is read and never kept.
+/// Methods copy them into arrays of their own, in their own order, so a frame is read and never
+/// kept.
 #pragma once
 
 #include <cmath>

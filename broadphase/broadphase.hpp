@@ -19,15 +19,15 @@ namespace bvlab {
 ///   uniqueness   each stands once, with i < j, contiguous; in the same order in every run;
 ///   freedom      frames may differ in anything: boxes may jump, appear and disappear;
 ///   steadiness   once frames stop growing, nothing is allocated.
-/// Boxes must be free of faults (`first_fault`). The pairs stay valid until the next call. Made with
-/// `Coherence::off`, a method forgets every frame, and keeps its memory.
+/// Boxes must be free of faults (`first_fault`). The pairs stay valid until the next call. Made
+/// with `Coherence::off`, a method forgets every frame, and keeps its memory.
 template <class M>
-concept BroadPhaseMethod =
-    std::constructible_from<M, const Settings&> && requires(M method, Boxes<typename M::Scalar> boxes) {
-      { M::name } -> std::convertible_to<std::string_view>;
-      { M::description } -> std::convertible_to<std::string_view>;
-      { method.overlapping(boxes) } -> std::same_as<std::span<const Pair>>;
-    };
+concept BroadPhaseMethod = std::constructible_from<M, const Settings&> &&
+    requires(M method, Boxes<typename M::Scalar> boxes) {
+  { M::name } -> std::convertible_to<std::string_view>;
+  { M::description } -> std::convertible_to<std::string_view>;
+  { method.overlapping(boxes) } -> std::same_as<std::span<const Pair>>;
+};
 
 /// A method that knows, made with `Changes::reported`, which pairs began and ended since the last
 /// frame, at a cost that follows their number. `Compared` gives the same for any method.
@@ -37,10 +37,6 @@ concept ReportsChanges = BroadPhaseMethod<M> && requires(const M method) {
 };
 
 template <class T, class Contact = Closed>
-using Methods = TypeList<
-    BruteForce<T, Contact>,
-    SortAndSweep<T, Contact>,
-    Blocks<T, Contact>
->;
+using Methods = TypeList<BruteForce<T, Contact>, SortAndSweep<T, Contact>, Blocks<T, Contact>>;
 
 }  // namespace bvlab

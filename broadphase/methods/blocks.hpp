@@ -13,7 +13,8 @@ class Blocks {
  public:
   using Scalar = T;
   static constexpr std::string_view name = "blocks";
-  static constexpr std::string_view description = "blocks of sixteen neighbours, joined by vector comparisons";
+  static constexpr std::string_view description =
+      "blocks of sixteen neighbours, joined by vector comparisons";
   explicit Blocks(const Settings&) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {
@@ -25,11 +26,14 @@ class Blocks {
       if (a == b) {
         const Block<T>& left = tree_.leaf(a);
         const std::uint32_t* ids = tree_.ids(a);
-        for (int row = 0; row < block_width - 1; ++row) 
-          out = write_pairs(out, ids[row], ids, right.template overlapping<Contact>(left.box(row)) & (all_lanes << (row + 1)));
+        for (int row = 0; row < block_width - 1; ++row)
+          out = write_pairs(
+              out, ids[row], ids,
+              right.template overlapping<Contact>(left.box(row)) & (all_lanes << (row + 1)));
       } else {
-        Lanes rows = overlapping_lanes<Closed>(tree_.leaf(a), tree_.reach(b)), columns = right.template overlapping<Closed>(tree_.reach(a));
-        if (std::popcount(rows) <= std::popcount(columns)) 
+        Lanes rows = overlapping_lanes<Closed>(tree_.leaf(a), tree_.reach(b)),
+              columns = right.template overlapping<Closed>(tree_.reach(a));
+        if (std::popcount(rows) <= std::popcount(columns))
           out = cross(out, a, b, right, rows);
         else
           out = cross(out, b, a, Loaded<T>(tree_.leaf(a)), columns);
@@ -38,6 +42,7 @@ class Blocks {
     });
     return pairs_.view();
   }
+
  public:
   Pair* cross(Pair* out, std::uint32_t a, std::uint32_t b, const Loaded<T>& right, Lanes rows) {
     const Block<T>& left = tree_.leaf(a);
@@ -45,7 +50,8 @@ class Blocks {
     const std::uint32_t* right_ids = tree_.ids(b);
     for (; rows; rows &= rows - 1) {
       const int row = std::countr_zero(rows);
-      out = write_pairs(out, left_ids[row], right_ids, right.template overlapping<Contact>(left.box(row)));
+      out = write_pairs(out, left_ids[row], right_ids,
+                        right.template overlapping<Contact>(left.box(row)));
     }
     return out;
   }

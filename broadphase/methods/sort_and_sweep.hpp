@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Boxes sorted by where they start on one axis; each is compared, sixteen at a time, with those that
-/// start before it ends. O(n) sorting and O(n m) comparisons, m the boxes that one box meets on the
-/// axis (BibTeX: baraff1992thesis, terdiman2018boxpruning). With coherence the order is repaired
-/// instead of made.
+/// Boxes sorted by where they start on one axis; each is compared, sixteen at a time, with those
+/// that start before it ends. O(n) sorting and O(n m) comparisons, m the boxes that one box meets
+/// on the axis (BibTeX: baraff1992thesis, terdiman2018boxpruning). With coherence the order is
+/// repaired instead of made.
 #pragma once
 
 #include <vector>
@@ -18,9 +18,11 @@ class SortAndSweep {
  public:
   using Scalar = T;
   static constexpr std::string_view name = "sort-and-sweep";
-  static constexpr std::string_view description = "sorted along one axis, swept with vector comparisons";
+  static constexpr std::string_view description =
+      "sorted along one axis, swept with vector comparisons";
 
-  explicit SortAndSweep(const Settings& settings) : coherence_(settings.coherence), sorted_(settings.coherence) {}
+  explicit SortAndSweep(const Settings& settings)
+      : coherence_(settings.coherence), sorted_(settings.coherence) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {
     if (coherence_ == Coherence::off || boxes.size() != count_) axis_ = sparsest_axis(boxes);
@@ -49,7 +51,8 @@ class SortAndSweep {
   }
 
   void copy_in_order(Boxes<T> boxes) {
-    const auto order = sorted_(static_cast<std::uint32_t>(boxes.size()), [&](std::uint32_t k) { return boxes[k].lo[axis_]; });
+    const auto order = sorted_(static_cast<std::uint32_t>(boxes.size()),
+                               [&](std::uint32_t k) { return boxes[k].lo[axis_]; });
     // One block of sentinels beyond the last box ends every sweep.
     const std::size_t padded = order.size() + block_width;
     for (int axis = 0; axis < 3; ++axis) lo_[axis].resize(padded), hi_[axis].resize(padded);
@@ -60,7 +63,8 @@ class SortAndSweep {
         lo_[k][at] = box.lo[axis], hi_[k][at] = box.hi[axis];
       }
     };
-    for (std::size_t k = 0; k < order.size(); ++k) put(k, boxes[order[k].id]), ids_[k] = order[k].id;
+    for (std::size_t k = 0; k < order.size(); ++k)
+      put(k, boxes[order[k].id]), ids_[k] = order[k].id;
     for (std::size_t k = order.size(); k < padded; ++k) put(k, nowhere<T>());
   }
 
@@ -76,14 +80,17 @@ class SortAndSweep {
         };
         auto mask = Contact::reaches(V(end), load(lo_[0]));
         // Sorted, so this holds for closed boxes; half-open ones may end where both start.
-        if constexpr (!std::is_same_v<Contact, Closed>) mask = mask && Contact::reaches(load(hi_[0]), V(lo_[0][k]));
+        if constexpr (!std::is_same_v<Contact, Closed>)
+          mask = mask && Contact::reaches(load(hi_[0]), V(lo_[0][k]));
         for (int axis = 1; axis < 3; ++axis) {
           mask = mask && Contact::reaches(V(hi_[axis][k]), load(lo_[axis]));
           mask = mask && Contact::reaches(load(hi_[axis]), V(lo_[axis][k]));
         }
         found |= static_cast<Lanes>(bits(mask)) << part;
       }
-      if (found) pairs_.end_at(write_pairs(pairs_.room_for(block_width), ids_[k], ids_.data() + first, found));
+      if (found)
+        pairs_.end_at(
+            write_pairs(pairs_.room_for(block_width), ids_[k], ids_.data() + first, found));
       if (first + 2 * block_width > lo_[0].size()) break;
     }
   }

@@ -33,7 +33,8 @@ struct alignas(64) Block {
     return {{lo[0][lane], lo[1][lane], lo[2][lane]}, {hi[0][lane], hi[1][lane], hi[2][lane]}};
   }
   void put(int lane, const Box<T>& box) {
-    for (int axis = 0; axis < 3; ++axis) lo[axis][lane] = box.lo[axis], hi[axis][lane] = box.hi[axis];
+    for (int axis = 0; axis < 3; ++axis)
+      lo[axis][lane] = box.lo[axis], hi[axis][lane] = box.hi[axis];
   }
 };
 
@@ -121,7 +122,8 @@ inline Box<T> bounds(const Block<T>& block) {
   Box<T> all;
   for (int axis = 0; axis < 3; ++axis) {
     T lo[block_width], hi[block_width];
-    for (int lane = 0; lane < block_width; ++lane) lo[lane] = block.lo[axis][lane], hi[lane] = block.hi[axis][lane];
+    for (int lane = 0; lane < block_width; ++lane)
+      lo[lane] = block.lo[axis][lane], hi[lane] = block.hi[axis][lane];
     for (int half = block_width / 2; half > 0; half /= 2)
       for (int lane = 0; lane < half; ++lane) {
         lo[lane] = lo[lane] < lo[lane + half] ? lo[lane] : lo[lane + half];
@@ -136,20 +138,26 @@ namespace detail {
 // The mask forms with nothing masked: GCC warns of uninitialised operands inside the plain ones.
 inline __m512 least_of(__m512 a, __m512 b) { return _mm512_maskz_min_ps(0xffff, a, b); }
 template <int Order>
-inline __m512 quarters(__m512 a) { return _mm512_maskz_shuffle_f32x4(0xffff, a, a, Order); }
+inline __m512 quarters(__m512 a) {
+  return _mm512_maskz_shuffle_f32x4(0xffff, a, a, Order);
+}
 template <int Order>
-inline __m512 within(__m512 a) { return _mm512_maskz_permute_ps(0xffff, a, Order); }
+inline __m512 within(__m512 a) {
+  return _mm512_maskz_permute_ps(0xffff, a, Order);
+}
 /// The least lane of each: of a, b, c, d in lanes 0, 1, 2, 3.
 inline __m128 least_lanes(__m512 a, __m512 b, __m512 c, __m512 d) {
   const auto pairs = [](__m512 x, __m512 y) {  // x's quarters folded into two, then y's
-    return least_of(_mm512_maskz_shuffle_f32x4(0xffff, x, y, 0x44), _mm512_maskz_shuffle_f32x4(0xffff, x, y, 0xee));
+    return least_of(_mm512_maskz_shuffle_f32x4(0xffff, x, y, 0x44),
+                    _mm512_maskz_shuffle_f32x4(0xffff, x, y, 0xee));
   };
   const __m512 ab = pairs(a, b), cd = pairs(c, d);
   const __m512 q = least_of(_mm512_maskz_shuffle_f32x4(0xffff, ab, cd, 0x88),
                             _mm512_maskz_shuffle_f32x4(0xffff, ab, cd, 0xdd));  // a quarter each
   __m512 m = least_of(q, within<0x4e>(q));
   m = least_of(m, within<0xb1>(m));
-  return _mm512_castps512_ps128(_mm512_maskz_permutexvar_ps(0xf, _mm512_setr_epi32(0, 4, 8, 12, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0), m));
+  return _mm512_castps512_ps128(_mm512_maskz_permutexvar_ps(
+      0xf, _mm512_setr_epi32(0, 4, 8, 12, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0), m));
 }
 }  // namespace detail
 /// The same with the six reductions done together.
@@ -161,7 +169,8 @@ inline Box<float> bounds(const Block<float>& block) {
   };
   alignas(16) float lower[4], upper[4];
   const __m512 z = negated(block.hi[2]);
-  _mm_store_ps(lower, detail::least_lanes(_mm512_load_ps(block.lo[0]), _mm512_load_ps(block.lo[1]), _mm512_load_ps(block.lo[2]), z));
+  _mm_store_ps(lower, detail::least_lanes(_mm512_load_ps(block.lo[0]), _mm512_load_ps(block.lo[1]),
+                                          _mm512_load_ps(block.lo[2]), z));
   _mm_store_ps(upper, detail::least_lanes(negated(block.hi[0]), negated(block.hi[1]), z, z));
   return {{lower[0], lower[1], lower[2]}, {-upper[0], -upper[1], -upper[2]}};
 }
@@ -174,7 +183,8 @@ inline void load(Block<T>& block, const Box<T>* boxes) {
 }
 #ifdef __AVX512F__
 namespace detail {
-/// Lane l takes number 6 l + component of the 96: which of each register pair's 32, and from which pair.
+/// Lane l takes number 6 l + component of the 96: which of each register pair's 32, and from which
+/// pair.
 template <int Component>
 inline __m512 every_sixth(const __m512 (&v)[6]) {
   alignas(64) static constexpr auto at = [] {
@@ -210,12 +220,14 @@ inline void load(Block<float>& block, const Box<float>* boxes) {
 /// sixteen pairs are touched from `out` on; returns the end of those that count.
 inline Pair* write_pairs(Pair* out, std::uint32_t id, const std::uint32_t* ids, Lanes lanes) {
 #ifdef __AVX512F__
-  const __m512i packed = _mm512_maskz_compress_epi32(static_cast<__mmask16>(lanes), _mm512_loadu_si512(ids));
+  const __m512i packed =
+      _mm512_maskz_compress_epi32(static_cast<__mmask16>(lanes), _mm512_loadu_si512(ids));
   const __m512i other = _mm512_set1_epi32(static_cast<int>(id));
   const __m512i first = _mm512_maskz_min_epu32(0xffff, packed, other);
   const __m512i second = _mm512_maskz_max_epu32(0xffff, packed, other);
   const __m512i low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
-  const __m512i high = _mm512_setr_epi32(8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+  const __m512i high =
+      _mm512_setr_epi32(8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
   _mm512_storeu_si512(out, _mm512_permutex2var_epi32(first, low, second));
   const int found = std::popcount(lanes);
   _mm512_storeu_si512(out + 8, _mm512_permutex2var_epi32(first, high, second));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A tree of blocks over boxes in spatial order: sixteen boxes to a leaf, sixteen nodes to a parent,
-/// no pointers, since the children of node k are 16k .. 16k+15 one level down. It has n/16 leaves
-/// and n/240 other blocks: 28 bytes a box in all in float. Joined with itself by comparing sixteen
-/// nodes at once.
+/// A tree of blocks over boxes in spatial order: sixteen boxes to a leaf, sixteen nodes to a
+/// parent, no pointers, since the children of node k are 16k .. 16k+15 one level down. It has n/16
+/// leaves and n/240 other blocks: 28 bytes a box in all in float. Joined with itself by comparing
+/// sixteen nodes at once.
 #pragma once
 
 #include <vector>
@@ -28,7 +28,8 @@ inline void gather(Block<T>& block, const std::uint32_t* ids, Boxes<T> boxes) {
       const __m512 back = _mm512_set1_ps(-std::numeric_limits<float>::infinity());
       for (int axis = 0; axis < 3; ++axis) {
         _mm512_store_ps(block.lo[axis], _mm512_mask_i32gather_ps(far, held, at, base + axis, 4));
-        _mm512_store_ps(block.hi[axis], _mm512_mask_i32gather_ps(back, held, at, base + 3 + axis, 4));
+        _mm512_store_ps(block.hi[axis],
+                        _mm512_mask_i32gather_ps(back, held, at, base + 3 + axis, 4));
       }
       return;
     }
@@ -40,15 +41,21 @@ inline void gather(Block<T>& block, const std::uint32_t* ids, Boxes<T> boxes) {
 template <class T>
 class BlockTree {
  public:
-  std::uint32_t leaves() const { return static_cast<std::uint32_t>(levels_.empty() ? 0 : levels_[0].size()); }
+  std::uint32_t leaves() const {
+    return static_cast<std::uint32_t>(levels_.empty() ? 0 : levels_[0].size());
+  }
   Block<T>& leaf(std::uint32_t k) { return levels_[0][k]; }
   const Block<T>& leaf(std::uint32_t k) const { return levels_[0][k]; }
   std::uint32_t* ids(std::uint32_t leaf) { return ids_.data() + std::size_t{leaf} * block_width; }
-  const std::uint32_t* ids(std::uint32_t leaf) const { return ids_.data() + std::size_t{leaf} * block_width; }
+  const std::uint32_t* ids(std::uint32_t leaf) const {
+    return ids_.data() + std::size_t{leaf} * block_width;
+  }
 
   /// What the tree believes leaf k to lie in: as wide as its boxes or wider.
   Box<T> reach(std::uint32_t k) const { return levels_[1][k / block_width].box(k % block_width); }
-  void set_reach(std::uint32_t k, const Box<T>& box) { levels_[1][k / block_width].put(k % block_width, box); }
+  void set_reach(std::uint32_t k, const Box<T>& box) {
+    levels_[1][k / block_width].put(k % block_width, box);
+  }
 
   /// Fills the leaves with the boxes in this order; then the levels above.
   void build(std::span<const Keyed<std::uint32_t>> order, Boxes<T> boxes) {
@@ -86,7 +93,8 @@ class BlockTree {
   void refit_above() {
     for (std::size_t level = 2; level < depth_; ++level)
       for (std::size_t k = 0; k < levels_[level - 1].size(); ++k)
-        levels_[level][k / block_width].put(static_cast<int>(k % block_width), bounds(levels_[level - 1][k]));
+        levels_[level][k / block_width].put(static_cast<int>(k % block_width),
+                                            bounds(levels_[level - 1][k]));
   }
 
   /// Calls visit(a, b) for a < b, two leaves whose reaches overlap, and visit(a, a) for every leaf,
@@ -109,7 +117,9 @@ class BlockTree {
   }
 
  private:
-  static std::size_t blocks_over(std::size_t nodes) { return (nodes + block_width - 1) / block_width; }
+  static std::size_t blocks_over(std::size_t nodes) {
+    return (nodes + block_width - 1) / block_width;
+  }
   std::size_t children_of_last(std::size_t level) const {
     return levels_[level - 1].size() - (levels_[level].size() - 1) * block_width;
   }
@@ -122,7 +132,8 @@ class BlockTree {
     const std::size_t count = std::min<std::size_t>(block_width, levels_[level - 1].size() - first);
     for (std::size_t k = 0; k < count; ++k) {
       join_self(level - 1, static_cast<std::uint32_t>(first + k), visit);
-      Lanes others = overlapping_lanes<Closed>(block, block.box(static_cast<int>(k))) & (all_lanes << (k + 1));
+      Lanes others =
+          overlapping_lanes<Closed>(block, block.box(static_cast<int>(k))) & (all_lanes << (k + 1));
       for (; others; others &= others - 1)
         join_two(level - 1, static_cast<std::uint32_t>(first + k),
                  static_cast<std::uint32_t>(first) + std::countr_zero(others), visit);
@@ -134,12 +145,14 @@ class BlockTree {
     if (level == 0) return visit(a, b);
     const Block<T>& left = levels_[level][a];
     const Block<T>& right = levels_[level][b];
-    Lanes rows = overlapping_lanes<Closed>(left, levels_[level + 1][b / block_width].box(b % block_width));
+    Lanes rows =
+        overlapping_lanes<Closed>(left, levels_[level + 1][b / block_width].box(b % block_width));
     for (; rows; rows &= rows - 1) {
       const int row = std::countr_zero(rows);
       Lanes others = overlapping_lanes<Closed>(right, left.box(row));
       for (; others; others &= others - 1)
-        join_two(level - 1, a * block_width + row, b * block_width + std::countr_zero(others), visit);
+        join_two(level - 1, a * block_width + row, b * block_width + std::countr_zero(others),
+                 visit);
     }
   }
 
@@ -155,9 +168,10 @@ class BlockTree {
     }
   }
 
-  std::vector<std::vector<Block<T>>> levels_;  ///< [0] the leaves; the one at depth_ - 1 has one block
+  std::vector<std::vector<Block<T>>>
+      levels_;  ///< [0] the leaves; the one at depth_ - 1 has one block
   std::size_t depth_ = 0;
-  std::vector<std::uint32_t> ids_;             ///< sixteen to a leaf
+  std::vector<std::uint32_t> ids_;  ///< sixteen to a leaf
 };
 
 }  // namespace bvlab

@@ -59,7 +59,8 @@ void radix_sort(std::vector<Keyed<Key>>& items, std::vector<Keyed<Key>>& spare) 
     for (auto& c : count) sum += std::exchange(c, sum);
     const Keyed<Key>* from = items.data();
     Keyed<Key>* to = spare.data();
-    for (std::size_t k = 0; k < items.size(); ++k) to[count[(from[k].key >> shift) & low]++] = from[k];
+    for (std::size_t k = 0; k < items.size(); ++k)
+      to[count[(from[k].key >> shift) & low]++] = from[k];
     std::swap(items, spare);
   }
 }

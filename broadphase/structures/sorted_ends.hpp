@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The boxes in the order of one coordinate. Without coherence a radix sort, O(n); with it the order
-/// of the last frame repaired by insertion sort, O(n + swaps) (BibTeX: cohen1995icollide), given up
-/// for the radix sort once the swaps cost more than that.
+/// The boxes in the order of one coordinate. Without coherence a radix sort, O(n); with it the
+/// order of the last frame repaired by insertion sort, O(n + swaps) (BibTeX: cohen1995icollide),
+/// given up for the radix sort once the swaps cost more than that.
 #pragma once
 
 #include <vector>

@@ -2,8 +2,8 @@
 /// An order of the boxes in which neighbours in the list are neighbours in space and alike in size:
 /// by class (size within a factor of eight, elongation), and within a class along a Morton curve of
 /// the centres. Where more than a few centres share one Morton cell, that run is ordered again in
-/// the run's own bounds, so that one far box, or clusters within clusters, cost nothing but the run.
-/// O(n) for each such level; the keys are integers and the sort is a radix sort.
+/// the run's own bounds, so that one far box, or clusters within clusters, cost nothing but the
+/// run. O(n) for each such level; the keys are integers and the sort is a radix sort.
 #pragma once
 
 #include <array>
@@ -33,7 +33,8 @@ class SpatialOrder {
   }
 
  private:
-  static constexpr std::size_t crowd = 2 * block_width;  ///< a run of equal keys worth ordering again
+  static constexpr std::size_t crowd =
+      2 * block_width;  ///< a run of equal keys worth ordering again
 
   /// Where the centres lie (a quarter of lo + hi, so that no difference overflows), and the least
   /// and the largest extent on any axis.
@@ -120,10 +121,13 @@ class SpatialOrder {
   static int kind(const Box<T>& box) {
     std::array<T, 3> extent;
     for (int axis = 0; axis < 3; ++axis) extent[axis] = box.hi[axis] - box.lo[axis];
-    const int longest = extent[0] >= extent[1] ? (extent[0] >= extent[2] ? 0 : 2) : (extent[1] >= extent[2] ? 1 : 2);
-    const int shortest = extent[0] < extent[1] ? (extent[0] < extent[2] ? 0 : 2) : (extent[1] < extent[2] ? 1 : 2);
+    const int longest = extent[0] >= extent[1] ? (extent[0] >= extent[2] ? 0 : 2)
+                                               : (extent[1] >= extent[2] ? 1 : 2);
+    const int shortest =
+        extent[0] < extent[1] ? (extent[0] < extent[2] ? 0 : 2) : (extent[1] < extent[2] ? 1 : 2);
     const T size = extent[longest];
-    const int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(static_cast<float>(size)) >> 23);
+    const int exponent =
+        static_cast<int>(std::bit_cast<std::uint32_t>(static_cast<float>(size)) >> 23);
     int shape = 0;
     if (longest != shortest) {
       const T middle = extent[3 - longest - shortest];
@@ -149,7 +153,8 @@ class SpatialOrder {
     int digits;
     Cells(const Summary& all, int digits) : digits(digits) {
       T width = 0;
-      for (int axis = 0; axis < 3; ++axis) low[axis] = all.lo[axis], width = std::max(width, all.hi[axis] - all.lo[axis]);
+      for (int axis = 0; axis < 3; ++axis)
+        low[axis] = all.lo[axis], width = std::max(width, all.hi[axis] - all.lo[axis]);
       scale = static_cast<T>(1 << digits) / width;
       if (!std::isfinite(scale)) scale = 0;
       last = static_cast<T>((1 << digits) - 1);
@@ -160,7 +165,9 @@ class SpatialOrder {
         for (int k = 0; k < block_width; ++k) {
           const T centre = T(0.25) * block.lo[axis][k] + T(0.25) * block.hi[axis][k];
           const T cell = (centre - low[axis]) * scale;
-          sum[k] |= spread(static_cast<std::uint32_t>(static_cast<std::int32_t>(cell < last ? cell : last))) << axis;
+          sum[k] |= spread(static_cast<std::uint32_t>(
+                        static_cast<std::int32_t>(cell < last ? cell : last)))
+                    << axis;
         }
       std::copy_n(sum, block_width, key);
     }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// `bvlab boxes`: a box trace through one broad-phase method.
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "broadphase/box.hpp"
 #include "experiments/files/npy.hpp"
-#include "experiments/files/peak_bytes.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/runner/box_methods.hpp"
 #include "experiments/runner/commands.hpp"
@@ -19,6 +20,12 @@ struct Arguments {
   int threads = 1;
 };
 
+std::uint64_t peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
 struct Found {
   double seconds = 0;        // from boxes to pairs, every frame
   double first_seconds = 0;  // the first frame of these
@@ -28,9 +35,11 @@ struct Found {
   std::vector<std::array<std::uint32_t, 3>> rows;  // frame, i, j
 };
 
-void keep(std::vector<std::array<std::uint32_t, 3>>& rows, std::size_t frame, std::span<const Pair> pairs) {
+void keep(std::vector<std::array<std::uint32_t, 3>>& rows, std::size_t frame,
+          std::span<const Pair> pairs) {
   const auto first = static_cast<std::ptrdiff_t>(rows.size());
-  for (const Pair& pair : pairs) rows.push_back({static_cast<std::uint32_t>(frame), pair.i, pair.j});
+  for (const Pair& pair : pairs)
+    rows.push_back({static_cast<std::uint32_t>(frame), pair.i, pair.j});
   std::sort(rows.begin() + first, rows.end());
 }
 
@@ -42,7 +51,8 @@ Found find(const Arguments& arguments, const Array<T>& trace) {
     throw Unusable(arguments.trace, "more boxes or frames than 32-bit indices can name");
   if (const auto fault = first_fault(all))
     throw Unusable(arguments.trace, "frame " + std::to_string(fault->box / count) + ", box " +
-                                        std::to_string(fault->box % count) + ": " + std::string(fault->what));
+                                        std::to_string(fault->box % count) + ": " +
+                                        std::string(fault->what));
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -68,11 +78,13 @@ Found find(const Arguments& arguments, const Array<T>& trace) {
 }
 
 void run(const Arguments& arguments) {
-  make_method<float>(arguments.method, Settings{});  // refuses an unknown name before the file is read
+  make_method<float>(arguments.method,
+                     Settings{});  // refuses an unknown name before the file is read
   static constexpr std::size_t shape[] = {any_length, any_length, 6};
   const auto trace = read_npy_floating(arguments.trace, shape);
   const Found found = std::visit([&](const auto& array) { return find(arguments, array); }, trace);
-  const auto& sizes = std::visit([](const auto& array) -> const auto& { return array.shape; }, trace);
+  const auto& sizes = std::visit(
+      [](const auto& array) -> const auto& { return array.shape; }, trace);
   const std::uint64_t boxes = sizes[1];
   nlohmann::ordered_json totals = {{"seconds", found.seconds},
                                    {"build_seconds", found.build_seconds},
@@ -89,8 +101,9 @@ void run(const Arguments& arguments) {
   if (!found.reason.empty()) totals["reason"] = found.reason;
   if (!arguments.out.empty()) {
     const std::size_t rows[] = {found.rows.size(), 3};
-    write_npy<std::uint32_t>(arguments.out, rows,
-                             {reinterpret_cast<const std::uint32_t*>(found.rows.data()), found.rows.size() * 3});
+    write_npy<std::uint32_t>(
+        arguments.out, rows,
+        {reinterpret_cast<const std::uint32_t*>(found.rows.data()), found.rows.size() * 3});
   }
   const std::string text = totals.dump(2) + "\n";
   if (arguments.json.empty())
@@ -104,14 +117,20 @@ void run(const Arguments& arguments) {
 void add_boxes(CLI::App& app) {
   CLI::App* command = app.add_subcommand("boxes", "Finds the overlapping pairs of a box trace");
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("--trace", arguments->trace, "boxes: .npy, float32 or float64, (frames, boxes, 6)")
+  command
+      ->add_option("--trace", arguments->trace,
+                   "boxes: .npy, float32 or float64, (frames, boxes, 6)")
       ->required();
-  command->add_option("--method", arguments->method, "see `bvlab list methods`")->capture_default_str();
+  command->add_option("--method", arguments->method, "see `bvlab list methods`")
+      ->capture_default_str();
   command->add_option("--coherent", arguments->coherent, "off: every frame as if it were the first")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
-  command->add_option("--threads", arguments->threads)->check(CLI::Range(1, 1024))->capture_default_str();
-  command->add_option("--out", arguments->out, "overlapping pairs: uint32 (k, 3), frame, i, j, sorted");
+  command->add_option("--threads", arguments->threads)
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_option("--out", arguments->out,
+                      "overlapping pairs: uint32 (k, 3), frame, i, j, sorted");
   command->add_option("--json", arguments->json, "totals; to standard output where not given");
   command->callback([arguments] { run(*arguments); });
 }

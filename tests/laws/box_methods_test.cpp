@@ -50,14 +50,17 @@ class BoxMethod : public ::testing::Test {
   }
 
   /// Compares one frame with the definition, and the changes with the difference of two frames.
-  static void check(M& method, const Frame<T>& frame, std::vector<Pair>& before, const std::string& what) {
+  static void check(M& method, const Frame<T>& frame, std::vector<Pair>& before,
+                    const std::string& what) {
     const auto right = pairs_by_definition<Contact>(frame);
     const auto found = method.overlapping(frame);
     ASSERT_EQ(sorted(found), right) << M::name << ", " << what << ", " << frame.size() << " boxes";
     if constexpr (ReportsChanges<M>) {
       std::vector<Pair> began, ended;
-      std::set_difference(right.begin(), right.end(), before.begin(), before.end(), std::back_inserter(began));
-      std::set_difference(before.begin(), before.end(), right.begin(), right.end(), std::back_inserter(ended));
+      std::set_difference(right.begin(), right.end(), before.begin(), before.end(),
+                          std::back_inserter(began));
+      std::set_difference(before.begin(), before.end(), right.begin(), right.end(),
+                          std::back_inserter(ended));
       ASSERT_EQ(sorted(method.changes().began), began) << M::name << ", began, " << what;
       ASSERT_EQ(sorted(method.changes().ended), ended) << M::name << ", ended, " << what;
     }
@@ -132,7 +135,8 @@ TYPED_TEST_P(BoxMethod, BoxesComeAndGo) {
       boxes[random.below(static_cast<unsigned>(boxes.size()))] = boxes.back();
       boxes.pop_back();
     }
-    if (what == 3 && !boxes.empty()) boxes.erase(boxes.begin() + random.below(static_cast<unsigned>(boxes.size())));
+    if (what == 3 && !boxes.empty())
+      boxes.erase(boxes.begin() + random.below(static_cast<unsigned>(boxes.size())));
     if (frame == 50) boxes.resize(3);
     if (frame == 60) boxes = random.boxes(300, 0, 1, T(0.05), T(0.15));
     for (auto& box : boxes)
@@ -164,8 +168,8 @@ TYPED_TEST_P(BoxMethod, FiveThousandBoxes) {
   }
 }
 
-REGISTER_TYPED_TEST_SUITE_P(BoxMethod, EveryCaseFromScratch, OneMethodThroughEveryCase, MovedForManyFrames,
-                            BoxesComeAndGo, FiveThousandBoxes);
+REGISTER_TYPED_TEST_SUITE_P(BoxMethod, EveryCaseFromScratch, OneMethodThroughEveryCase,
+                            MovedForManyFrames, BoxesComeAndGo, FiveThousandBoxes);
 
 using Types = AsTypes<Methods<BVLAB_TEST_SCALAR, BVLAB_TEST_CONTACT>>::type;
 INSTANTIATE_TYPED_TEST_SUITE_P(List, BoxMethod, Types);

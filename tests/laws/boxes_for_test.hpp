@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Frames of boxes that broad phases get wrong: touching, flat, equal, nested, far out, far apart in
-/// size.
+/// Frames of boxes that broad phases get wrong: touching, flat, equal, nested, far out, far apart
+/// in size.
 #pragma once
 
 #include <algorithm>
@@ -62,7 +62,9 @@ class BoxMaker {
 
   std::vector<BoxCase<T>> cases(int n) {
     std::vector<BoxCase<T>> all;
-    const auto add = [&](std::string name, Frame<T> boxes) { all.push_back({std::move(name), std::move(boxes)}); };
+    const auto add = [&](std::string name, Frame<T> boxes) {
+      all.push_back({std::move(name), std::move(boxes)});
+    };
     add("none", {});
     add("one", boxes(1, 0, 1, 0, 1));
     add("two", boxes(2, 0, 1, 0, 1));
@@ -71,7 +73,8 @@ class BoxMaker {
     add("dense", boxes(n, 0, 1, T(0.1), T(0.4)));
     add("points", boxes(n, 0, 1, 0, 0));
     add("far out", boxes(n, T(1e6), T(1e6) + 1, T(0.01), T(0.2)));
-    Frame<T> grid, lattice, equal(n, box(0, 1, 0, 1)), stacked, sizes, flat, nested, outlier, clumps, huge;
+    Frame<T> grid, lattice, equal(n, box(0, 1, 0, 1)), stacked, sizes, flat, nested, outlier,
+        clumps, huge;
     for (int k = 0; k < n; ++k) {
       const T x = static_cast<T>(k % 7), y = static_cast<T>(k / 7 % 7), z = static_cast<T>(k / 49);
       grid.push_back({{x, y, z}, {x + 1, y + 1, z + 1}});
@@ -88,12 +91,14 @@ class BoxMaker {
       f.hi[k % 3] = f.lo[k % 3] = static_cast<T>(below(4)) / 4;
       flat.push_back(f);
       nested.push_back(k == 0 ? Box<T>{{-1, -1, -1}, {3, 3, 3}} : box(0, 1, T(0.01), T(0.05)));
-      outlier.push_back(k == n / 2 ? Box<T>{{T(1e6), T(1e6), T(1e6)}, {T(1e6), T(1e6) + 1, T(1e6) + 2}}
-                                   : box(0, 1, T(0.01), T(0.05)));
+      outlier.push_back(k == n / 2
+                            ? Box<T>{{T(1e6), T(1e6), T(1e6)}, {T(1e6), T(1e6) + 1, T(1e6) + 2}}
+                            : box(0, 1, T(0.01), T(0.05)));
       const T centre = std::pow(T(10), static_cast<T>(k % 5));
       clumps.push_back(box(centre, centre + T(0.01), T(1e-4), T(2e-3)));
       constexpr T limit = std::numeric_limits<T>::max();
-      huge.push_back(k % 3 ? box(-limit / 2, limit / 4, 0, limit / 4) : Box<T>{{-limit, -limit, -limit}, {limit, limit, limit}});
+      huge.push_back(k % 3 ? box(-limit / 2, limit / 4, 0, limit / 4)
+                           : Box<T>{{-limit, -limit, -limit}, {limit, limit, limit}});
     }
     add("grid", std::move(grid));
     add("lattice", std::move(lattice));

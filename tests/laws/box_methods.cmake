@@ -1,0 +1,8 @@
+# The laws of broad-phase methods: one program for each scalar and each meaning of touching.
+foreach(scalar float double)
+  foreach(contact Closed HalfOpen)
+    string(TOLOWER box_methods_${scalar}_${contact} name)
+    bvlab_test(${name} SOURCES ${CMAKE_CURRENT_LIST_DIR}/box_methods_test.cpp)
+    target_compile_definitions(test_${name} PRIVATE BVLAB_TEST_SCALAR=${scalar} BVLAB_TEST_CONTACT=${contact})
+  endforeach()
+endforeach()
