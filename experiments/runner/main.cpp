@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   CLI::App app("bvlab: collision detection with bounding-volume hierarchies and boxes, measured");
   app.require_subcommand(1);
   add_boxes(app);
+  add_triangles(app);
   add_list(app);
   try {
     app.parse(argc, argv);

@@ -3,18 +3,19 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <random>
+#include <sstream>
+#include <string>
 
+#include "experiments/scenes/triangle_sets.hpp"
 #include "tests/oracles/triangle_oracle.hpp"
 
 namespace bvlab {
 namespace {
 
-using Pair = std::array<Triangle, 2>;
-using Random = std::mt19937_64;
+using Pair = TrianglePair;
 
 std::string shown(const Pair& pair) {
   std::ostringstream text;
@@ -22,39 +23,6 @@ std::string shown(const Pair& pair) {
   for (const auto& t : pair)
     for (const auto& p : t) text << "{" << p[0] << ", " << p[1] << ", " << p[2] << "} ";
   return text.str();
-}
-
-double uniform(Random& random) { return std::uniform_real_distribution<double>(-1, 1)(random); }
-
-Vec3<double> random_point(Random& random) {
-  const double x = uniform(random), y = uniform(random), z = uniform(random);
-  return {x, y, z};
-}
-
-Mat3<double> random_rotation(Random& random) {
-  Eigen::Quaterniond q(uniform(random), uniform(random), uniform(random), uniform(random));
-  return q.normalized().toRotationMatrix();
-}
-
-Vec3<double> grid_point(Random& random, int cells) {
-  std::uniform_int_distribution<int> cell(0, cells);
-  const double x = cell(random), y = cell(random), z = cell(random);
-  return {x, y, z};
-}
-
-template <class F>
-Pair pair_of(const F& point) {
-  Pair pair;
-  for (auto& t : pair)
-    for (auto& p : t) p = point();
-  return pair;
-}
-
-template <class F>
-Pair mapped(Pair pair, const F& f) {
-  for (auto& t : pair)
-    for (auto& p : t) p = f(p);
-  return pair;
 }
 
 int meeting = 0, apart = 0;
@@ -111,80 +79,53 @@ void expect_right_on(int pairs, const F& make) {
   EXPECT_GT(apart, pairs / 100);
 }
 
-TEST(TriangleIntersection, Random) {
-  Random random(1);
-  expect_right_on(20000, [&] { return pair_of([&] { return random_point(random); }); });
+class TriangleSets : public testing::TestWithParam<TriangleSet> {};
+
+TEST_P(TriangleSets, AgreeWithRationalNumbers) {
+  TriangleSource source(1);
+  expect_right_on(10000, [&] { return GetParam().next(source); });
 }
 
-TEST(TriangleIntersection, IntegerGrid) {
-  Random random(2);
-  for (const int cells : {1, 2, 3, 5})
-    expect_right_on(10000, [&] { return pair_of([&] { return grid_point(random, cells); }); });
-}
-
-TEST(TriangleIntersection, IntegerGridThenRotated) {
-  Random random(3);
-  for (const int cells : {1, 2, 3, 5})
-    expect_right_on(10000, [&] {
-      const Mat3<double> rotation = random_rotation(random);
-      return mapped(pair_of([&] { return grid_point(random, cells); }),
-                    [&](const auto& p) { return Vec3<double>(rotation * p); });
-    });
-}
-
-TEST(TriangleIntersection, Coplanar) {
-  Random random(4);
-  for (int dropped = 0; dropped < 3; ++dropped)
-    expect_right_on(5000, [&] {
-      return pair_of([&] {
-        Vec3<double> p = random_point(random);
-        p[dropped] = 0.25;
-        return p;
-      });
-    });
-}
-
-TEST(TriangleIntersection, CoplanarThenRotated) {
-  Random random(5);
-  expect_right_on(10000, [&] {
-    const Mat3<double> rotation = random_rotation(random);
-    return mapped(pair_of([&] {
-                    Vec3<double> p = random_point(random);
-                    p[2] = 0;
-                    return p;
-                  }),
-                  [&](const auto& p) { return Vec3<double>(rotation * p); });
-  });
-}
+INSTANTIATE_TEST_SUITE_P(TriangleIntersection, TriangleSets, testing::ValuesIn(triangle_sets),
+                         [](const auto& info) {
+                           std::string name(info.param.name);
+                           std::replace_if(
+                               name.begin(), name.end(), [](char c) { return !std::isalnum(c); },
+                               '_');
+                           return name;
+                         });
 
 TEST(TriangleIntersection, EveryScaleFromTheLeastToTheLargest) {
-  Random random(6);
+  TriangleSource source(6);
+  const auto scaled = [](const Pair& pair, int exponent) {
+    return TriangleSource::mapped(pair, [&](const auto& p) -> Vec3<double> {
+      return p.unaryExpr([&](double x) { return std::ldexp(x, exponent); });
+    });
+  };
   for (const int exponent :
        {-1074, -1060, -1000, -700, -350, -340, -233, -100, 100, 233, 340, 700, 1000, 1020})
-    expect_right_on(500, [&] {
-      return mapped(pair_of([&] { return grid_point(random, 3); }),
-                    [&](const auto& p) { return Vec3<double>(p * std::ldexp(1, exponent)); });
-    });
-  for (const int exponent : {-1070, -1000, -340, -233, 233, 340, 1000, 1023})
-    expect_right_on(500, [&] {
-      return mapped(pair_of([&] { return random_point(random); }), [&](const auto& p) {
-        return p.unaryExpr([&](double x) { return std::ldexp(x, exponent); }).eval();
-      });
-    });
+    expect_right_on(200, [&] { return scaled(source.grid(), exponent); });
+  for (const int exponent : {-1070, -1000, -340, -233, 233, 340, 1000, 1023}) {
+    expect_right_on(200, [&] { return scaled(source.random(), exponent); });
+    expect_right_on(200, [&] { return scaled(source.touching(), exponent); });
+  }
 }
 
 TEST(TriangleIntersection, MixedMagnitudes) {
-  Random random(7);
+  TriangleSource source(7);
   for (const int spread : {10, 30, 60, 120, 300, 1000})
-    expect_right_on(1000, [&] {
-      return pair_of([&] {
-        return random_point(random)
-            .unaryExpr([&](double x) {
-              return std::ldexp(x, std::uniform_int_distribution<int>(-spread, spread)(random));
-            })
-            .eval();
+    expect_right_on(150, [&] {
+      return TriangleSource::corners([&]() -> Vec3<double> {
+        return source.point().unaryExpr(
+            [&](double x) { return std::ldexp(x, source.integer(-spread, spread)); });
       });
     });
+}
+
+TEST(TriangleIntersection, FarFromTheOrigin) {
+  TriangleSource source(8);
+  for (const double offset : {1e2, 1e4, 1e8, 1e12, 1e16})
+    expect_right_on(1000, [&] { return source.moved(source.touching(), offset); });
 }
 
 }  // namespace

@@ -36,12 +36,28 @@ enum class CornersAre { given, rounded };
 
 namespace filter {
 
-using std::abs, std::max, std::min;
-using stdx::abs, stdx::max, stdx::min;
+using std::abs;
+using stdx::abs;
 
-template <class M>
-bool everywhere(const M& mask) {
-  if constexpr (std::is_same_v<M, bool>)
+// By value, so that one instruction and no branch comes of it.
+template <Scalar S>
+S min(S x, S y) {
+  if constexpr (Batched<S>)
+    return stdx::min(x, y);
+  else
+    return x < y ? x : y;
+}
+template <Scalar S>
+S max(S x, S y) {
+  if constexpr (Batched<S>)
+    return stdx::max(x, y);
+  else
+    return x > y ? x : y;
+}
+
+template <Scalar S>
+bool everywhere(const Mask<S>& mask) {
+  if constexpr (!Batched<S>)
     return mask;
   else
     return stdx::all_of(mask);
@@ -73,12 +89,12 @@ Vector<S> choose(const Mask<S>& condition, const Vector<S>& yes, const Vector<S>
 
 /// Whether the boxes are apart (a comparison of corners, hence exact, and true of the given corners
 /// if it is true of rounded ones), and how wrong a determinant can be.
-template <Scalar S>
+template <Scalar S, CornersAre corners>
 struct BoxAndBound {
   Mask<S> apart;
   S bound;
 
-  BoxAndBound(const Corners<S>& a, const Corners<S>& b, CornersAre corners) {
+  BoxAndBound(const Corners<S>& a, const Corners<S>& b) {
     using T = Element<S>;
     constexpr T u = unit_roundoff<S>;
     constexpr T least = std::numeric_limits<T>::denorm_min();
@@ -89,18 +105,18 @@ struct BoxAndBound {
               high_a = max(max(a[0][i], a[1][i]), a[2][i]);
       const S low_b = min(min(b[0][i], b[1][i]), b[2][i]),
               high_b = max(max(b[0][i], b[1][i]), b[2][i]);
-      const Mask<S> gap = (high_a < low_b) || (high_b < low_a);
-      apart = i == 0 ? gap : apart || gap;
+      const Mask<S> gap = (high_a < low_b) | (high_b < low_a);
+      apart = i == 0 ? gap : apart | gap;
       const S low = min(low_a, low_b), high = max(high_a, high_b);
       side[i] = high - low;
-      if (corners == CornersAre::rounded) {
+      if constexpr (corners == CornersAre::rounded) {
         wrong[i] = T(2) * (u * max(abs(low), abs(high)) + least) + u * side[i];
         side[i] = side[i] + wrong[i];
       }
     }
     const S longest = max(max(side[0], side[1]), max(side[2], S(1)));
     const S underflow = (16 * least) * longest;
-    if (corners == CornersAre::given)
+    if constexpr (corners == CornersAre::given)
       bound = (49 * u) * ((side[0] * side[1]) * side[2]) + underflow;
     else
       bound = (1 + 64 * u) * (6 * (wrong[0] * side[1] * side[2] + side[0] * wrong[1] * side[2] +
@@ -143,7 +159,8 @@ struct Turned {
     apex = choose<S>(last_alone, t[2], choose<S>(next_alone, t[1], t[0]));
     next = choose<S>(last_alone, t[0], choose<S>(next_alone, t[2], t[1]));
     last = choose<S>(last_alone, t[1], choose<S>(next_alone, t[0], t[2]));
-    above = (last_alone && p2) || (!last_alone && ((next_alone && p1) || (!next_alone && p0)));
+    const Mask<S> first_alone = !(last_alone | next_alone);
+    above = (last_alone & p2) | (next_alone & p1) | (first_alone & p0);
   }
 };
 
@@ -155,21 +172,20 @@ struct Certainly {
 };
 
 /// Neither is set where rounding leaves the question open.
-template <Scalar S>
-Certainly<S> certainly(const Corners<S>& a, const Corners<S>& b,
-                       CornersAre corners = CornersAre::given) {
+template <Scalar S, CornersAre corners = CornersAre::given>
+Certainly<S> certainly(const Corners<S>& a, const Corners<S>& b) {
   using namespace filter;
-  const BoxAndBound<S> box(a, b, corners);
+  const BoxAndBound<S, corners> box(a, b);
   const S bound = box.bound;
   Certainly<S> verdict{box.apart, Mask<S>(false)};
-  if (everywhere(verdict.apart)) return verdict;
+  if (everywhere<S>(verdict.apart)) return verdict;
   const Vector<S> sides_b = sides_of<S>(a, b);
-  verdict.apart = verdict.apart || all_beyond<S>(sides_b, bound);
-  if (everywhere(verdict.apart)) return verdict;
+  verdict.apart = verdict.apart | all_beyond<S>(sides_b, bound);
+  if (everywhere<S>(verdict.apart)) return verdict;
   const Vector<S> sides_a = sides_of<S>(b, a);
-  verdict.apart = verdict.apart || all_beyond<S>(sides_a, bound);
-  const Mask<S> known = all_known<S>(sides_a, bound) && all_known<S>(sides_b, bound);
-  if (everywhere(verdict.apart || !known)) return verdict;
+  verdict.apart = verdict.apart | all_beyond<S>(sides_a, bound);
+  const Mask<S> known = all_known<S>(sides_a, bound) & all_known<S>(sides_b, bound);
+  if (everywhere<S>(verdict.apart | !known)) return verdict;
   // The planes cross in a line from which each triangle cuts an interval. With each apex above the
   // other's plane, they overlap unless one of two determinants is positive [guigue2003].
   Turned<S> p(a, sides_a), s(b, sides_b);
@@ -177,8 +193,8 @@ Certainly<S> certainly(const Corners<S>& a, const Corners<S>& b,
   const Vector<S> t = choose<S>(p.above, s.next, s.last), w = choose<S>(p.above, s.last, s.next);
   const S first = dot<S>(cross<S>(t - q, s.apex - q), p.apex - q);
   const S second = dot<S>(cross<S>(s.apex - p.apex, r - p.apex), w - p.apex);
-  verdict.apart = verdict.apart || (known && max(first, second) > bound);
-  verdict.meeting = known && !verdict.apart && max(first, second) < -bound;
+  verdict.apart = verdict.apart | (known & (max(first, second) > bound));
+  verdict.meeting = known & !verdict.apart & (max(first, second) < -bound);
   return verdict;
 }
 

@@ -169,7 +169,7 @@ inline bool share_a_corner(const Triangle& a, const Triangle& b) {
 /// What is left where the boxes overlap: the filter's determinants, and exact ones where needed.
 inline bool exactly_intersect(const Triangle& a, const Triangle& b) {
   const Corners<double> x = corners_of(a), y = corners_of(b);
-  const filter::BoxAndBound<double> box(x, y, CornersAre::given);
+  const filter::BoxAndBound<double, CornersAre::given> box(x, y);
   if (box.apart) return false;
   const auto computed_b = filter::sides_of<double>(x, y);
   if (filter::all_beyond<double>(computed_b, box.bound)) return false;
@@ -227,7 +227,7 @@ bool intersect(const Triangle& a, const Triangle& b) {
         for (int j = 0; j < 3; ++j) corners[i][j] = static_cast<Number>(t[i][j]);
       return corners;
     };
-    return !certainly<Number>(rounded(a), rounded(b), CornersAre::rounded).apart;
+    return !certainly<Number, CornersAre::rounded>(rounded(a), rounded(b)).apart;
   }
 }
 
@@ -241,6 +241,7 @@ std::uint64_t intersect_batch(const Triangle* const* a, const Triangle* const* b
   using Number = typename Precision::Number;
   constexpr int width = batch_width<Precision>;
   using S = Batch<Number, width>;
+  constexpr auto corners = std::is_same_v<Number, double> ? CornersAre::given : CornersAre::rounded;
   std::uint64_t hits = 0;
   for (int first = 0; first < count; first += width) {
     const Triangle *a_lanes[width], *b_lanes[width];
@@ -250,8 +251,7 @@ std::uint64_t intersect_batch(const Triangle* const* a, const Triangle* const* b
       b_lanes[lane] = b[first + std::min(lane, used - 1)];
     }
     const auto verdict =
-        certainly<S>(detail::gathered<S>(a_lanes), detail::gathered<S>(b_lanes),
-                     std::is_same_v<Number, double> ? CornersAre::given : CornersAre::rounded);
+        certainly<S, corners>(detail::gathered<S>(a_lanes), detail::gathered<S>(b_lanes));
     const std::uint64_t lanes = used == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << used) - 1;
     std::uint64_t answer = ~bits(verdict.apart) & lanes;
     if constexpr (Precision::has_fallback)
