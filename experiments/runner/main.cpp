@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   add_boxes(app);
   add_triangles(app);
+  add_scene(app);
   add_list(app);
   try {
     app.parse(argc, argv);

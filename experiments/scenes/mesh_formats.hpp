@@ -16,11 +16,17 @@ TriangleMesh parse_off(std::string_view bytes, const std::string& name);
 /// Wavefront: `v` and `f`; all else is passed over.
 TriangleMesh parse_obj(std::string_view bytes, const std::string& name);
 
+/// PLY, text and binary: elements `vertex` (x, y, z) and `face` (vertex_indices or vertex_index).
+TriangleMesh parse_ply(std::string_view bytes, const std::string& name);
+/// STL, text and binary.
+TriangleMesh parse_stl(std::string_view bytes, const std::string& name);
+
 struct MeshFormat {
   std::string_view extension;
   TriangleMesh (*parse)(std::string_view bytes, const std::string& name);
 };
-inline constexpr MeshFormat own_formats[] = {{".off", parse_off}, {".obj", parse_obj}};
+inline constexpr MeshFormat own_formats[] = {
+    {".off", parse_off}, {".obj", parse_obj}, {".ply", parse_ply}, {".stl", parse_stl}};
 
 /// By assimp, from a file (which may refer to others beside it) and from memory.
 TriangleMesh read_with_assimp(const std::filesystem::path& path);

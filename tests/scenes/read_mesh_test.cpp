@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
+#include "experiments/scenes/random.hpp"
 
 namespace bvlab {
 namespace {
@@ -82,6 +84,144 @@ TEST(ReadMesh, ObjKeepsEveryDigitAndTheOrder) {
   EXPECT_EQ(refusal("v 0 0 0\nf 1 1 1e\n", "a.obj"),
             "a.obj: line 2: '1e' is not the number of a vertex");
   EXPECT_EQ(refusal("v 0 0 0\nl 1 1\n", "a.obj"), "a.obj: has no triangles");
+}
+
+TEST(ReadMesh, PlyTextAndBinary) {
+  const std::string properties =
+      "comment #x\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
+      "property uchar red\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string text =
+      "ply\nformat ascii 1.0\n" + properties + "0.1 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2\n3 2 2 2\n";
+  const TriangleMesh from_text = parse_mesh(text, "a.ply");
+  EXPECT_EQ(from_text.vertices[0][0], 0.1);
+  EXPECT_EQ(from_text.triangles, (Triangles{{0, 1, 2}, {2, 2, 2}}));
+
+  for (const bool big : {false, true}) {
+    std::string binary = std::string("ply\nformat binary_") + (big ? "big" : "little") +
+                         "_endian 1.0\n" + properties;
+    const auto put = [&](auto value) {
+      std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
+      if (big) std::reverse(bytes.begin(), bytes.end());
+      binary += bytes;
+    };
+    for (const auto& v : from_text.vertices) {
+      for (int d = 0; d < 3; ++d) put(v[d]);
+      put(std::uint8_t{9});
+    }
+    for (const auto& t : from_text.triangles) {
+      put(std::uint8_t{3});
+      for (const auto v : t) put(static_cast<std::int32_t>(v));
+    }
+    const TriangleMesh mesh = parse_mesh(binary, "a.PLY");
+    EXPECT_EQ(mesh.vertices, from_text.vertices);
+    EXPECT_EQ(mesh.triangles, from_text.triangles);
+    EXPECT_EQ(refusal(binary.substr(0, binary.size() - 1), "a.ply"),
+              "a.ply: truncated: holds 1 of 2 of element face");
+  }
+  const auto ply = [&](const std::string& from, const std::string& to) {
+    std::string changed = text;
+    changed.replace(changed.find(from), from.size(), to);
+    return refusal(changed, "a.ply");
+  };
+  EXPECT_EQ(ply("3 0 1 2", "3 0 1 3"),
+            "a.ply: face 0: a vertex that does not exist: there are 3, from 0");
+  EXPECT_EQ(ply("3 0 1 2", "3 0 1 -1"),
+            "a.ply: face 0: a vertex that does not exist: there are 3, from 0");
+  EXPECT_EQ(ply("3 0 1 2", "1e300 0 1 2"), "a.ply: face 0: a list of impossible length");
+  EXPECT_EQ(ply("0.1", "nan"), "a.ply: vertex 0: a coordinate is not finite");
+  EXPECT_EQ(ply("vertex 3", "vertex 4000000000"),
+            "a.ply: truncated: holds 5 of 4000000000 of element vertex");
+  EXPECT_EQ(ply("double z", "double w"), "a.ply: vertices without x, y, z");
+  EXPECT_EQ(ply("end_header", "end"), "a.ply: line 11: unknown word 'end'");
+  EXPECT_EQ(ply("ply", "pla"), "a.ply: not a PLY file");
+}
+
+TEST(ReadMesh, StlTextAndBinary) {
+  const std::string facet =
+      "facet normal 0 0 1\n outer loop\n  vertex 0.1 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n"
+      " endloop\nendfacet\n";
+  const std::string text = "solid a thing\n" + facet + facet + "endsolid\n";
+  const TriangleMesh from_text = parse_mesh(text, "a.stl");
+  EXPECT_EQ(from_text.triangles, (Triangles{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_EQ(from_text.vertices[3][0], 0.1);
+  EXPECT_EQ(refusal(text.substr(0, text.size() - 18), "a.stl"),
+            "a.stl: truncated: ends within a facet");
+  EXPECT_EQ(refusal("solid\nendsolid\n", "a.stl"), "a.stl: has no triangles");
+  EXPECT_EQ(refusal("nothing", "a.stl"), "a.stl: not an STL file");
+
+  std::string binary = "solid but binary";
+  binary.resize(80);
+  const std::uint32_t count = 2;
+  binary.append(reinterpret_cast<const char*>(&count), 4);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const float record[12] = {0, 0, 1, 0.1f, 0, 0, 1, 0, 0, 0, 1, static_cast<float>(i)};
+    binary.append(reinterpret_cast<const char*>(record), sizeof record).append(2, '\0');
+  }
+  const TriangleMesh mesh = parse_mesh(binary, "a.stl");
+  EXPECT_EQ(mesh.triangles.size(), 2u);
+  EXPECT_EQ(mesh.vertices[3], Vec3<double>(double{0.1f}, 0, 0));
+  EXPECT_EQ(mesh.vertices[5], Vec3<double>(0, 1, 1));
+  binary[0] = 'x';
+  EXPECT_EQ(refusal(binary.substr(0, binary.size() - 1), "a.stl"),
+            "a.stl: truncated: holds 1 of 2 triangles");
+  binary[84 + 12 + 3] = '\x7f', binary[84 + 12 + 2] = '\xff';
+  EXPECT_EQ(refusal(binary, "a.stl"), "a.stl: triangle 0: a coordinate is not finite");
+}
+
+/// Whatever is cut off or changed, a parser gives a mesh in order or an Unusable, nothing else.
+TEST(ReadMesh, DamagedFilesAreRefusedOrReadInOrder) {
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"a.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n4 0 1 2 3\n"},
+      {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf -1 -2 -3 1\n"},
+      {"a.ply",
+       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+       "property float z\nelement face 1\nproperty list uchar int vertex_index\n"
+       "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
+      {"a.ply",
+       "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty char x\n"
+       "property char y\nproperty char z\nelement face 1\nproperty list uchar uchar "
+       "vertex_index\nend_header\n" +
+           std::string("\1\2\3\3\0\0\0", 7)},
+      {"a.stl",
+       "solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+       "endfacet\nendsolid\n"}};
+  Random random(7);
+  for (const auto& [name, good] : files) {
+    EXPECT_EQ(refusal(good, name), "");
+    std::size_t refused = 0;
+    for (int i = 0; i < 20000; ++i) {
+      std::string bytes = good;
+      for (std::uint64_t changes = random.below(4); changes-- > 0 && !bytes.empty();) {
+        const std::size_t at = random.below(bytes.size());
+        switch (random.below(4)) {
+          case 0:
+            bytes[at] = static_cast<char>(random.below(256));
+            break;
+          case 1:
+            bytes[at] = "0123456789-.e \n"[random.below(15)];
+            break;
+          case 2:
+            bytes.erase(at, random.below(8));
+            break;
+          default:
+            bytes.insert(at, bytes.substr(random.below(bytes.size()), random.below(8)));
+        }
+      }
+      if (random.happens(0.2)) bytes.resize(random.below(bytes.size() + 1));
+      try {
+        const TriangleMesh mesh = parse_mesh(bytes, name);
+        ASSERT_FALSE(mesh.triangles.empty());
+        for (const auto& triangle : mesh.triangles)
+          for (const auto v : triangle) ASSERT_LT(v, mesh.vertices.size());
+        for (const auto& v : mesh.vertices) ASSERT_TRUE(v.allFinite());
+      } catch (const Unusable& error) {
+        ++refused;
+        ASSERT_TRUE(std::string(error.what()).starts_with(name + ": ")) << error.what();
+        ASSERT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+      }
+    }
+    EXPECT_GT(refused, 1000u);
+  }
 }
 
 double area(const TriangleMesh& mesh) {
@@ -171,6 +311,22 @@ TEST_F(Files, OtherFormatsThroughAssimp) {
   EXPECT_TRUE(refusal_of(glb).starts_with(glb.string() + ": not a mesh that assimp reads: "))
       << refusal_of(glb);
   EXPECT_EQ(refusal_of(glb).find('\n'), std::string::npos);
+  // Two nodes, one inside the other, show the same triangle.
+  const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  write("a.bin", std::string(reinterpret_cast<const char*>(corners), sizeof corners));
+  const auto scene = write("scene.gltf", R"({"asset": {"version": "2.0"}, "scene": 0,
+    "scenes": [{"nodes": [0]}],
+    "nodes": [{"mesh": 0, "scale": [2, 2, 2], "children": [1]},
+              {"mesh": 0, "translation": [10, 0, 0]}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"uri": "a.bin", "byteLength": 36}]})");
+  const TriangleMesh mesh = read_mesh(scene);
+  EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_EQ(mesh.vertices[1], Vec3<double>(2, 0, 0));
+  EXPECT_EQ(mesh.vertices[3], Vec3<double>(20, 0, 0));
+  EXPECT_EQ(mesh.vertices[5], Vec3<double>(20, 2, 0));
   const auto unknown = write("a.nothing", "xyz");
   EXPECT_TRUE(
       refusal_of(unknown).starts_with(unknown.string() + ": not a mesh that assimp reads: "))

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Meshes by name: those made by formula, and those that the set-up has unpacked from Debian's
+/// libcgal-demo, simplified. `bunny` is there in any case: where its file is not, a bumpy sphere
+/// stands in for it.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+#include "hierarchies/geometry/triangle_mesh.hpp"
+
+namespace bvlab {
+
+struct NamedMesh {
+  std::string name;  ///< of what it is, which may be a stand-in for what was asked
+  TriangleMesh mesh;
+};
+
+/// Where the set-up puts meshes: build/meshes of the source tree.
+std::filesystem::path mesh_directory();
+
+/// The mesh with about `polygons` triangles: a formula's, or `<name>.off` of `directory` (`bunny`
+/// for bunny00.off), simplified and kept there as `<name>-<polygons>.off`, which is read the next
+/// time. Throws Unusable with the names there are. Says on standard error when a stand-in is used.
+NamedMesh named_mesh(const std::string& name, std::size_t polygons,
+                     const std::filesystem::path& directory = mesh_directory());
+
+}  // namespace bvlab

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// THE list of scenes.
+#pragma once
+
+#include "experiments/scenes/random_walk.hpp"
+#include "hierarchies/geometry/type_list.hpp"
+
+namespace bvlab {
+
+using Scenes = TypeList<RandomWalk>;
+
+}  // namespace bvlab

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A mesh with fewer triangles: edges collapse one after the other, the cheapest first, by the cost
+/// and placement of Lindstrom and Turk [lindstrom_turk_1998], as CGAL has them. Under a second for
+/// a hundred thousand triangles.
+#pragma once
+
+#include <cstddef>
+
+#include "hierarchies/geometry/triangle_mesh.hpp"
+
+namespace bvlab {
+
+/// The mesh with `polygons` triangles, or one or two fewer where an edge collapse leaps over that
+/// number, or more where no further edge can collapse without changing the surface's topology.
+/// Vertices stand in another order than before, unused ones are gone, and where more than two
+/// triangles meet at an edge, or at a vertex more than one fan, the surface is cut apart there
+/// first. A mesh that has no more triangles than asked is given back as it is.
+TriangleMesh simplified(const TriangleMesh& mesh, std::size_t polygons);
+
+}  // namespace bvlab
