@@ -10,4 +10,7 @@ namespace bvlab::oracle {
 /// Whether the closed triangles share a point; either may be a segment or a point.
 bool intersect(const Triangle& a, const Triangle& b);
 
+/// Their distance, right to about 1e-16 of itself.
+long double distance(const Triangle& a, const Triangle& b);
+
 }  // namespace bvlab::oracle

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "traversal/primitives/triangle_distance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "experiments/scenes/triangle_sets.hpp"
+#include "tests/oracles/triangle_oracle.hpp"
+
+namespace bvlab {
+namespace {
+
+std::string shown(const TrianglePair& pair) {
+  std::ostringstream text;
+  text << std::setprecision(17);
+  for (const auto& t : pair)
+    for (const auto& p : t) text << "{" << p[0] << ", " << p[1] << ", " << p[2] << "} ";
+  return text.str();
+}
+
+double extent(const TrianglePair& pair) {
+  double largest = 0;
+  for (const auto& p : pair)
+    for (const auto& q : pair)
+      for (const auto& x : p)
+        for (const auto& y : q)
+          for (int i = 0; i < 3; ++i)
+            largest = std::max(largest, std::abs(x[i] / 2 - y[i] / 2) * 2);
+  return largest;
+}
+
+/// How far a point may stand from where it should: the coordinates' own rounding.
+double grain(const TrianglePair& pair) {
+  double largest = 0;
+  for (const auto& t : pair)
+    for (const auto& p : t) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  return 16 * unit_roundoff<double> * largest + std::numeric_limits<double>::denorm_min();
+}
+
+int meeting = 0, apart = 0;
+
+void expect_right(const TrianglePair& pair) {
+  const auto& [a, b] = pair;
+  const long double truth = oracle::distance(a, b);
+  const TriangleDistance found = distance(a, b);
+  ASSERT_EQ(found.distance == 0, truth == 0) << shown(pair);
+  ++(truth == 0 ? meeting : apart);
+  const long double allowed =
+      1e-14L * truth + std::ldexp(extent(pair), -90) + std::numeric_limits<double>::denorm_min();
+  ASSERT_LE(std::abs(found.distance - truth), allowed)
+      << shown(pair) << "off by " << (found.distance - truth) / truth << " of " << truth;
+  ASSERT_LE(std::abs(found.distance - distance(b, a).distance), 2 * allowed) << shown(pair);
+  // The nearest points are where they are said to be.
+  const Triangle at_a = {found.on_a, found.on_a, found.on_a},
+                 at_b = {found.on_b, found.on_b, found.on_b};
+  ASSERT_LE(oracle::distance(at_a, a), grain(pair)) << shown(pair);
+  ASSERT_LE(oracle::distance(at_b, b), grain(pair)) << shown(pair);
+  ASSERT_LE(std::abs(oracle::distance(at_a, at_b) - truth), 2 * grain(pair)) << shown(pair);
+}
+
+template <class F>
+void expect_right_on(int pairs, const F& make) {
+  meeting = apart = 0;
+  for (int i = 0; i < pairs && !testing::Test::HasFatalFailure(); ++i) expect_right(make());
+  EXPECT_GT(apart, pairs / 100);
+}
+
+class DistanceSets : public testing::TestWithParam<TriangleSet> {};
+
+TEST_P(DistanceSets, AgreeWithRationalNumbers) {
+  TriangleSource source(11);
+  expect_right_on(800, [&] { return GetParam().next(source); });
+  EXPECT_GT(meeting, 0);
+}
+
+/// The same with the second moved away, little or far.
+TEST_P(DistanceSets, AgreeAtAnyDistance) {
+  TriangleSource source(12);
+  expect_right_on(800, [&] {
+    TrianglePair pair = GetParam().next(source);
+    const Vec3<double> by = std::ldexp(1, source.integer(-40, 10)) * source.point();
+    for (auto& p : pair[1]) p += by;
+    return pair;
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(TriangleDistance, DistanceSets, testing::ValuesIn(triangle_sets),
+                         [](const auto& info) {
+                           std::string name(info.param.name);
+                           std::replace_if(
+                               name.begin(), name.end(), [](char c) { return !std::isalnum(c); },
+                               '_');
+                           return name;
+                         });
+
+/// Edges parallel but for the last digits.
+TEST(TriangleDistance, NearlyParallelEdges) {
+  TriangleSource source(13);
+  expect_right_on(1500, [&] {
+    TrianglePair pair = source.random();
+    const Vec3<double> by = std::ldexp(1, source.integer(-30, 2)) * source.point();
+    for (int i = 0; i < 2; ++i) {
+      pair[1][i] = pair[0][i] + by;
+      if (source.integer(0, 1))
+        pair[1][i] += std::ldexp(1, -source.integer(20, 52)) * source.point();
+    }
+    return pair;
+  });
+}
+
+TEST(TriangleDistance, EveryScale) {
+  TriangleSource source(14);
+  for (const int exponent : {-1070, -1000, -600, -300, -110, 110, 300, 600, 1000, 1022})
+    for (const bool touching : {false, true})
+      expect_right_on(100, [&] {
+        const TrianglePair pair = touching ? source.touching() : source.random();
+        return TriangleSource::mapped(pair, [&](const auto& p) -> Vec3<double> {
+          return p.unaryExpr([&](double x) { return std::ldexp(x, exponent); });
+        });
+      });
+}
+
+}  // namespace
+}  // namespace bvlab
