@@ -163,7 +163,7 @@ TriangleMesh torus(std::size_t polygons) {
 /// close on themselves, as the Frenet frame's twist need not.
 TriangleMesh knot(std::size_t polygons) {
   constexpr double ring = 0.58, hole = 0.28, tube = 0.13;
-  const auto [around, across] = nearest_grid(polygons, 12, 24);
+  const auto [around, across] = nearest_grid(polygons, 12, 25);
   return closed_tube(around, across, [](double u, double v) -> Point {
     const auto [cp, sp] = cosine_sine(2 * u);
     const auto [cq, sq] = cosine_sine(3 * u);

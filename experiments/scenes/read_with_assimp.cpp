@@ -40,19 +40,23 @@ class Gatherer {
   void visit(const aiNode& node, const Transformation& parent, int depth) {
     if (depth > 1000) throw Unusable(name_, "nodes more than 1000 deep");
     const Transformation here = product(parent, transformation_of(node));
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    for (unsigned i = 0; node.mMeshes && i < node.mNumMeshes; ++i) {
       if (node.mMeshes[i] >= scene_.mNumMeshes)
         throw Unusable(name_, "node '" + std::string(node.mName.C_Str()) + "': mesh " +
                                   std::to_string(node.mMeshes[i]) + " does not exist");
-      append(*scene_.mMeshes[node.mMeshes[i]], node.mMeshes[i], here);
+      if (const aiMesh* mesh = scene_.mMeshes[node.mMeshes[i]])
+        append(*mesh, node.mMeshes[i], here);
     }
-    for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], here, depth + 1);
+    for (unsigned i = 0; i < node.mNumChildren; ++i)
+      if (node.mChildren[i]) visit(*node.mChildren[i], here, depth + 1);
   }
 
   void append(const aiMesh& mesh, unsigned number, const Transformation& here) {
     const auto fault = [&](const std::string& what) {
       throw Unusable(name_, "mesh " + std::to_string(number) + ": " + what);
     };
+    // Some of assimp's readers leave arrays out where they found nothing to put in.
+    if (!mesh.mVertices || !mesh.mFaces) return;
     const std::size_t first = result_.vertices.size();
     if (first + mesh.mNumVertices >= std::numeric_limits<std::uint32_t>::max())
       fault("more vertices than 32 bits number");
@@ -69,7 +73,7 @@ class Gatherer {
     for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
       const aiFace& face = mesh.mFaces[i];
       corners.clear();
-      for (unsigned k = 0; k < face.mNumIndices; ++k) {
+      for (unsigned k = 0; face.mIndices && k < face.mNumIndices; ++k) {
         if (face.mIndices[k] >= mesh.mNumVertices)
           fault("face " + std::to_string(i) + ": vertex " + std::to_string(face.mIndices[k]) +
                 " does not exist: there are " + std::to_string(mesh.mNumVertices));

@@ -35,7 +35,7 @@ class TrianglesCommand : public testing::Test {
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
 
   Outcome run(const std::string& arguments) const {
-    const std::string command = std::string(BVLAB_PROGRAM) + " triangles " + arguments + " 2>&1";
+    const std::string command = "'" BVLAB_PROGRAM "' triangles " + arguments + " 2>&1";
     std::FILE* pipe = ::popen(command.c_str(), "r");
     Outcome outcome{};
     char block[4096];

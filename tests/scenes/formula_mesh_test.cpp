@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/circle.hpp"
+#include "traversal/primitives/triangle_intersection.hpp"
 
 namespace bvlab {
 namespace {
@@ -87,6 +89,24 @@ TEST(FormulaMesh, SizesAreThoseOfTheSurface) {
   EXPECT_NEAR(signed_volume(formula_mesh("icosphere", 20000)), 4 * pi / 3, 0.01);
   EXPECT_NEAR(signed_volume(formula_mesh("torus", 20000)), 2 * pi * pi * 0.7 * 0.09, 0.01);
   EXPECT_NEAR(signed_volume(formula_mesh("box", 300)), 1, 1e-12);
+}
+
+/// Triangles that share no corner share no point: the surfaces bound solids.
+TEST(FormulaMesh, NoSurfaceMeetsItself) {
+  for (const FormulaMesh& entry : formula_meshes())
+    for (const std::size_t polygons : {1, 150, 500, 1200}) {
+      SCOPED_TRACE(std::string(entry.name) + " " + std::to_string(polygons));
+      const TriangleMesh mesh = formula_mesh(entry.name, polygons);
+      std::size_t meetings = 0;
+      for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+          const auto &s = mesh.triangles[i], &t = mesh.triangles[j];
+          const bool neighbours =
+              std::find_first_of(s.begin(), s.end(), t.begin(), t.end()) != s.end();
+          meetings += !neighbours && intersect(mesh.corners(i), mesh.corners(j));
+        }
+      EXPECT_EQ(meetings, 0u);
+    }
 }
 
 TEST(FormulaMesh, FaultsAreNamed) {
