@@ -8,6 +8,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -57,9 +58,11 @@ struct FixedPoint {
   bool exact;
 
   explicit FixedPoint(const double (&x)[N]) {
-    double largest = 0;
-    for (int i = 0; i < N; ++i) largest = std::max(largest, std::abs(x[i]));
-    const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(largest) >> 52);
+    // As bits, magnitudes are in order, too.
+    std::uint64_t largest = 0;
+    for (int i = 0; i < N; ++i)
+      largest = std::max(largest, std::bit_cast<std::uint64_t>(std::abs(x[i])));
+    const int exponent = static_cast<int>(largest >> 52);
     // 2^60 / 2^(exponent - 1022) has to be a normal number.
     exact = exponent > 60 && exponent < 2046;
     if (!exact) return;
@@ -73,27 +76,46 @@ struct FixedPoint {
     }
     exact = off == 0;
   }
+
+  /// Of coordinates that follow each other as x, y, z.
+  std::array<std::int64_t, 3> point(int i) const {
+    return {at[3 * i], at[3 * i + 1], at[3 * i + 2]};
+  }
 };
 
 __extension__ typedef __int128 Int128;
 __extension__ typedef unsigned __int128 UInt128;
 
-/// The sign of the determinant of three differences below 2^61: minors stay below 2^123. A minor
-/// is 2^64 high + low; high times a difference is below 2^120, low times one below 2^125, and three
-/// of either fit.
-inline int sign_of_determinant(const std::int64_t (&u)[3], const std::int64_t (&v)[3],
-                               const std::int64_t (&w)[3]) {
-  Int128 upper = 0, lower = 0;
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const Int128 minor = static_cast<Int128>(u[j]) * v[k] - static_cast<Int128>(u[k]) * v[j];
-    upper += static_cast<Int128>(static_cast<std::int64_t>(minor >> 64)) * w[i];
-    lower += static_cast<Int128>(static_cast<std::uint64_t>(minor)) * w[i];
-  }
-  upper += lower >> 64;
-  if (upper != 0) return upper > 0 ? 1 : -1;
-  return static_cast<std::uint64_t>(lower) != 0;
+using Fixed3 = std::array<std::int64_t, 3>;
+
+inline Fixed3 operator-(const Fixed3& a, const Fixed3& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
+
+/// The minors u x v of differences below 2^61; they stay below 2^123.
+struct FixedNormal {
+  Int128 minor[3];
+
+  FixedNormal(const Fixed3& u, const Fixed3& v) {
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      minor[i] = static_cast<Int128>(u[j]) * v[k] - static_cast<Int128>(u[k]) * v[j];
+    }
+  }
+
+  /// The sign of its product with a third difference below 2^61. A minor is 2^64 high + low; high
+  /// times the difference is below 2^120, low times it below 2^125, and three of either fit.
+  int side(const Fixed3& w) const {
+    Int128 upper = 0, lower = 0;
+    for (int i = 0; i < 3; ++i) {
+      upper += static_cast<Int128>(static_cast<std::int64_t>(minor[i] >> 64)) * w[i];
+      lower += static_cast<Int128>(static_cast<std::uint64_t>(minor[i])) * w[i];
+    }
+    upper += lower >> 64;
+    if (upper != 0) return upper > 0 ? 1 : -1;
+    return static_cast<std::uint64_t>(lower) != 0;
+  }
+};
 
 /// Calls `f` with the number of limbs that coordinates of so many binary digits need. Float64
 /// spans 2^-1074 to 2^1024, so 33 limbs hold anything.
@@ -128,10 +150,8 @@ static_assert(33 * 64 - 3 >= 1074 + 1024);
                                                const Vec3<double>& c, const Vec3<double>& d) {
   const FixedPoint<12> x({a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], d[0], d[1], d[2]});
   if (!x.exact) return wide_orientation(a, b, c, d);
-  std::int64_t u[3], v[3], w[3];
-  for (int i = 0; i < 3; ++i)
-    u[i] = x.at[3 + i] - x.at[i], v[i] = x.at[6 + i] - x.at[i], w[i] = x.at[9 + i] - x.at[i];
-  return sign_of_determinant(u, v, w);
+  return FixedNormal(x.point(1) - x.point(0), x.point(2) - x.point(0))
+      .side(x.point(3) - x.point(0));
 }
 
 [[gnu::noinline]] inline int exact_orientation(const Vec3<double>& a, const Vec3<double>& b,

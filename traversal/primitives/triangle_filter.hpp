@@ -39,16 +39,29 @@ namespace filter {
 using std::abs;
 using stdx::abs;
 
+// Whole registers travel between these small functions, so each of them is inlined for certain.
+
+/// `condition ? yes : no`, lane by lane.
+template <Scalar S>
+[[gnu::always_inline]] inline S pick(const Mask<S>& condition, S yes, S no) {
+  if constexpr (Batched<S>) {
+    stdx::where(condition, no) = yes;
+    return no;
+  } else {
+    return condition ? yes : no;
+  }
+}
+
 // By value, so that one instruction and no branch comes of it.
 template <Scalar S>
-S min(S x, S y) {
+[[gnu::always_inline]] inline S min(S x, S y) {
   if constexpr (Batched<S>)
     return stdx::min(x, y);
   else
     return x < y ? x : y;
 }
 template <Scalar S>
-S max(S x, S y) {
+[[gnu::always_inline]] inline S max(S x, S y) {
   if constexpr (Batched<S>)
     return stdx::max(x, y);
   else
@@ -56,7 +69,7 @@ S max(S x, S y) {
 }
 
 template <Scalar S>
-bool everywhere(const Mask<S>& mask) {
+[[gnu::always_inline]] inline bool everywhere(const Mask<S>& mask) {
   if constexpr (!Batched<S>)
     return mask;
   else
@@ -67,24 +80,25 @@ template <Scalar S>
 using Vector = std::array<S, 3>;
 
 template <Scalar S>
-Vector<S> operator-(const Vector<S>& a, const Vector<S>& b) {
+[[gnu::always_inline]] inline Vector<S> operator-(const Vector<S>& a, const Vector<S>& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
 template <Scalar S>
-Vector<S> cross(const Vector<S>& u, const Vector<S>& v) {
+[[gnu::always_inline]] inline Vector<S> cross(const Vector<S>& u, const Vector<S>& v) {
   return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
 }
 
 template <Scalar S>
-S dot(const Vector<S>& u, const Vector<S>& v) {
+[[gnu::always_inline]] inline S dot(const Vector<S>& u, const Vector<S>& v) {
   return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
 template <Scalar S>
-Vector<S> choose(const Mask<S>& condition, const Vector<S>& yes, const Vector<S>& no) {
-  return {select(condition, yes[0], no[0]), select(condition, yes[1], no[1]),
-          select(condition, yes[2], no[2])};
+[[gnu::always_inline]] inline Vector<S> choose(const Mask<S>& condition, const Vector<S>& yes,
+                                               const Vector<S>& no) {
+  return {pick<S>(condition, yes[0], no[0]), pick<S>(condition, yes[1], no[1]),
+          pick<S>(condition, yes[2], no[2])};
 }
 
 /// Whether the boxes are apart (a comparison of corners, hence exact, and true of the given corners
@@ -94,7 +108,7 @@ struct BoxAndBound {
   Mask<S> apart;
   S bound;
 
-  BoxAndBound(const Corners<S>& a, const Corners<S>& b) {
+  [[gnu::always_inline]] BoxAndBound(const Corners<S>& a, const Corners<S>& b) {
     using T = Element<S>;
     constexpr T u = unit_roundoff<S>;
     constexpr T least = std::numeric_limits<T>::denorm_min();
@@ -123,26 +137,26 @@ struct BoxAndBound {
                                    side[0] * side[1] * wrong[2]) +
                               (30 * u) * ((side[0] * side[1]) * side[2])) +
               underflow;
-    bound = select(longest < S(reach), bound, S(std::numeric_limits<T>::infinity()));
+    bound = pick<S>(longest < S(reach), bound, S(std::numeric_limits<T>::infinity()));
   }
 };
 
 /// Determinants that tell on which side of the plane of `t` three points lie.
 template <Scalar S>
-Vector<S> sides_of(const Corners<S>& t, const Corners<S>& points) {
+[[gnu::always_inline]] inline Vector<S> sides_of(const Corners<S>& t, const Corners<S>& points) {
   const Vector<S> normal = cross<S>(t[1] - t[0], t[2] - t[0]);
   return {dot<S>(normal, points[0] - t[0]), dot<S>(normal, points[1] - t[0]),
           dot<S>(normal, points[2] - t[0])};
 }
 
 template <Scalar S>
-Mask<S> all_beyond(const Vector<S>& sides, const S& bound) {
+[[gnu::always_inline]] inline Mask<S> all_beyond(const Vector<S>& sides, const S& bound) {
   return (min(min(sides[0], sides[1]), sides[2]) > bound) ||
          (max(max(sides[0], sides[1]), sides[2]) < -bound);
 }
 
 template <Scalar S>
-Mask<S> all_known(const Vector<S>& sides, const S& bound) {
+[[gnu::always_inline]] inline Mask<S> all_known(const Vector<S>& sides, const S& bound) {
   return min(min(abs(sides[0]), abs(sides[1])), abs(sides[2])) > bound;
 }
 
@@ -153,7 +167,7 @@ struct Turned {
   Vector<S> apex, next, last;
   Mask<S> above;
 
-  Turned(const Corners<S>& t, const Vector<S>& sides) {
+  [[gnu::always_inline]] Turned(const Corners<S>& t, const Vector<S>& sides) {
     const Mask<S> p0 = sides[0] > 0, p1 = sides[1] > 0, p2 = sides[2] > 0;
     const Mask<S> last_alone = !(p0 ^ p1), next_alone = !(p0 ^ p2);
     apex = choose<S>(last_alone, t[2], choose<S>(next_alone, t[1], t[0]));
@@ -173,7 +187,7 @@ struct Certainly {
 
 /// Neither is set where rounding leaves the question open.
 template <Scalar S, CornersAre corners = CornersAre::given>
-Certainly<S> certainly(const Corners<S>& a, const Corners<S>& b) {
+[[gnu::always_inline]] inline Certainly<S> certainly(const Corners<S>& a, const Corners<S>& b) {
   using namespace filter;
   const BoxAndBound<S, corners> box(a, b);
   const S bound = box.bound;

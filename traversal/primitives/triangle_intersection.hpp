@@ -145,13 +145,30 @@ inline bool all_on_one_side(const std::array<int, 3>& s) {
   return s[0] != 0 && s[0] == s[1] && s[1] == s[2];
 }
 
+/// On which side of the plane of `t` three points lie; only what the filter left open is decided
+/// anew.
 inline std::array<int, 3> exact_sides(const Triangle& t, const Triangle& points,
                                       const std::array<double, 3>& computed, double bound) {
   std::array<int, 3> sides;
+  int open = 0;
+  for (int i = 0; i < 3; ++i) {
+    sides[i] = (computed[i] > bound) - (computed[i] < -bound);
+    open += sides[i] == 0;
+  }
+  if (open == 0) return sides;
+  double x[18];
   for (int i = 0; i < 3; ++i)
-    sides[i] = computed[i] > bound    ? 1
-               : computed[i] < -bound ? -1
-                                      : exact_orientation(t[0], t[1], t[2], points[i]);
+    for (int j = 0; j < 3; ++j) x[3 * i + j] = t[i][j], x[9 + 3 * i + j] = points[i][j];
+  const FixedPoint<18> fixed(x);
+  if (fixed.exact) {
+    const Fixed3 origin = fixed.point(0);
+    const FixedNormal normal(fixed.point(1) - origin, fixed.point(2) - origin);
+    for (int i = 0; i < 3; ++i)
+      if (sides[i] == 0) sides[i] = normal.side(fixed.point(3 + i) - origin);
+  } else {
+    for (int i = 0; i < 3; ++i)
+      if (sides[i] == 0) sides[i] = exact_orientation(t[0], t[1], t[2], points[i]);
+  }
   return sides;
 }
 
@@ -180,11 +197,12 @@ inline bool exactly_intersect(const Triangle& a, const Triangle& b) {
       share_a_corner(a, b))
     return true;
   const auto sides_b = exact_sides(a, b, computed_b, box.bound);
+  constexpr std::array<int, 3> in_plane{};
+  if (sides_b == in_plane) return flat_intersect(a, b);
   if (all_on_one_side(sides_b)) return false;
   const auto sides_a = exact_sides(b, a, computed_a, box.bound);
   if (all_on_one_side(sides_a)) return false;
-  constexpr std::array<int, 3> in_plane{};
-  if (sides_a == in_plane || sides_b == in_plane) return flat_intersect(a, b);
+  if (sides_a == in_plane) return flat_intersect(a, b);
   // Both have area, and their planes cross in a line. Turned and flipped so that each apex lies
   // above the other's plane, the intervals that the two cut from the line overlap unless one of
   // two orientations is positive.
