@@ -25,8 +25,8 @@ using Posed = decltype(posed(std::declval<const V&>(),
 /// A volume is a plain aggregate of scalars S (float, double, or a SIMD batch of either), with free
 /// functions found by argument-dependent lookup. Laws, checked by tests/laws for every entry of
 /// `Volumes`:
-///   enclosure     every point given to `enclosing` is inside; merging and posing keep it so,
-///                 rounding included: a vertex moved by Pose lies in the posed volume;
+///   enclosure     `contains` is true for every point given to `enclosing`; merging and posing keep
+///                 it so, rounding included: a vertex moved by Pose lies in the posed volume;
 ///   conservatism  if a point lies in both, `disjoint` is false, also where numbers overflow;
 ///   gap           `gap` never exceeds the true distance, and is 0 where a point lies in both;
 ///   batches       lane by lane, a batch says what the scalar says.
@@ -41,7 +41,8 @@ concept BoundingVolume = requires(const V a, const V b, std::span<const Vec3<dou
   {posed(a, placement)};                     // one N_u
   { disjoint(p, q) } -> std::same_as<bool>;  // one N_v; a mask where S is a batch
   { gap(p, q) } -> std::same_as<typename V::scalar>;
-  { size(a) } -> std::same_as<typename V::scalar>;   // the larger one is descended
+  { contains(p, Vec3<long double>{}) } -> std::same_as<bool>;  // for tests: slow and careful
+  { size(a) } -> std::same_as<typename V::scalar>;             // the larger one is descended
   { reach(a) } -> std::same_as<typename V::scalar>;  // how far from the frame's origin it extends
 };
 

@@ -17,6 +17,12 @@ constexpr Peer list[] = {
 
 std::span<const Peer> peers() { return list; }
 
+std::string peer_names() {
+  std::string names;
+  for (const auto& each : list) names += (names.empty() ? "" : ", ") + std::string(each.name);
+  return names;
+}
+
 const Peer* peer(std::string_view name) {
   for (const auto& each : list)
     if (each.name == name) return &each;

@@ -22,6 +22,9 @@ struct Peer {
 
 std::span<const Peer> peers();
 
+/// "fcl-obb, ..."
+std::string peer_names();
+
 /// Null where there is none of that name.
 const Peer* peer(std::string_view name);
 

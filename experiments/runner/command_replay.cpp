@@ -42,6 +42,7 @@ nlohmann::ordered_json totals_of(const Arguments& arguments, const Trace& trace,
           {"query", arguments.variant.query},
           {"build", arguments.variant.build},
           {"leaf_size", arguments.variant.leaf_size},
+          {"precision", arguments.variant.precision},
           {"threads", arguments.threads}};
 }
 
@@ -95,6 +96,8 @@ void add_replay(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--leaf-size", arguments->variant.leaf_size, "triangles in a leaf, at most")
       ->check(CLI::Range(1u, 1u << 16))
+      ->capture_default_str();
+  command->add_option("--precision", arguments->variant.precision, "see `bvlab list precisions`")
       ->capture_default_str();
   command->add_option("--threads", arguments->threads)
       ->check(CLI::Range(1u, 1024u))

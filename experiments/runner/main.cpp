@@ -10,8 +10,10 @@ int main(int argc, char** argv) {
   using namespace bvlab;
   CLI::App app("bvlab: collision detection with bounding-volume hierarchies and boxes, measured");
   app.require_subcommand(1);
+  add_replay(app);
   add_boxes(app);
   add_triangles(app);
+  add_run(app);
   add_scene(app);
   add_list(app);
   try {

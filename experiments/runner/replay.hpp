@@ -38,6 +38,7 @@ struct Variant {
   std::string query = "touching";
   std::string build = "top-down-principal";
   std::uint32_t leaf_size = 1;
+  std::string precision = "exact";
 };
 
 struct ReplayOptions {

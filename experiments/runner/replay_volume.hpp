@@ -38,13 +38,14 @@ template <>
 struct Answers<Touching> {
   std::vector<std::uint8_t>* cells;  ///< (frames, pairs), or null where answers are not kept
   std::size_t pairs;
+  TriangleTest test;
   std::uint64_t hits = 0;
 
-  Answers(ReplayResult& result, std::size_t frames, std::size_t pairs, bool keep)
-      : cells(keep ? &result.touching : nullptr), pairs(pairs) {
+  Answers(ReplayResult& result, std::size_t frames, std::size_t pairs, bool keep, TriangleTest test)
+      : cells(keep ? &result.touching : nullptr), pairs(pairs), test(test) {
     if (keep) result.touching.resize(frames * pairs);
   }
-  Touching ask() { return {}; }
+  Touching ask() { return Touching(test); }
   void take(std::size_t frame, std::size_t pair, const ObjectPair&, const Touching& query) {
     hits += query.touching();
     if (cells) (*cells)[frame * pairs + pair] = query.touching();
@@ -55,14 +56,16 @@ struct Answers<Touching> {
 template <>
 struct Answers<Contacts> {
   bool keep;
+  TriangleTest test;
   std::uint64_t hits = 0;
   std::vector<Contact> found;
   std::vector<std::array<std::uint32_t, 5>> all;
 
-  Answers(ReplayResult&, std::size_t, std::size_t, bool keep) : keep(keep) {}
+  Answers(ReplayResult&, std::size_t, std::size_t, bool keep, TriangleTest test)
+      : keep(keep), test(test) {}
   Contacts ask() {
     found.clear();
-    return Contacts(found);
+    return Contacts(found, test);
   }
   void take(std::size_t frame, std::size_t, const ObjectPair& pair, const Contacts&) {
     hits += found.size();
@@ -80,14 +83,15 @@ template <BoundingVolume V, class Strategy, class Query, class Counter>
 class Share {
  public:
   Share(std::span<const Shape<V>> shapes, const Strategy& strategy, std::size_t first,
-        std::size_t stride, const Trace& trace, ReplayResult& result, const ReplayOptions& options)
+        std::size_t stride, const Trace& trace, TriangleTest test, ReplayResult& result,
+        const ReplayOptions& options)
       : trace_(trace),
         result_(result),
         options_(options),
         first_(first),
         stride_(stride),
         engine_(shapes, share_of(trace.objects, first, stride), strategy),
-        answers_(result, trace.frames, trace.pairs(), options.keep_answers) {}
+        answers_(result, trace.frames, trace.pairs(), options.keep_answers, test) {}
 
   void play() {
     const auto start = Clock::now();
@@ -136,7 +140,7 @@ class Share {
 
 template <BoundingVolume V, class Strategy, class Query, class Counter>
 void play(std::span<const Shape<V>> shapes, const Strategy& strategy, const Trace& trace,
-          const ReplayOptions& options, ReplayResult& result) {
+          TriangleTest test, const ReplayOptions& options, ReplayResult& result) {
   if (options.keep_series) result.series.resize(trace.frames);
   const std::size_t pairs = trace.pairs();
   // A series is of all pairs together, so one thread plays it.
@@ -146,7 +150,7 @@ void play(std::span<const Shape<V>> shapes, const Strategy& strategy, const Trac
           : std::clamp<std::size_t>(options.threads, 1, std::max<std::size_t>(pairs, 1));
   std::deque<Share<V, Strategy, Query, Counter>> shares;
   for (std::size_t t = 0; t < threads; ++t)
-    shares.emplace_back(shapes, strategy, t, threads, trace, result, options);
+    shares.emplace_back(shapes, strategy, t, threads, trace, test, result, options);
   const auto start = Clock::now();
   {
     std::vector<std::jthread> helpers;
@@ -184,14 +188,19 @@ ReplayResult replay_with(std::span<const TriangleMesh> meshes, const Trace& trac
   for (std::size_t i = 0; i < trace.objects; ++i)
     shapes.push_back({&meshes[i % meshes.size()], &hierarchies[i % meshes.size()]});
   result.build_seconds = seconds_since(start);
+  TriangleTest test = nullptr;
+  ListOf<Precisions>::with(variant.precision, [&]<class Precision>(std::type_identity<Precision>) {
+    test = intersect_batch<Precision>;
+  });
   const bool counted = options.count == Count::on || options.keep_series;
   Strategies::with(name_of(variant.strategy), [&]<class Strategy>(std::type_identity<Strategy>) {
     const auto strategy = made_from<Strategy>(variant.strategy);
     Queries::with(variant.query, [&]<class Query>(std::type_identity<Query>) {
       if (counted)
-        detail::play<V, Strategy, Query, Counting>(shapes, strategy, trace, options, result);
+        detail::play<V, Strategy, Query, Counting>(shapes, strategy, trace, test, options, result);
       else
-        detail::play<V, Strategy, Query, NotCounting>(shapes, strategy, trace, options, result);
+        detail::play<V, Strategy, Query, NotCounting>(shapes, strategy, trace, test, options,
+                                                      result);
     });
   });
   return result;

@@ -45,7 +45,7 @@ struct Placement {
     constexpr double u = unit_roundoff<double>, e = unit_roundoff<T>;
     const Vec3<double> offset = pose.translation - origin;
     rotation = pose.rotation.cast<T>();
-    translation = offset.cast<T>();
+    translation = rounded<T>(offset);
     const Mat3<double> defect =
         pose.rotation.transpose() * pose.rotation - Mat3<double>::Identity();
     // `grown` rounds twice, and the defect itself is computed with an error below 16u.

@@ -64,8 +64,7 @@ std::uint64_t bits(const stdx::simd_mask<T, Abi>& mask) {
 
 /// `condition ? yes : no`, lane by lane.
 template <class T>
-  requires std::is_floating_point_v<T>
-T select(bool condition, T yes, T no) {
+requires std::is_floating_point_v<T> T select(bool condition, T yes, T no) {
   return condition ? yes : no;
 }
 template <Batched S>
@@ -82,13 +81,11 @@ constexpr Element<T> unit_roundoff = std::numeric_limits<Element<T>>::epsilon() 
 
 /// The next larger (smaller) number; infinity stays where it is.
 template <class T>
-  requires std::is_floating_point_v<T>
-T next_up(T x) {
+requires std::is_floating_point_v<T> T next_up(T x) {
   return std::nextafter(x, std::numeric_limits<T>::infinity());
 }
 template <class T>
-  requires std::is_floating_point_v<T>
-T next_down(T x) {
+requires std::is_floating_point_v<T> T next_down(T x) {
   return std::nextafter(x, -std::numeric_limits<T>::infinity());
 }
 
@@ -108,5 +105,29 @@ template <class S>
 using Vec3 = Eigen::Matrix<S, 3, 1>;
 template <class S>
 using Mat3 = Eigen::Matrix<S, 3, 3>;
+
+/// Products and sums in this order, so that a batch gives lane by lane what a scalar gives.
+template <class S>
+S dot(const Vec3<S>& a, const Vec3<S>& b) {
+  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+template <class S>
+S squared_norm(const Vec3<S>& v) {
+  return dot(v, v);
+}
+
+/// A vector rounded to T, to nearest.
+///
+/// The result is hidden from the optimiser: GCC 12 at -O2 takes a pair of doubles through float and
+/// back without rounding them (its SLP vectoriser merges the two conversions), and a volume whose
+/// radius is measured from a centre that it does not hold encloses nothing.
+template <class T>
+Vec3<T> rounded(const Vec3<double>& v) {
+  Vec3<T> result = v.template cast<T>();
+#if defined(__GNUC__)
+  asm("" : "+m"(result));
+#endif
+  return result;
+}
 
 }  // namespace bvlab

@@ -29,7 +29,7 @@ struct Sphere {
   /// The smallest ball around the points (one or more).
   static Sphere enclosing(std::span<const Vec3<double>> points) requires(!Batched<S>) {
     Sphere sphere;
-    sphere.centre = enclosing_ball(points).centre.template cast<S>();
+    sphere.centre = rounded<S>(enclosing_ball(points).centre);
     const Vec3<double> centre = sphere.centre.template cast<double>();
     double squared = 0;
     for (const auto& p : points) squared = std::max(squared, (p - centre).squaredNorm());
@@ -54,7 +54,7 @@ Sphere<S> merge(const Sphere<S>& a, const Sphere<S>& b) {
   if (distance + ra <= rb * (1 - 8 * unit_roundoff<double>)) return b;
   const double along = distance > 0 ? (distance + rb - ra) / (2 * distance) : 0;
   Sphere<S> both;
-  both.centre = (from + along * (to - from)).template cast<S>();
+  both.centre = rounded<S>(from + along * (to - from));
   const Vec3<double> centre = both.centre.template cast<double>();
   both.radius =
       Sphere<S>::safe_radius(std::max((centre - from).norm() + ra, (centre - to).norm() + rb));
@@ -71,16 +71,26 @@ Sphere<S> posed(const Sphere<S>& sphere, const Placement<Element<S>>& placement)
 template <class S>
 Mask<S> disjoint(const Sphere<S>& a, const Sphere<S>& b) {
   const S radii = a.radius + b.radius;
-  return (a.centre - b.centre).squaredNorm() > radii * radii * S(1 + 16 * unit_roundoff<S>);
+  return squared_norm<S>(a.centre - b.centre) > radii * radii * S(1 + 16 * unit_roundoff<S>);
 }
 
 /// At most the distance between the two balls; 0 where they may meet.
 template <class S>
 S gap(const Sphere<S>& a, const Sphere<S>& b) {
-  using std::max, std::sqrt;
+  using std::max, std::min, std::sqrt;
   constexpr Element<S> e = unit_roundoff<S>;
-  const S distance = sqrt((a.centre - b.centre).squaredNorm());
+  // A square that overflows belongs to a distance that is larger still.
+  const S largest = std::numeric_limits<Element<S>>::max();
+  const S distance = sqrt(min(largest, squared_norm<S>(a.centre - b.centre)));
   return max(S(0), distance * S(1 - 8 * e) - (a.radius + b.radius) * S(1 + 2 * e));
+}
+
+/// Is the point, in the frame of the sphere, inside? True where the sphere is not finite.
+template <class S>
+bool contains(const Sphere<S>& sphere, const Vec3<long double>& point) {
+  const Vec3<long double> offset = point - sphere.centre.template cast<long double>();
+  const auto radius = static_cast<long double>(sphere.radius);
+  return !(offset.squaredNorm() > radius * radius);
 }
 
 template <class S>

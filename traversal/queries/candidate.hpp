@@ -19,7 +19,8 @@ struct Candidate {
 };
 
 /// Which of the pairs (*a[i], *b[i]), i < count <= 64, share a point: bit i is pair i's.
-using TriangleTest = std::uint64_t (*)(const Triangle* const* a, const Triangle* const* b, int count);
+using TriangleTest = std::uint64_t (*)(const Triangle* const* a, const Triangle* const* b,
+                                       int count);
 
 /// Calls `hit(i)` for each candidate whose triangles share a point, in order, until it says to
 /// stop; gives the index at which it did, or their number.

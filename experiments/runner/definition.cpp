@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/runner/definition.hpp"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <sstream>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/scenes/scenes.hpp"
+
+namespace bvlab {
+namespace {
+
+std::string shortest(double value) {
+  char text[32];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  return {text, end};
+}
+
+struct AddingDefault {
+  Settings& settings;
+  void operator()(std::string_view name, const std::string& value, std::string_view) const {
+    add(name, value);
+  }
+  void operator()(std::string_view name, double value, std::string_view) const {
+    add(name, shortest(value));
+  }
+  void operator()(std::string_view name, std::uint64_t value, std::string_view) const {
+    add(name, std::to_string(value));
+  }
+  void operator()(std::string_view name, const Length& value, std::string_view) const {
+    add(name, text_of(value));
+  }
+  void add(std::string_view name, const std::string& value) const {
+    const auto same = [&](const Setting& s) { return s.first == name; };
+    if (std::none_of(settings.begin(), settings.end(), same)) settings.emplace_back(name, value);
+  }
+};
+
+/// Reads one definition; every complaint names the file and the line.
+class Reader {
+ public:
+  explicit Reader(const std::string& name) : name_(name) {}
+
+  Definition read(const std::string& text) {
+    toml::table table;
+    try {
+      table = toml::parse(text, name_);
+    } catch (const toml::parse_error& error) {
+      fail(error.source(), std::string(error.description()));
+    }
+    Definition definition;
+    definition.text = text;
+    for (auto&& [key, node] : table) {
+      if (key == "name")
+        definition.name = string(node, "name");
+      else if (key == "description")
+        definition.description = string(node, "description");
+      else if (key == "repetitions")
+        definition.repetitions = repetitions(node);
+      else if (key == "parameters")
+        definition.parameters = settings(node, {});
+      else if (key == "axis")
+        definition.axes = axes(node);
+      else if (key == "series")
+        definition.series = free_settings(node), definition.has_series = true;
+      else
+        fail(key.source(), "unknown key '" + std::string(key.str()) + "'");
+    }
+    if (definition.name.empty() || definition.name.find('/') != std::string::npos)
+      throw Unusable(name_, "needs a name (without '/')");
+    return definition;
+  }
+
+ private:
+  [[noreturn]] void fail(const toml::source_region& where, const std::string& what) const {
+    throw Unusable(name_, "line " + std::to_string(where.begin.line) + ": " + what);
+  }
+
+  std::string string(const toml::node& node, const std::string& key) const {
+    if (const auto value = node.value_exact<std::string>()) return *value;
+    fail(node.source(), key + " must be a string");
+  }
+
+  unsigned repetitions(const toml::node& node) const {
+    const auto value = node.value_exact<std::int64_t>();
+    if (!value || *value < 1 || *value > 1000)
+      fail(node.source(), "repetitions must be a whole number from 1 to 1000");
+    return static_cast<unsigned>(*value);
+  }
+
+  std::string scalar(const toml::node& node, const std::string& key) const {
+    if (const auto value = node.value_exact<std::string>()) return *value;
+    if (const auto value = node.value_exact<std::int64_t>()) return std::to_string(*value);
+    if (const auto value = node.value_exact<double>()) return shortest(*value);
+    fail(node.source(), "'" + key + "' must be a number or a string");
+  }
+
+  void known(const std::string& parameter, const toml::source_region& where) const {
+    std::string names;
+    for (const auto& [name, value] : default_parameters()) {
+      if (name == parameter) return;
+      names += (names.empty() ? "" : ", ") + name;
+    }
+    fail(where, "unknown parameter '" + parameter + "'; there are " + names);
+  }
+
+  const toml::table& table(const toml::node& node, const char* what) const {
+    if (const auto* table = node.as_table()) return *table;
+    fail(node.source(), std::string(what) + " must be a table");
+  }
+
+  Settings free_settings(const toml::node& node) const {
+    Settings result;
+    for (auto&& [key, value] : table(node, "series"))
+      result.emplace_back(key.str(), scalar(value, std::string(key.str())));
+    return result;
+  }
+
+  Settings settings(const toml::node& node, std::string_view but) const {
+    Settings result;
+    for (auto&& [key, value] : table(node, "parameters")) {
+      if (key == but) continue;
+      const std::string name(key.str());
+      known(name, key.source());
+      result.emplace_back(name, scalar(value, name));
+    }
+    return result;
+  }
+
+  std::vector<Definition::Axis> axes(const toml::node& node) const {
+    const auto* array = node.as_array();
+    if (!array) fail(node.source(), "axes are written as [[axis]]");
+    std::vector<Definition::Axis> result;
+    for (auto&& each : *array) result.push_back(axis(table(each, "an axis")));
+    return result;
+  }
+
+  Definition::Axis axis(const toml::table& from) const {
+    Definition::Axis axis;
+    const auto *name = from.get("name"), *values = from.get("values"), *tables = from.get("value");
+    if (!name || !values == !tables)
+      fail(from.source(), "an axis needs a name and either values or [[axis.value]]");
+    axis.name = string(*name, "an axis' name");
+    for (auto&& [key, node] : from)
+      if (key != "name" && key != "values" && key != "value")
+        fail(key.source(), "unknown key '" + std::string(key.str()) + "' of an axis");
+    const auto* list = (values ? values : tables)->as_array();
+    if (!list || list->empty()) fail(from.source(), "axis '" + axis.name + "' has no values");
+    axis.is_parameter = values != nullptr;
+    if (values) known(axis.name, name->source());
+    for (auto&& each : *list) {
+      if (values) {
+        const std::string value = scalar(each, axis.name);
+        axis.values.push_back({value, {{axis.name, value}}});
+      } else {
+        const auto& one = table(each, "a value");
+        const auto* label = one.get("name");
+        if (!label) fail(one.source(), "a value of axis '" + axis.name + "' needs a name");
+        axis.values.push_back({string(*label, "a value's name"), settings(one, "name")});
+      }
+    }
+    return axis;
+  }
+
+  const std::string& name_;
+};
+
+void set(Settings& settings, const Settings& to) {
+  for (const auto& [name, value] : to)
+    for (auto& [known, old] : settings)
+      if (known == name) old = value;
+}
+
+}  // namespace
+
+const std::string& Cell::operator[](std::string_view name) const {
+  static const std::string nothing;
+  for (const auto* settings : {&labels, &parameters})
+    for (const auto& [key, value] : *settings)
+      if (key == name) return value;
+  return nothing;
+}
+
+const Settings& default_parameters() {
+  static const Settings defaults = [] {
+    Settings settings{
+        {"scene", std::string(Scenes::at<0>::name)}, {"mesh", "bunny"}, {"polygons", "500"}};
+    Scenes::for_each(
+        [&]<class S>(std::type_identity<S>) { S{}.visit_options(AddingDefault{settings}); });
+    for (const auto& setting :
+         {Setting{"volume", "sphere"}, Setting{"strategy", "recursive"},
+          Setting{"query", "touching"}, Setting{"build", "top-down-principal"},
+          Setting{"leaf_size", "1"}, Setting{"precision", "exact"}, Setting{"peer", ""}})
+      settings.push_back(setting);
+    return settings;
+  }();
+  return defaults;
+}
+
+Definition parse_definition(const std::string& text, const std::string& name) {
+  return Reader(name).read(text);
+}
+
+Definition read_definition(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) throw Unusable(path, "cannot be read");
+  return parse_definition(text.str(), path);
+}
+
+std::vector<Cell> cells_of(const Definition& definition) {
+  std::vector<Cell> cells(1);
+  cells[0].parameters = default_parameters();
+  set(cells[0].parameters, definition.parameters);
+  for (const auto& axis : definition.axes) {
+    std::vector<Cell> next;
+    for (const auto& cell : cells)
+      for (const auto& value : axis.values) {
+        next.push_back(cell);
+        set(next.back().parameters, value.settings);
+        if (!axis.is_parameter) next.back().labels.emplace_back(axis.name, value.label);
+      }
+    cells = std::move(next);
+  }
+  return cells;
+}
+
+}  // namespace bvlab

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// An experiment as it is written down: parameters that stay, axes that vary, and what is wanted of
+/// every cell of their product.
+///
+///     name = "nine-bunnies"
+///     description = "one line"
+///     repetitions = 3                # timed runs of each cell, interleaved
+///
+///     [parameters]                   # see `parameter_names`; what is not set has its default
+///     mesh = "bunny"
+///
+///     [[axis]]                       # one parameter
+///     name = "seed"
+///     values = [1, 2, 3]
+///
+///     [[axis]]                       # several parameters at once, under a name
+///     name = "reading"
+///     [[axis.value]]
+///     name = "one at a time"
+///     moving = 1
+///
+///     [series]                       # cells to write down frame by frame as well
+///     seed = 1
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace bvlab {
+
+/// Parameter names and values in the order of `parameter_names`, or a subset of them.
+using Setting = std::pair<std::string, std::string>;
+using Settings = std::vector<Setting>;
+
+struct Definition {
+  struct Value {
+    std::string label;
+    Settings settings;
+  };
+  struct Axis {
+    std::string name;
+    bool is_parameter = true;  ///< false: `name` labels settings of several parameters
+    std::vector<Value> values;
+  };
+  std::string name, description;
+  unsigned repetitions = 1;
+  Settings parameters;
+  std::vector<Axis> axes;
+  Settings series;  ///< labels or parameters that a cell must have to be written frame by frame
+  bool has_series = false;
+  std::string text;  ///< the file as it was
+};
+
+/// One point of the product: every parameter, and the labels of the axes that are no parameters.
+struct Cell {
+  Settings parameters;
+  Settings labels;
+
+  /// Of a parameter or a label; empty where there is none.
+  const std::string& operator[](std::string_view name) const;
+};
+
+/// All parameters, in the order of a record's columns, with their defaults.
+const Settings& default_parameters();
+
+/// Throws Unusable naming the file and the line or the key.
+Definition read_definition(const std::string& path);
+Definition parse_definition(const std::string& text, const std::string& name);
+
+/// The first axis varies slowest.
+std::vector<Cell> cells_of(const Definition& definition);
+
+}  // namespace bvlab

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/runner/experiment.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <map>
+#include <random>
+#include <set>
+#include <thread>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/peers/peers.hpp"
+#include "experiments/runner/record.hpp"
+#include "experiments/runner/replay.hpp"
+#include "experiments/runner/touches_any.hpp"
+#include "experiments/scenes/named_mesh.hpp"
+#include "experiments/scenes/read_mesh.hpp"
+#include "experiments/scenes/scenes.hpp"
+
+namespace bvlab {
+namespace {
+
+template <class T>
+T number(const std::string& name, const std::string& text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw Unusable(name + " = " + text + ": not a number of its kind");
+  return value;
+}
+
+struct SettingOption {
+  const Cell& cell;
+  void operator()(std::string_view name, std::string& value, std::string_view) const {
+    value = cell[name];
+  }
+  void operator()(std::string_view name, Length& value, std::string_view) const {
+    value = length_from(cell[name]);
+  }
+  template <class T>
+  void operator()(std::string_view name, T& value, std::string_view) const {
+    value = number<T>(std::string(name), cell[name]);
+  }
+};
+
+/// Parameters that say how a trace is answered; all the others say which trace it is.
+bool is_of_variant(const std::string& name) {
+  static const std::set<std::string> names{"volume",    "strategy",  "query", "build",
+                                           "leaf_size", "precision", "peer"};
+  return names.contains(name);
+}
+
+std::string trace_key(const Cell& cell) {
+  std::string key;
+  for (const auto& [name, value] : cell.parameters)
+    if (!is_of_variant(name)) key += name + "=" + value + ";";
+  return key;
+}
+
+Variant variant_of(const Cell& cell) {
+  return {cell["volume"],
+          cell["strategy"],
+          cell["query"],
+          cell["build"],
+          number<std::uint32_t>("leaf_size", cell["leaf_size"]),
+          cell["precision"]};
+}
+
+struct Prepared {
+  std::vector<TriangleMesh> meshes;
+  Trace trace;
+};
+
+std::vector<TriangleMesh> meshes_of(const Cell& cell) {
+  std::vector<TriangleMesh> meshes;
+  const std::string& mesh = cell["mesh"];
+  if (mesh.find('/') != std::string::npos || mesh.find('.') != std::string::npos)
+    meshes.push_back(read_mesh(mesh));
+  else
+    meshes.push_back(named_mesh(mesh, number<std::size_t>("polygons", cell["polygons"])).mesh);
+  return meshes;
+}
+
+Prepared prepared(const Cell& cell) {
+  Prepared ready;
+  ready.meshes = meshes_of(cell);
+  std::vector<Extent> extents;
+  for (const auto& mesh : ready.meshes) extents.push_back(extent_of(mesh));
+  const bool known = Scenes::with(cell["scene"], [&]<class S>(std::type_identity<S>) {
+    S scene;
+    scene.visit_options(SettingOption{cell});
+    auto array = scene.generate(extents, touches_any(ready.meshes, scene.objects));
+    ready.trace = {array.shape[0], array.shape[1], std::move(array.data)};
+  });
+  if (!known) throw Unusable("no scene '" + cell["scene"] + "'; there are " + Scenes::names());
+  return ready;
+}
+
+void check(const Cell& cell) {
+  check(variant_of(cell));
+  if (cell["peer"].empty()) return;
+  const Peer* const other = peer(cell["peer"]);
+  if (!other) throw Unusable("no peer '" + cell["peer"] + "'; there are " + peer_names());
+  if (cell["query"] != "touching" && !(cell["query"] == "contacts" && other->contacts))
+    throw Unusable("peer " + cell["peer"] + " does not answer " + cell["query"]);
+}
+
+ReplayResult answered(const Prepared& ready, const Cell& cell, const ReplayOptions& options) {
+  if (const Peer* const other = peer(cell["peer"]))
+    return other->replay(ready.meshes, ready.trace, cell["query"], options);
+  return replay(ready.meshes, ready.trace, variant_of(cell), options);
+}
+
+std::size_t differing(const ReplayResult& result, const ReplayResult& reference) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < reference.touching.size(); ++i)
+    count += result.touching[i] != reference.touching[i];
+  std::vector<std::array<std::uint32_t, 5>> difference;
+  std::set_symmetric_difference(result.contacts.begin(), result.contacts.end(),
+                                reference.contacts.begin(), reference.contacts.end(),
+                                std::back_inserter(difference));
+  return count + difference.size();
+}
+
+/// Calls `work(i)` for i < count on all cores.
+template <class Work>
+void side_by_side(std::size_t count, Work&& work) {
+  std::atomic<std::size_t> next = 0;
+  std::mutex guard;
+  std::exception_ptr failure;
+  const auto take = [&] {
+    for (std::size_t i; (i = next++) < count;) try {
+        work(i);
+      } catch (...) {
+        const std::lock_guard lock(guard);
+        failure = std::current_exception();
+      }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    for (unsigned t = 1; t < std::min<std::size_t>(std::thread::hardware_concurrency(), count); ++t)
+      helpers.emplace_back(take);
+    take();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+std::string nanoseconds(double seconds) {
+  return std::to_string(static_cast<std::int64_t>(seconds * 1e9 + 0.5));
+}
+
+class Experiment {
+ public:
+  Experiment(const Definition& definition, const std::filesystem::path& record)
+      : definition_(definition),
+        cells_(cells_of(definition)),
+        rows_(record / (definition.name + ".csv"),
+              columns({"repetition", "time_ns", "first_ns", "build_ns", "pairs", "hits",
+                       "differing", "n_u", "n_v", "n_p", "front"})),
+        frames_(record / (definition.name + ".frames.csv"),
+                columns({"frame", "n_u", "n_v", "n_p", "front", "hits"})) {
+    for (const auto& cell : cells_) check(cell);
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      auto& group = by_trace_[trace_key(cells_[i]) + cells_[i]["query"]];
+      if (group.empty()) order_.push_back(&group);
+      group.push_back(i);
+    }
+  }
+
+  void run(const Progress& progress) {
+    std::set<Row> done;
+    for (const auto& row : rows_.rows())
+      done.insert(Row(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(keys_)));
+    std::size_t finished = 0;
+    progress(0, order_.size());
+    for (const auto* group : order_) {
+      const bool all_there = std::all_of(group->begin(), group->end(), [&](std::size_t i) {
+        return done.contains(key_row(cells_[i]));
+      });
+      if (!all_there) run_group(*group, done);
+      progress(++finished, order_.size());
+    }
+  }
+
+ private:
+  /// Labels, then parameters, then what is measured.
+  Row columns(std::initializer_list<const char*> measured) {
+    Row row;
+    for (const auto& [name, value] : cells_.at(0).labels) row.push_back(name);
+    for (const auto& [name, value] : cells_.at(0).parameters) row.push_back(name);
+    keys_ = row.size();
+    row.insert(row.end(), measured.begin(), measured.end());
+    return row;
+  }
+
+  static Row key_row(const Cell& cell) {
+    Row row;
+    for (const auto* settings : {&cell.labels, &cell.parameters})
+      for (const auto& [name, value] : *settings) row.push_back(value);
+    return row;
+  }
+
+  bool wants_series(const Cell& cell) const {
+    return definition_.has_series && cell["peer"].empty() &&
+           std::all_of(definition_.series.begin(), definition_.series.end(),
+                       [&](const Setting& s) { return cell[s.first] == s.second; });
+  }
+
+  void run_group(const std::vector<std::size_t>& group, const std::set<Row>& done) {
+    std::vector<const Cell*> cells;
+    for (const auto i : group)
+      if (!done.contains(key_row(cells_[i]))) cells.push_back(&cells_[i]);
+    const Prepared ready = prepared(*cells[0]);
+    std::vector<ReplayResult> counted(cells.size() + 1);
+    side_by_side(counted.size(), [&](std::size_t i) {
+      ReplayOptions options;
+      options.count = Count::on;
+      if (i == cells.size()) {
+        Variant reference;
+        reference.query = (*cells[0])["query"];
+        counted[i] = replay(ready.meshes, ready.trace, reference, options);
+      } else {
+        options.keep_series = wants_series(*cells[i]);
+        counted[i] = answered(ready, *cells[i], options);
+      }
+    });
+    std::vector<std::size_t> differences;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      differences.push_back(differing(counted[i], counted.back()));
+    time(ready, cells, counted, differences);
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      for (std::size_t frame = 0; frame < counted[i].series.size(); ++frame) {
+        const auto& c = counted[i].series[frame];
+        Row row = key_row(*cells[i]);
+        for (const auto value : {std::uint64_t{frame}, c.n_u, c.n_v, c.n_p, c.front, c.hits})
+          row.push_back(std::to_string(value));
+        frames_.add(std::move(row));
+      }
+    if (definition_.has_series) frames_.save();
+    rows_.save();
+  }
+
+  void time(const Prepared& ready, const std::vector<const Cell*>& cells,
+            const std::vector<ReplayResult>& counted, const std::vector<std::size_t>& differences) {
+    ReplayOptions options;
+    options.keep_answers = false;
+    std::vector<std::size_t> order(cells.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    for (unsigned repetition = 0; repetition < definition_.repetitions; ++repetition) {
+      std::shuffle(order.begin(), order.end(), random_);
+      for (const auto i : order) {
+        const ReplayResult timed = answered(ready, *cells[i], options);
+        const ReplayResult& count = counted[i];
+        Row row = key_row(*cells[i]);
+        const bool ours = (*cells[i])["peer"].empty();
+        const auto counts = [&](std::uint64_t n) {
+          return ours ? std::to_string(n) : std::string();
+        };
+        for (auto& field :
+             {std::to_string(repetition), nanoseconds(timed.seconds),
+              nanoseconds(timed.first_seconds), nanoseconds(timed.build_seconds),
+              std::to_string(ready.trace.pairs() * ready.trace.frames), std::to_string(timed.hits),
+              std::to_string(differences[i]), counts(count.n_u), counts(count.n_v),
+              counts(count.n_p), ours ? std::to_string(count.front) : std::string()})
+          row.push_back(field);
+        rows_.add(std::move(row));
+      }
+    }
+  }
+
+  const Definition& definition_;
+  std::vector<Cell> cells_;
+  std::size_t keys_ = 0;
+  Table rows_, frames_;
+  std::map<std::string, std::vector<std::size_t>> by_trace_;
+  std::vector<const std::vector<std::size_t>*> order_;
+  std::mt19937_64 random_{20260101};
+};
+
+}  // namespace
+
+void run_experiment(const Definition& definition, const std::filesystem::path& record,
+                    const Progress& progress) {
+  Experiment(definition, record).run(progress);
+}
+
+}  // namespace bvlab

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What the talk says of its separation list, held to the number.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "experiments/scenes/formula_mesh.hpp"
+#include "hierarchies/builds.hpp"
+#include "hierarchies/volumes.hpp"
+#include "tests/types_of.hpp"
+#include "traversal/counters.hpp"
+#include "traversal/queries.hpp"
+#include "traversal/strategies.hpp"
+
+namespace bvlab {
+namespace {
+
+static_assert(std::is_empty_v<NotCounting>);
+
+template <class V>
+class FrontLaws : public ::testing::Test {
+ protected:
+  using B = Batch<typename V::scalar, 8>;
+  TriangleMesh mesh_ = formula_mesh("star", 120);
+  Hierarchy<V> hierarchy_{mesh_, builds::TopDownPrincipal::topology(mesh_, 1)};
+  Body<V> a_{mesh_, hierarchy_}, b_{mesh_, hierarchy_};
+  Workspace workspace_;
+
+  void place(const Pose& a, const Pose& b) {
+    a_.move(a, Vec3<double>::Zero());
+    b_.move(b, Vec3<double>::Zero());
+  }
+
+  /// Leaves below a node, by their primitives' places.
+  void leaves(std::uint32_t node, std::vector<std::uint32_t>& places) const {
+    const auto& n = hierarchy_.node(node);
+    if (n.count)
+      places.push_back(n.first);
+    else
+      leaves(n.first, places), leaves(n.first + 1, places);
+  }
+
+  /// Every pair of leaves below exactly one entry.
+  void expect_partition(const Front& front) const {
+    std::vector<int> covered(mesh_.triangles.size() * mesh_.triangles.size(), 0);
+    for (const auto& [a, b] : front.entries()) {
+      std::vector<std::uint32_t> of_a, of_b;
+      leaves(a, of_a), leaves(b, of_b);
+      for (const auto i : of_a)
+        for (const auto j : of_b) ++covered[i * mesh_.triangles.size() + j];
+    }
+    EXPECT_TRUE(std::all_of(covered.begin(), covered.end(), [](int n) { return n == 1; }));
+  }
+};
+TYPED_TEST_SUITE(FrontLaws, TypesOf<Volumes>);
+
+Pose at(double x, double angle = 0) {
+  return *pose_from({x, 0.1, 0.2}, std::cos(angle / 2), 0.3 * std::sin(angle / 2),
+                    0.5 * std::sin(angle / 2), std::sqrt(0.66) * std::sin(angle / 2));
+}
+
+TYPED_TEST(FrontLaws, BodiesThatStayCostOneTestForEachEntry) {
+  // Near, but apart: both boxes overlap, no triangles do.
+  for (const double x : {0.0, 1.3, 1.6, 5.0}) {
+    this->place(Pose{}, at(x, 0.7));
+    Counting recursive, first, later, last;
+    std::vector<Contact> found;
+    Contacts query(found);
+    Recursive().run<typename TestFixture::B>(this->a_, this->b_, query, recursive,
+                                             this->workspace_);
+    Deferred deferred(1);
+    deferred.run<typename TestFixture::B>(this->a_, this->b_, query, first, this->workspace_);
+    const std::uint64_t n = deferred.front_size();
+    EXPECT_EQ(recursive.n_v, 2 * n - 1);
+    EXPECT_EQ(first.n_v, 2 * n - 1);
+    for (int run = 0; run < 2; ++run) {  // 1 + k runs without growth are let pass
+      Counting still;
+      deferred.run<typename TestFixture::B>(this->a_, this->b_, query, still, this->workspace_);
+      EXPECT_EQ(still.n_v, n);
+      EXPECT_EQ(still.n_u, 0u);
+      EXPECT_EQ(still.n_p, recursive.n_p);
+    }
+    Counting rebuilt;
+    deferred.run<typename TestFixture::B>(this->a_, this->b_, query, rebuilt, this->workspace_);
+    EXPECT_EQ(rebuilt.n_v, 2 * n - 1);
+    EXPECT_EQ(deferred.front_size(), n);
+  }
+}
+
+TYPED_TEST(FrontLaws, DeferringByKSpreadsARebuildOverKPlusTwoRuns) {
+  this->place(Pose{}, at(1.6));
+  for (const unsigned k : {0u, 1u, 5u}) {
+    Counting counter;
+    std::vector<Contact> found;
+    Contacts query(found);
+    Deferred deferred(k);
+    for (unsigned run = 0; run < 10 * (k + 2); ++run)
+      deferred.run<typename TestFixture::B>(this->a_, this->b_, query, counter, this->workspace_);
+    const std::uint64_t n = deferred.front_size();
+    EXPECT_EQ(counter.n_v, 10 * ((2 * n - 1) + (k + 1) * n));
+  }
+}
+
+TYPED_TEST(FrontLaws, TheFrontStaysAPartitionWhateverCutsARunShort) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> anywhere(-2, 2), angle(0, 6);
+  SeparationList list;
+  Deferred deferred(3);
+  NotCounting counter;
+  int hits = 0;
+  for (int frame = 0; frame < 300; ++frame) {
+    this->place(at(anywhere(random), angle(random)), at(anywhere(random), angle(random)));
+    for (auto* strategy : std::initializer_list<Deferred*>{&list, &deferred}) {
+      Touching query;
+      strategy->run<typename TestFixture::B>(this->a_, this->b_, query, counter, this->workspace_);
+      hits += query.touching();
+      this->expect_partition(strategy->front());
+    }
+  }
+  EXPECT_GT(hits, 50);
+  EXPECT_LT(hits, 550);
+}
+
+TYPED_TEST(FrontLaws, AHitIsTheFirstToBeTestedNextTime) {
+  this->place(Pose{}, at(0.2, 0.5));
+  Deferred deferred(1);
+  Counting first, again;
+  Touching one, two;
+  deferred.run<typename TestFixture::B>(this->a_, this->b_, one, first, this->workspace_);
+  deferred.run<typename TestFixture::B>(this->a_, this->b_, two, again, this->workspace_);
+  EXPECT_TRUE(one.touching() && two.touching());
+  EXPECT_EQ(again.n_p, 1u);
+  EXPECT_LE(again.n_v, 8u);
+}
+
+}  // namespace
+}  // namespace bvlab

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Every volume over every build: a tree with all triangles in it once, each node around its own.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "experiments/scenes/formula_mesh.hpp"
+#include "hierarchies/builds.hpp"
+#include "hierarchies/hierarchy.hpp"
+#include "hierarchies/volumes.hpp"
+#include "tests/types_of.hpp"
+
+namespace bvlab {
+namespace {
+
+/// Degenerate but legal: repeated, flat and point-like triangles, alone or in a crowd.
+std::vector<TriangleMesh> hostile_meshes() {
+  std::vector<TriangleMesh> meshes;
+  meshes.push_back({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+  meshes.push_back({{{1, 2, 3}}, {{0, 0, 0}}});
+  meshes.push_back({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}});
+  for (int i = 0; i < 33; ++i) meshes.back().triangles.push_back({0, 1, 2});
+  meshes.push_back(formula_mesh("star", 300));
+  for (auto& v : meshes.back().vertices) v = v * 1e-9 + Vec3<double>(1e5, -1e6, 3);
+  meshes.push_back(formula_mesh("torus", 500));
+  return meshes;
+}
+
+template <class V>
+class HierarchyLaws : public ::testing::Test {};
+TYPED_TEST_SUITE(HierarchyLaws, TypesOf<Volumes>);
+
+/// Checks the subtree and gives the triangles below it.
+template <class V>
+std::vector<std::uint32_t> check(const Hierarchy<V>& h, std::uint32_t node,
+                                 const TriangleMesh& mesh, std::uint32_t leaf_size,
+                                 std::size_t& visited) {
+  ++visited;
+  std::vector<std::uint32_t> below;
+  const auto& n = h.node(node);
+  if (h.is_leaf(node)) {
+    EXPECT_LE(n.count, leaf_size);
+    for (std::uint32_t i = 0; i < n.count; ++i) below.push_back(h.primitive(n.first + i));
+  } else {
+    EXPECT_GT(n.first, node);
+    for (const auto child : {n.first, n.first + 1}) {
+      const auto more = check(h, child, mesh, leaf_size, visited);
+      below.insert(below.end(), more.begin(), more.end());
+    }
+  }
+  const Placement<typename V::scalar> here;
+  for (const auto triangle : below)
+    for (const auto& corner : mesh.corners(triangle))
+      EXPECT_TRUE(contains(posed(h.volume(node), here),
+                           Vec3<long double>(corner.template cast<long double>())));
+  return below;
+}
+
+TYPED_TEST(HierarchyLaws, EveryTriangleStandsInOneLeafAndInsideAllAbove) {
+  for (const auto& mesh : hostile_meshes())
+    for (const std::uint32_t leaf_size : {1u, 2u, 7u})
+      Builds::for_each([&](auto build) {
+        const Hierarchy<TypeParam> h(mesh, decltype(build)::type::topology(mesh, leaf_size));
+        std::size_t visited = 0;
+        const auto all = check(h, 0, mesh, leaf_size, visited);
+        EXPECT_EQ(visited, h.size());
+        EXPECT_EQ(all.size(), mesh.triangles.size());
+        EXPECT_EQ(std::set(all.begin(), all.end()).size(), mesh.triangles.size());
+      });
+}
+
+}  // namespace
+}  // namespace bvlab
