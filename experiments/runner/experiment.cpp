@@ -159,7 +159,7 @@ class Experiment {
               columns({"repetition", "time_ns", "first_ns", "build_ns", "pairs", "hits",
                        "differing", "n_u", "n_v", "n_p", "front"})),
         frames_(record / (definition.name + ".frames.csv"),
-                columns({"frame", "n_u", "n_v", "n_p", "front", "hits"})) {
+                frame_columns()) {
     for (const auto& cell : cells_) check(cell);
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       auto& group = by_trace_[trace_key(cells_[i]) + cells_[i]["query"]];
@@ -191,6 +191,14 @@ class Experiment {
     for (const auto& [name, value] : cells_.at(0).parameters) row.push_back(name);
     keys_ = row.size();
     row.insert(row.end(), measured.begin(), measured.end());
+    return row;
+  }
+
+  /// Only what varies: a series is long.
+  Row frame_columns() const {
+    Row row;
+    for (const auto& axis : definition_.axes) row.push_back(axis.name);
+    for (const char* name : {"frame", "n_u", "n_v", "n_p", "front", "hits"}) row.push_back(name);
     return row;
   }
 
@@ -232,7 +240,8 @@ class Experiment {
     for (std::size_t i = 0; i < cells.size(); ++i)
       for (std::size_t frame = 0; frame < counted[i].series.size(); ++frame) {
         const auto& c = counted[i].series[frame];
-        Row row = key_row(*cells[i]);
+        Row row;
+        for (const auto& axis : definition_.axes) row.push_back((*cells[i])[axis.name]);
         for (const auto value : {std::uint64_t{frame}, c.n_u, c.n_v, c.n_p, c.front, c.hits})
           row.push_back(std::to_string(value));
         frames_.add(std::move(row));

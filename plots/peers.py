@@ -1,0 +1,90 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A peers record as a table (printed) and a figure: time per pair, ours beside other libraries.
+
+usage: peers.py RECORD [--out FOLDER]
+"""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import matplotlib.pyplot as plt
+
+import style
+
+
+def read(record):
+    rows = pd.read_csv(Path(record) / "peers.csv", keep_default_na=False)
+    rows["us_per_pair"] = rows.time_ns / rows.pairs / 1e3
+    return rows
+
+
+def refused(rows):
+    """Variants whose answers differ somewhere: listed, not drawn."""
+    wrong = rows[rows.differing != 0]
+    return wrong.groupby("variant").differing.sum()
+
+
+def name_of(variant):
+    """"sphere recursive" is drawn as its strategy is everywhere."""
+    return variant.split(" ")[-1]
+
+
+def print_table(rows):
+    middle = rows.groupby(["query", "polygons", "density", "motion", "variant"],
+                          sort=False).us_per_pair.median().unstack("variant")
+    middle = middle[list(dict.fromkeys(rows.variant))]
+    ours = [v for v in middle.columns if v.startswith("sphere")]
+    peers = [v for v in middle.columns if v not in ours]
+    middle["recursive / best peer"] = middle["sphere recursive"] / middle[peers].min(axis=1)
+    middle["best of ours / best peer"] = middle[ours].min(axis=1) / middle[peers].min(axis=1)
+    print("Median microseconds per pair and frame; answers compared frame by frame:")
+    with pd.option_context("display.width", 200, "display.max_columns", 20):
+        print(middle.round(3).to_string())
+
+
+def draw(rows, out):
+    panels = list(rows.groupby(["query", "polygons"], sort=False))
+    figure, axes = plt.subplots(2, int(np.ceil(len(panels) / 2)), figsize=(7.2, 4.8), squeeze=False)
+    variants = list(dict.fromkeys(rows.variant))
+    for axis, ((query, polygons), group) in zip(axes.flat, panels):
+        cells = list(dict.fromkeys(zip(group.density, group.motion)))
+        for k, variant in enumerate(variants):
+            quartiles = np.array([
+                group[(group.variant == variant) & (group.density == d) & (group.motion == m)]
+                .us_per_pair.quantile([0.25, 0.5, 0.75]) for d, m in cells])
+            places = np.arange(len(cells)) + (k - (len(variants) - 1) / 2) * 0.12
+            axis.errorbar(places, quartiles[:, 1], markersize=4, elinewidth=0.8, label=variant,
+                          yerr=[quartiles[:, 1] - quartiles[:, 0], quartiles[:, 2] - quartiles[:, 1]],
+                          **style.marker_style(name_of(variant)))
+        axis.set_yscale("log")
+        axis.set_title(f"{query}, {polygons} polygons")
+        axis.set_xticks(range(len(cells)), [f"{d}\\n{m.replace(', ', ',' + chr(10))}" for d, m in cells],
+                        fontsize=5)
+        axis.grid(axis="x", visible=False)
+    for axis in axes[:, 0]:
+        axis.set_ylabel("µs per pair and frame")
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="lower center", ncol=len(variants), frameon=False,
+                  bbox_to_anchor=(0.5, -0.05))
+    figure.tight_layout()
+    return style.save(figure, out, "peers")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("record")
+    parser.add_argument("--out", help="folder for the figures (default: RECORD/figures)")
+    arguments = parser.parse_args()
+    rows = read(arguments.record)
+    for variant, count in refused(rows).items():
+        print(f"{variant}: {count} answers differ from ours; refused")
+        rows = rows[rows.variant != variant]
+    print_table(rows)
+    print(draw(rows, arguments.out or Path(arguments.record) / "figures"))
+
+
+if __name__ == "__main__":
+    main()

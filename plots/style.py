@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One colour, marker and hatch per name, for good; figures legible in print and in greyscale."""
+
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+# Chosen so that lightness alone tells neighbours apart; markers, dashes and hatches do so again.
+STYLES = {
+    "recursive": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
+    "separation-list": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
+    "deferred": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
+    "published": dict(color="#8f8f8f", marker="x", linestyle=":", hatch="xx"),
+    "fcl-obb": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
+    "fcl-obbrss": dict(color="#bc9fd1", marker="v", linestyle="-.", hatch="oo"),
+    "cgal": dict(color="#3c8d40", marker="P", linestyle=":", hatch="++"),
+}
+
+plt.rcParams.update({
+    "font.size": 9,
+    "axes.titlesize": 9,
+    "axes.labelsize": 9,
+    "legend.fontsize": 8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "figure.dpi": 150,
+    "pdf.fonttype": 42,
+    "savefig.bbox": "tight",
+    "hatch.linewidth": 0.6,
+})
+
+
+def line_style(name):
+    """Keywords for plot: colour, dashes."""
+    style = STYLES[name]
+    return dict(color=style["color"], linestyle=style["linestyle"])
+
+
+def marker_style(name):
+    """Keywords for plot without a line: colour, marker."""
+    style = STYLES[name]
+    return dict(color=style["color"], marker=style["marker"], linestyle="none")
+
+
+def bar_style(name):
+    """Keywords for bar: fill, hatch, edge."""
+    style = STYLES[name]
+    return dict(color=style["color"], hatch=style["hatch"], edgecolor="white", linewidth=0.5)
+
+
+def save(figure, folder, name):
+    """Writes <folder>/<name>.pdf and .png, the same bytes for the same record."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    figure.savefig(folder / f"{name}.pdf", metadata={"CreationDate": None})
+    figure.savefig(folder / f"{name}.png", dpi=200, metadata={"Software": None})
+    plt.close(figure)
+    return folder / f"{name}.png"
