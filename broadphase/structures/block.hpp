@@ -5,6 +5,7 @@
 /// published box pruning, BibTeX: terdiman2018boxpruning).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -55,7 +56,24 @@ Box<T> enclosing(const Box<T>& a, const Box<T>& b) {
   return both;
 }
 
+/// By how much, at the least, coordinates must change before any comparison made so far comes out
+/// otherwise; one running minimum per lane.
+template <class T>
+class Slack {
+ public:
+  Slack() { std::fill_n(lane_, block_width, std::numeric_limits<T>::infinity()); }
+  void note(int lane, T depth) { lane_[lane] = std::min(lane_[lane], std::abs(depth)); }
+  T least() const { return *std::min_element(lane_, lane_ + block_width); }
+
+ private:
+  T lane_[block_width];
+};
+
 /// A block held ready to be compared with many boxes.
+///
+/// Two boxes overlap where the least of the six differences hi - lo of one and the other is not
+/// negative (positive, half-open). IEEE differences have the sign of the exact ones, so this
+/// decides just as comparisons do, and its magnitude is the slack.
 template <class T>
 class Loaded {
  public:
@@ -64,27 +82,64 @@ class Loaded {
   /// The lanes whose boxes overlap `box`.
   template <class Contact>
   Lanes overlapping(const Box<T>& box) const {
-    using V = stdx::native_simd<T>;
-    constexpr int width = std::min(static_cast<int>(V::size()), block_width);
+    Lanes lanes = 0;
+    for (int k = 0; k < block_width; k += width) lanes |= lanes_where<Contact>(depth(box, k)) << k;
+    return lanes;
+  }
+
+  /// The same, and takes note of the slack of the lanes in `among`.
+  template <class Contact>
+  Lanes overlapping(const Box<T>& box, Lanes among, Slack<T>& slack) const {
     Lanes lanes = 0;
     for (int k = 0; k < block_width; k += width) {
-      const auto lane = [&](const T* values) { return V(values + k, stdx::vector_aligned); };
-      auto mask = Contact::reaches(V(box.hi[0]), lane(block_.lo[0]));
-      mask = mask && Contact::reaches(lane(block_.hi[0]), V(box.lo[0]));
-      mask = mask && Contact::reaches(V(box.hi[1]), lane(block_.lo[1]));
-      mask = mask && Contact::reaches(lane(block_.hi[1]), V(box.lo[1]));
-      mask = mask && Contact::reaches(V(box.hi[2]), lane(block_.lo[2]));
-      mask = mask && Contact::reaches(lane(block_.hi[2]), V(box.lo[2]));
-      lanes |= static_cast<Lanes>(bits(mask)) << k;
+      const V d = depth(box, k);
+      lanes |= lanes_where<Contact>(d) << k;
+      for (int lane = 0; lane < width; ++lane)
+        if (among >> (k + lane) & 1) slack.note(k + lane, d[lane]);
     }
     return lanes;
   }
 
  private:
+  using V = stdx::native_simd<T>;
+  static constexpr int width = std::min(static_cast<int>(V::size()), block_width);
+
+  V depth(const Box<T>& box, int first) const {
+    V least(std::numeric_limits<T>::infinity());
+    for (int axis = 0; axis < 3; ++axis) {
+      const V lo(block_.lo[axis] + first, stdx::vector_aligned),
+          hi(block_.hi[axis] + first, stdx::vector_aligned);
+      least = stdx::min(least, stdx::min(V(box.hi[axis]) - lo, hi - V(box.lo[axis])));
+    }
+    return least;
+  }
+  template <class Contact>
+  static Lanes lanes_where(const V& depth) {
+    return static_cast<Lanes>(bits(Contact::reaches(depth, V(T(0)))));
+  }
+
   const Block<T>& block_;
 };
 #ifdef __AVX512F__
-/// The same in six registers: six comparisons, each masked by the ones before.
+template <>
+class Slack<float> {
+ public:
+  void note(__mmask16 lanes, __m512 depth) {
+    lane_ = _mm512_mask_min_ps(lane_, lanes, lane_,
+                               _mm512_castsi512_ps(_mm512_and_si512(
+                                   _mm512_castps_si512(depth), _mm512_set1_epi32(0x7fffffff))));
+  }
+  float least() const {
+    alignas(64) float lane[block_width];
+    _mm512_store_ps(lane, lane_);
+    return *std::min_element(lane, lane + block_width);
+  }
+
+ private:
+  __m512 lane_ = _mm512_set1_ps(std::numeric_limits<float>::infinity());
+};
+/// The same in six registers. Where no slack is asked for: six comparisons, each masked by the
+/// ones before.
 template <>
 class Loaded<float> {
  public:
@@ -103,6 +158,18 @@ class Loaded<float> {
     m = _mm512_mask_cmp_ps_mask(m, lo_[2], _mm512_set1_ps(box.hi[2]), le);
     n = _mm512_mask_cmp_ps_mask(n, hi_[2], _mm512_set1_ps(box.lo[2]), ge);
     return static_cast<Lanes>(m & n);
+  }
+  template <class Contact>
+  Lanes overlapping(const Box<float>& box, Lanes among, Slack<float>& slack) const {
+    constexpr int reaches = std::is_same_v<Contact, Closed> ? _CMP_GE_OQ : _CMP_GT_OQ;
+    __m512 depth[3];
+    for (int axis = 0; axis < 3; ++axis)
+      depth[axis] = _mm512_maskz_min_ps(0xffff, _mm512_set1_ps(box.hi[axis]) - lo_[axis],
+                                        hi_[axis] - _mm512_set1_ps(box.lo[axis]));
+    const __m512 least =
+        _mm512_maskz_min_ps(0xffff, depth[0], _mm512_maskz_min_ps(0xffff, depth[1], depth[2]));
+    slack.note(static_cast<__mmask16>(among), least);
+    return _mm512_cmp_ps_mask(least, _mm512_setzero_ps(), reaches);
   }
 
  private:
