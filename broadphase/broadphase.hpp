@@ -5,9 +5,17 @@
 
 #include <concepts>
 
+#include "broadphase/methods/auto.hpp"
 #include "broadphase/methods/blocks.hpp"
 #include "broadphase/methods/brute_force.hpp"
+#include "broadphase/methods/dynamic_tree.hpp"
+#include "broadphase/methods/grid.hpp"
+#include "broadphase/methods/hash.hpp"
+#include "broadphase/methods/hybrid.hpp"
+#include "broadphase/methods/lbvh.hpp"
+#include "broadphase/methods/sap.hpp"
 #include "broadphase/methods/sort_and_sweep.hpp"
+#include "broadphase/methods/sweep.hpp"
 #include "broadphase/settings.hpp"
 #include "hierarchies/geometry/type_list.hpp"
 
@@ -36,7 +44,26 @@ concept ReportsChanges = BroadPhaseMethod<M> && requires(const M method) {
   { method.changes() } -> std::same_as<PairChanges>;
 };
 
+// clang-format off
 template <class T, class Contact = Closed>
-using Methods = TypeList<BruteForce<T, Contact>, SortAndSweep<T, Contact>, Blocks<T, Contact>>;
+using Methods = TypeList<
+    Auto<T, Contact>,
+    Blocks<T, Contact>,
+    // the seed's
+    Hybrid<T, Contact>,
+    Hash<T, Contact>,
+    Sweep1<T, Contact>,
+    Sweep2<T, Contact>,
+    Sweep3<T, Contact>,
+    Sweep4<T, Contact>,
+    // the field's
+    SortAndSweep<T, Contact>,
+    Sap<T, Contact>,
+    Grid<T, Contact>,
+    DynamicTree<T, Contact>,
+    Lbvh<T, Contact>,
+    BruteForce<T, Contact>
+  >;
+// clang-format on
 
 }  // namespace bvlab

@@ -21,6 +21,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 #include "broadphase/settings.hpp"
@@ -168,30 +169,55 @@ class Blocks {
     if (boxes.size() != count_ &&
         (state_ == State::loose || 8 * distance(boxes.size(), count_) > count_))
       return false;
-    if (state_ == State::loose && most_jumped(boxes)) return false;
-    const Motion motion = move(boxes);
-    if (!motion.leaves && !motion.jumped && boxes.size() == count_) {
+    if (boxes.size() == count_ && same_as_previous(boxes)) {
       reason_ = "kept: nothing moved";
       return true;
     }
-    if (4 * motion.jumped > boxes.size()) return false;
-    // A margin of a few frames' motion must be small beside a leaf, or the list pays for nothing.
+    if (state_ == State::loose && most_jumped(boxes)) return false;
+    const Motion motion = move(boxes);
+    if (!motion.leaves && !motion.jumped && boxes.size() == count_) {
+      remember(boxes);
+      reason_ = "kept: nothing moved";
+      return true;
+    }
+    // Every box that jumps costs about as much as sorting a hundred; where few are, anything is
+    // cheap.
+    if (100 * motion.jumped > boxes.size() + 3200) return false;
     const double step = motion.mean();
     if (state_ == State::listed) {
       margin_ = margin_for(step);
-      if (step < 0.08 * leaf_size_ && update_list(boxes)) return true;
+      if (list_pays(step) && update_list(boxes, step)) return true;
       // Leaves that boxes have left or come to are half changed: no tree to refit.
       if (boxes.size() != count_ || !emptied_.empty()) return false;
       state_ = State::loose;
       return refit(boxes);
     }
-    if (step < 0.05 * leaf_size_ && 20 * motion.jumped <= boxes.size()) {
+    if (list_pays(step)) {
       margin_ = margin_for(step);
       make_list(boxes, settings_.changes);
       reason_ = "listed: boxes move little, pairs of leaves are kept";
       return true;
     }
     return refit(boxes);
+  }
+  /// A margin of a few frames' motion must be small beside a leaf; and where a list was given up,
+  /// since too little of it could be skipped, boxes must have slowed down a good deal.
+  bool list_pays(double step) const {
+    return step < 0.05 * leaf_size_ && step < 0.5 * step_given_up_;
+  }
+
+  /// Whether the boxes are bit for bit those of the last frame, as far as that is known.
+  bool same_as_previous(Boxes<T> boxes) const {
+    if (!previous_known_) return false;
+    for (std::size_t first = 0; first < boxes.size(); first += stretch)
+      if (!same(boxes.data() + first, previous_.data() + first,
+                std::min(stretch, boxes.size() - first)))
+        return false;
+    return true;
+  }
+  void remember(Boxes<T> boxes) {
+    previous_.assign(boxes.begin(), boxes.end());
+    previous_known_ = true;
   }
   static std::size_t distance(std::size_t a, std::size_t b) { return a < b ? b - a : a - b; }
   T margin_for(double step) const {
@@ -248,8 +274,8 @@ class Blocks {
       note_motion(k, change, motion);
     }
     const bool few = 4 * motion.leaves < tree_.leaves();
-    previous_known_ = few && state_ == State::listed;
-    if (previous_known_) previous_.assign(boxes.begin(), boxes.end());
+    previous_known_ = false;
+    if (few && state_ == State::listed) remember(boxes);
   }
   void gather_staying(Block<T>& now, std::uint32_t k, Boxes<T> boxes) {
     if (boxes.size() >= count_) return gather(now, tree_.ids(k), boxes);
@@ -311,7 +337,6 @@ class Blocks {
   /// Looks at the boxes in the order of the frame, beside a copy of the last frame: best where few
   /// moved.
   void move_those_that_differ(Boxes<T> boxes, Motion& motion) {
-    constexpr std::size_t stretch = 64;
     for (std::size_t first = 0; first < boxes.size(); first += stretch) {
       const std::size_t last = std::min(first + stretch, boxes.size());
       if (same(boxes.data() + first, previous_.data() + first, last - first)) continue;
@@ -326,6 +351,7 @@ class Blocks {
     moved_leaves_.clear();
     if (4 * motion.leaves > tree_.leaves()) previous_known_ = false;
   }
+  static constexpr std::size_t stretch = 64;  ///< boxes compared before looking at the outcome
   static bool same(const Box<T>* a, const Box<T>* b, std::size_t count) {
     const T *x = a->lo, *y = b->lo;
     bool differ = false;
@@ -369,7 +395,7 @@ class Blocks {
     for (std::uint32_t k = 0; k < tree_.leaves(); ++k) tree_.set_reach(k, bounds(tree_.leaf(k)));
     tree_.refit_above();
     previous_known_ = false;
-    if (visits_ > fresh_visits_ + boxes.size() / 2) return false;
+    if (visits_ > fresh_visits_ + boxes.size() / 5) return false;
     write_all_pairs();
     reason_ = "refitted: boxes move too far for a list";
     return true;
@@ -391,6 +417,7 @@ class Blocks {
     }
     tree_.refit_above();
     tree_.join([&](std::uint32_t a, std::uint32_t b) { add_entry(a, b); });
+    work_ = 0;
     for (Entry& entry : entries_) compare(entry, [&](Lanes, int, Lanes) {});
     if (changes == Changes::reported) {
       before_.clear();
@@ -402,8 +429,8 @@ class Blocks {
     leaves_at_first_ = tree_.leaves();
     excess_ = 0;
     state_ = State::listed;
-    previous_known_ = true;
-    previous_.assign(boxes.begin(), boxes.end());
+    full_work_ = work_;
+    remember(boxes);
   }
   void add_entry(std::uint32_t a, std::uint32_t b) {
     Entry& entry = entries_.emplace_back();
@@ -431,9 +458,7 @@ class Blocks {
       work_ += block_width;
     } else {
       // Rows that do not reach the other leaf's bounds have at least that much slack.
-      const Loaded<T> loaded(left);
-      Lanes near = loaded.template overlapping<Closed>(leaves_[entry.b].bounds);
-      loaded.template overlapping<Closed>(leaves_[entry.b].bounds, all_lanes & ~near, slack);
+      Lanes near = Loaded<T>(left).template reaching<Closed>(leaves_[entry.b].bounds, slack);
       work_ += static_cast<std::size_t>(std::popcount(near));
       for (; near; near &= near - 1) {
         const int row = std::countr_zero(near);
@@ -442,9 +467,15 @@ class Blocks {
       }
     }
     if (rows != entry.rows) {
-      for (int row = 0; row < block_width; ++row)
-        if (const Lanes differ = rows[row] ^ entry.rows[row])
-          changed(differ & rows[row], row, differ & entry.rows[row]);
+      for (int four = 0; four < block_width; four += 4) {
+        std::uint64_t differ = four_rows(rows, four) ^ four_rows(entry.rows, four);
+        while (differ) {
+          const int row = std::countr_zero(differ) / 16;
+          const Lanes lanes = static_cast<Lanes>(differ >> (16 * row)) & all_lanes;
+          changed(lanes & rows[four + row], four + row, lanes & entry.rows[four + row]);
+          differ &= ~(std::uint64_t{all_lanes} << (16 * row));
+        }
+      }
       entry.rows = rows;
     }
     // Three roundings on the way to the sum, and the slack itself is a rounded difference of T.
@@ -452,6 +483,12 @@ class Blocks {
     entry.expiry = (travel + static_cast<double>(slack.least()) *
                                  (1 - 2 * static_cast<double>(unit_roundoff<T>))) *
                    (1 - 8 * unit_roundoff<double>);
+  }
+
+  static std::uint64_t four_rows(const std::array<std::uint16_t, block_width>& rows, int first) {
+    std::uint64_t four;
+    std::memcpy(&four, rows.data() + first, sizeof four);
+    return four;
   }
 
   /// Writes the pairs of every entry, each entry's as one segment.
@@ -472,7 +509,7 @@ class Blocks {
 
   /// Brings the list up to this frame; false where so many leaves have left their margins that the
   /// list has lost its use.
-  bool update_list(Boxes<T> boxes) {
+  bool update_list(Boxes<T> boxes, double step) {
     if (boxes.size() > count_ || !jumpers_.empty()) seat_newcomers(boxes);
     const std::size_t escaped = widen_reaches();
     if (3 * escaped > tree_.leaves() + 64) return false;
@@ -490,7 +527,8 @@ class Blocks {
       ended_.clear();
     }
     reason_ = "listed: boxes move little, pairs of leaves are kept";
-    renew_if_due(boxes);
+    give_up_if_useless(step, rewrite);
+    if (state_ == State::listed) renew_if_due(boxes);
     return true;
   }
 
@@ -556,7 +594,10 @@ class Blocks {
   /// Compares every entry whose slack is used up; whether the list of pairs has to be written anew,
   /// since that is cheaper than to change it in so many places.
   bool compare_expired() {
-    const std::size_t many = pairs_.size() / 6 + 64;
+    // Past this many changes the list is written anew, and they need not be known one by one.
+    const std::size_t many = pairs_.size() / 16 + 64;
+    const std::size_t recorded =
+        settings_.changes == Changes::reported ? std::numeric_limits<std::size_t>::max() : many;
     std::size_t changed = 0, kept = 0;
     ended_segments_.clear();
     for (std::size_t e = 0; e < entries_.size(); ++e) {
@@ -570,6 +611,7 @@ class Blocks {
         const std::uint32_t* right = tree_.ids(entry.b);
         compare(entry, [&](Lanes began, int row, Lanes ended) {
           changed += static_cast<std::size_t>(std::popcount(began) + std::popcount(ended));
+          if (changed > recorded) return;
           if (began)
             began_.end_at(write_pairs(began_.room_for(block_width), left[row], right, began));
           if (!ended) return;
@@ -583,7 +625,7 @@ class Blocks {
       }
     }
     entries_.resize(kept);
-    if (changed + pairs_.displaced() > many) return true;
+    if (changed > many || pairs_.displaced() > pairs_.size() / 6 + 64) return true;
     for (std::size_t k = 0; k < ended_.size(); ++k) pairs_.remove(ended_[k], ended_segments_[k]);
     for (const Pair& pair : began_.view()) pairs_.add(pair);
     return false;
@@ -604,12 +646,27 @@ class Blocks {
     const double grown = 1 - static_cast<double>(entries_at_first_) /
                                  static_cast<double>(std::max(entries_.size(), entries_at_first_));
     excess_ += grown * static_cast<double>(work_);
-    if (excess_ < 8 * static_cast<double>(boxes.size()) &&
+    if (excess_ < 4 * static_cast<double>(boxes.size()) &&
         tree_.leaves() < 2 * leaves_at_first_ + 8)
       return;
     tree_.build(order_(boxes), boxes);
     measure_leaves();
     make_list(boxes, Changes::unreported);
+  }
+
+  /// A list of which most has to be compared every frame costs more than joining the tree again,
+  /// unless changes have to be reported. Judged over four frames.
+  void give_up_if_useless(double step, bool rewritten) {
+    // Writing the list anew takes a good half of what comparing everything does.
+    used_ +=
+        static_cast<double>(work_) / static_cast<double>(full_work_ + 1) + (rewritten ? 0.6 : 0);
+    if (++judged_ < 4) return;
+    if (used_ > 1.1 * judged_ && settings_.changes == Changes::unreported) {
+      step_given_up_ = step;
+      state_ = State::loose;
+      previous_known_ = false;
+    }
+    used_ = 0, judged_ = 0;
   }
 
   Settings settings_;
@@ -628,6 +685,10 @@ class Blocks {
   std::size_t entries_at_first_ = 0, work_ = 0;
   std::uint32_t leaves_at_first_ = 0;
   double excess_ = 0;
+  std::size_t full_work_ = 0;
+  double used_ = 0;
+  int judged_ = 0;
+  double step_given_up_ = std::numeric_limits<double>::infinity();
   std::vector<std::uint32_t> escaped_;
 
   std::vector<std::uint32_t> slots_;  ///< of each box: leaf times sixteen plus lane

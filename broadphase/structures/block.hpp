@@ -100,6 +100,14 @@ class Loaded {
     return lanes;
   }
 
+  /// The lanes whose boxes overlap `box`, and takes note of the slack of the others.
+  template <class Contact>
+  Lanes reaching(const Box<T>& box, Slack<T>& slack) const {
+    const Lanes lanes = overlapping<Contact>(box);
+    overlapping<Contact>(box, all_lanes & ~lanes, slack);
+    return lanes;
+  }
+
  private:
   using V = stdx::native_simd<T>;
   static constexpr int width = std::min(static_cast<int>(V::size()), block_width);
@@ -162,17 +170,28 @@ class Loaded<float> {
   template <class Contact>
   Lanes overlapping(const Box<float>& box, Lanes among, Slack<float>& slack) const {
     constexpr int reaches = std::is_same_v<Contact, Closed> ? _CMP_GE_OQ : _CMP_GT_OQ;
+    const __m512 least = depth(box);
+    slack.note(static_cast<__mmask16>(among), least);
+    return _mm512_cmp_ps_mask(least, _mm512_setzero_ps(), reaches);
+  }
+  template <class Contact>
+  Lanes reaching(const Box<float>& box, Slack<float>& slack) const {
+    constexpr int reaches = std::is_same_v<Contact, Closed> ? _CMP_GE_OQ : _CMP_GT_OQ;
+    const __m512 least = depth(box);
+    const __mmask16 lanes = _mm512_cmp_ps_mask(least, _mm512_setzero_ps(), reaches);
+    slack.note(static_cast<__mmask16>(~lanes), least);
+    return lanes;
+  }
+
+ private:
+  __m512 depth(const Box<float>& box) const {
     __m512 depth[3];
     for (int axis = 0; axis < 3; ++axis)
       depth[axis] = _mm512_maskz_min_ps(0xffff, _mm512_set1_ps(box.hi[axis]) - lo_[axis],
                                         hi_[axis] - _mm512_set1_ps(box.lo[axis]));
-    const __m512 least =
-        _mm512_maskz_min_ps(0xffff, depth[0], _mm512_maskz_min_ps(0xffff, depth[1], depth[2]));
-    slack.note(static_cast<__mmask16>(among), least);
-    return _mm512_cmp_ps_mask(least, _mm512_setzero_ps(), reaches);
+    return _mm512_maskz_min_ps(0xffff, depth[0], _mm512_maskz_min_ps(0xffff, depth[1], depth[2]));
   }
 
- private:
   __m512 lo_[3], hi_[3];
 };
 #endif
