@@ -35,9 +35,27 @@ concept Query = requires(Q query, const P& p, std::span<const Candidate> pending
   { Q::patience } -> std::convertible_to<std::size_t>;
 };
 
+/// Pairs waiting to be tested, last in, first out: `reserve` once, then `push` without a check.
+class OpenPairs {
+ public:
+  void clear() { size_ = 0; }
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  /// Makes room for so many more.
+  void reserve(std::size_t more) {
+    if (pairs_.size() < size_ + more) pairs_.resize(2 * (size_ + more));
+  }
+  void push(const NodePair& pair) { pairs_[size_++] = pair; }
+  const NodePair& pop() { return pairs_[--size_]; }
+
+ private:
+  std::vector<NodePair> pairs_;
+  std::size_t size_ = 0;
+};
+
 /// Room that is used again from one traversal to the next.
 struct Workspace {
-  std::vector<NodePair> open;
+  OpenPairs open;
   std::vector<Candidate> pending;
 };
 
@@ -82,13 +100,14 @@ class Traversal {
     } else {
       a_.require(0, counter_);
       b_.require(0, counter_);
-      open_.push_back({0, 0});
+      open_.reserve(1);
+      open_.push({0, 0});
     }
     while (!open_.empty() && !stopped) stopped = look_at<false>(take_open(), 0);
     stopped = stopped || flush();
     if constexpr (Keeping::kept) {
       // What was pushed but not reached stays to be looked at next time.
-      for (const NodePair& pair : open_) keeping_.front.add(pair);
+      while (!open_.empty()) keeping_.front.add(open_.pop());
       if (stopped) keeping_.front.bring_forward(witness_);
     }
     return !stopped;
@@ -98,8 +117,7 @@ class Traversal {
   int take_open() {
     const int count = static_cast<int>(std::min<std::size_t>(W, open_.size()));
     for (int i = 0; i < count; ++i) {
-      const NodePair pair = open_.back();
-      open_.pop_back();
+      const NodePair pair = open_.pop();
       nodes_a_[i] = pair.a, nodes_b_[i] = pair.b;
     }
     return count;
@@ -120,6 +138,7 @@ class Traversal {
   template <bool kFromFront>
   bool look_at(int count, std::size_t first_slot) {
     counter_.tested(static_cast<std::uint64_t>(count));
+    open_.reserve(2 * W);
     const std::uint64_t excluded = test(count);
     if constexpr (Keeping::kept && !kFromFront)
       for (std::uint64_t rest = excluded; rest; rest &= rest - 1) {
@@ -162,12 +181,12 @@ class Traversal {
   void descend(const NodePair& pair, const Node& a, const Node& b) {
     if (a.count || (!b.count && b.size > a.size)) {
       b_.require(b.first, counter_);
-      open_.push_back({pair.a, b.first + 1});
-      open_.push_back({pair.a, b.first});
+      open_.push({pair.a, b.first + 1});
+      open_.push({pair.a, b.first});
     } else {
       a_.require(a.first, counter_);
-      open_.push_back({a.first + 1, pair.b});
-      open_.push_back({a.first, pair.b});
+      open_.push({a.first + 1, pair.b});
+      open_.push({a.first, pair.b});
     }
   }
 
@@ -193,7 +212,7 @@ class Traversal {
   Query& query_;
   Counter& counter_;
   Keeping keeping_;
-  std::vector<NodePair>& open_;
+  OpenPairs& open_;
   std::vector<Candidate>& pending_;
   std::array<std::uint32_t, W> nodes_a_, nodes_b_;
   std::size_t witness_ = 0;

@@ -66,7 +66,7 @@ class Reader {
       else if (key == "axis")
         definition.axes = axes(node);
       else if (key == "series")
-        definition.series = free_settings(node), definition.has_series = true;
+        read_series(node, definition);
       else
         fail(key.source(), "unknown key '" + std::string(key.str()) + "'");
     }
@@ -113,11 +113,17 @@ class Reader {
     fail(node.source(), std::string(what) + " must be a table");
   }
 
-  Settings free_settings(const toml::node& node) const {
-    Settings result;
-    for (auto&& [key, value] : table(node, "series"))
-      result.emplace_back(key.str(), scalar(value, std::string(key.str())));
-    return result;
+  void read_series(const toml::node& node, Definition& definition) const {
+    definition.has_series = true;
+    for (auto&& [key, value] : table(node, "series")) {
+      if (key != "until") {
+        definition.series.emplace_back(key.str(), scalar(value, std::string(key.str())));
+        continue;
+      }
+      const auto frames = value.value_exact<std::int64_t>();
+      if (!frames || *frames < 1) fail(value.source(), "until must be a whole number above 0");
+      definition.series_until = static_cast<std::size_t>(*frames);
+    }
   }
 
   Settings settings(const toml::node& node, std::string_view but) const {

@@ -21,6 +21,7 @@
 ///
 ///     [series]                       # cells to write down frame by frame as well
 ///     seed = 1
+///     until = 1000                   # this many frames of each, at most
 #pragma once
 
 #include <string>
@@ -50,6 +51,7 @@ struct Definition {
   std::vector<Axis> axes;
   Settings series;  ///< labels or parameters that a cell must have to be written frame by frame
   bool has_series = false;
+  std::size_t series_until = static_cast<std::size_t>(-1);  ///< frames of each
   std::string text;  ///< the file as it was
 };
 

@@ -158,8 +158,7 @@ class Experiment {
         rows_(record / (definition.name + ".csv"),
               columns({"repetition", "time_ns", "first_ns", "build_ns", "pairs", "hits",
                        "differing", "n_u", "n_v", "n_p", "front"})),
-        frames_(record / (definition.name + ".frames.csv"),
-                frame_columns()) {
+        frames_(record / (definition.name + ".frames.csv"), frame_columns()) {
     for (const auto& cell : cells_) check(cell);
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       auto& group = by_trace_[trace_key(cells_[i]) + cells_[i]["query"]];
@@ -238,7 +237,8 @@ class Experiment {
       differences.push_back(differing(counted[i], counted.back()));
     time(ready, cells, counted, differences);
     for (std::size_t i = 0; i < cells.size(); ++i)
-      for (std::size_t frame = 0; frame < counted[i].series.size(); ++frame) {
+      for (std::size_t frame = 0;
+           frame < std::min(counted[i].series.size(), definition_.series_until); ++frame) {
         const auto& c = counted[i].series[frame];
         Row row;
         for (const auto& axis : definition_.axes) row.push_back((*cells[i])[axis.name]);

@@ -68,7 +68,8 @@ requires std::is_floating_point_v<T> T select(bool condition, T yes, T no) {
   return condition ? yes : no;
 }
 template <Batched S>
-[[gnu::always_inline]] inline S select(const typename S::mask_type& condition, const S& yes, const S& no) {
+[[gnu::always_inline]] inline S select(const typename S::mask_type& condition, const S& yes,
+                                       const S& no) {
   S result = no;
   stdx::where(condition, result) = yes;
   return result;

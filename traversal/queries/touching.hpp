@@ -16,7 +16,7 @@ class Touching {
  public:
   static constexpr std::string_view name = "touching";
   static constexpr std::string_view description = "do the two surfaces share a point, yes or no";
-  static constexpr std::size_t patience = 0;
+  static constexpr std::size_t patience = 3;
 
   explicit Touching(TriangleTest test = intersect_batch<Exact>) : test_(test) {}
 
