@@ -23,7 +23,10 @@ class Front {
   const std::vector<NodePair>& entries() const { return entries_; }
 
   /// Starts again from the two roots.
-  void restart() { entries_.assign(1, NodePair{0, 0}); }
+  void restart() {
+    entries_.assign(1, NodePair{0, 0});
+    witnessed_ = false;
+  }
 
   /// The entry in `slot` is about to be replaced by what it ends in: at least two calls of `add`
   /// follow for it, and the first fills its place.
@@ -42,10 +45,16 @@ class Front {
   }
 
   /// Makes the entry in `slot` the first to be tested next time.
-  void bring_forward(std::size_t slot) { std::swap(entries_[0], entries_[slot]); }
+  void bring_forward(std::size_t slot) {
+    std::swap(entries_[0], entries_[slot]);
+    witnessed_ = true;
+  }
+  /// Whether entry 0 has been brought forward since the last restart.
+  bool witnessed() const { return witnessed_; }
 
  private:
   std::vector<NodePair> entries_;
+  bool witnessed_ = false;
   std::vector<std::uint32_t> holes_;  // empty between runs
 };
 

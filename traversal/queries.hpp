@@ -4,10 +4,11 @@
 
 #include "hierarchies/geometry/type_list.hpp"
 #include "traversal/queries/contacts.hpp"
+#include "traversal/queries/distance.hpp"
 #include "traversal/queries/touching.hpp"
 
 namespace bvlab {
 
-using Queries = TypeList<Touching, Contacts>;
+using Queries = TypeList<Touching, Contacts, Distance>;
 
 }  // namespace bvlab

@@ -23,15 +23,15 @@ namespace bvlab {
 
 /// A query says which pairs of volumes need no further look, and takes the primitives of the rest.
 ///   excludes(p, q)        a mask over posed volumes p of body a and q of body b
-///   primitives(pending)   takes one candidate or more; says which one (by its index) ends the
-///                         traversal, or a number that is not below pending.size() to go on
+///   primitives(pending)   takes one candidate or more; says whether the traversal can end
 ///   patience              so many candidates may be held back before `primitives` must be called
+///   wants_bound           if there and true: one pair of near leaves is handed over first
 template <class Q, class P>
 concept Query = requires(Q query, const P& p, std::span<const Candidate> pending) {
   { Q::name } -> std::convertible_to<std::string_view>;
   { Q::description } -> std::convertible_to<std::string_view>;
   query.excludes(p, p);
-  { query.primitives(pending) } -> std::same_as<std::size_t>;
+  { query.primitives(pending) } -> std::same_as<Outcome>;
   { Q::patience } -> std::convertible_to<std::size_t>;
 };
 
@@ -73,6 +73,7 @@ namespace detail {
 template <class B, class V, class Query, class Counter, class Keeping>
 class Traversal {
   static constexpr int W = width<B>();
+  using Node = typename Hierarchy<V>::Node;
 
  public:
   Traversal(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Keeping keeping,
@@ -89,11 +90,13 @@ class Traversal {
     open_.clear();
     pending_.clear();
     bool stopped = false;
+    if constexpr (wants_bound()) stopped = find_bound();
     if constexpr (Keeping::kept) {
       const std::size_t end = keeping_.front.size();
       for (std::size_t next = 0; next < end && !stopped;) {
         const int count = take_front(next, end);
-        stopped = look_at<true>(count, next);
+        stopped =
+            look_at<true>(count, next) || (next == 0 && keeping_.front.witnessed() && flush());
         next += static_cast<std::size_t>(count);
         while (open_.size() >= W && !stopped) stopped = look_at<false>(take_open(), 0);
       }
@@ -108,12 +111,47 @@ class Traversal {
     if constexpr (Keeping::kept) {
       // What was pushed but not reached stays to be looked at next time.
       while (!open_.empty()) keeping_.front.add(open_.pop());
-      if (stopped) keeping_.front.bring_forward(witness_);
+      if (witness_ != Outcome::none) keeping_.front.bring_forward(witness_);
     }
     return !stopped;
   }
 
  private:
+  static constexpr bool wants_bound() {
+    if constexpr (requires { Query::wants_bound; }) return Query::wants_bound;
+    return false;
+  }
+
+  /// Goes down to one pair of leaves, always to the nearer child, and hands their primitives over.
+  /// Not where a witness of the last run does that better.
+  bool find_bound() {
+    if constexpr (Keeping::kept)
+      if (keeping_.front.witnessed()) return false;
+    a_.require(0, counter_);
+    b_.require(0, counter_);
+    NodePair pair{0, 0};
+    while (true) {
+      const Node& a = a_.hierarchy().node(pair.a);
+      const Node& b = b_.hierarchy().node(pair.b);
+      if (a.count && b.count) {
+        hold(a, b, Outcome::none);
+        return flush();
+      }
+      counter_.tested(2);
+      if (descends_b(a, b)) {
+        b_.require(b.first, counter_);
+        pair.b = b.first + (gap_of(pair.a, b.first + 1) < gap_of(pair.a, b.first));
+      } else {
+        a_.require(a.first, counter_);
+        pair.a = a.first + (gap_of(a.first + 1, pair.b) < gap_of(a.first, pair.b));
+      }
+    }
+  }
+
+  auto gap_of(std::uint32_t a, std::uint32_t b) const {
+    return gap(a_.volumes()[a], b_.volumes()[b]);
+  }
+
   int take_open() {
     const int count = static_cast<int>(std::min<std::size_t>(W, open_.size()));
     for (int i = 0; i < count; ++i) {
@@ -124,7 +162,9 @@ class Traversal {
   }
 
   int take_front(std::size_t next, std::size_t end) requires Keeping::kept {
-    const int count = static_cast<int>(std::min<std::size_t>(W, end - next));
+    // A witness is tested by itself: most often it settles the matter, or most of it.
+    const std::size_t most = next == 0 && keeping_.front.witnessed() ? 1 : W;
+    const int count = static_cast<int>(std::min(most, end - next));
     for (int i = 0; i < count; ++i) {
       const NodePair pair = keeping_.front[next + static_cast<std::size_t>(i)];
       nodes_a_[i] = pair.a, nodes_b_[i] = pair.b;
@@ -176,10 +216,12 @@ class Traversal {
     }
   }
 
-  using Node = typename Hierarchy<V>::Node;
+  static bool descends_b(const Node& a, const Node& b) {
+    return a.count || (!b.count && b.size > a.size);
+  }
 
   void descend(const NodePair& pair, const Node& a, const Node& b) {
-    if (a.count || (!b.count && b.size > a.size)) {
+    if (descends_b(a, b)) {
       b_.require(b.first, counter_);
       open_.push({pair.a, b.first + 1});
       open_.push({pair.a, b.first});
@@ -199,12 +241,11 @@ class Traversal {
 
   bool flush() {
     if (pending_.empty()) return false;
-    const std::size_t last = query_.primitives(pending_);
-    const bool enough = last < pending_.size();
-    counter_.primitives(enough ? last + 1 : pending_.size());
-    if (enough) witness_ = pending_[last].slot;
+    const Outcome outcome = query_.primitives(pending_);
+    if (outcome.witness != Outcome::none) witness_ = pending_[outcome.witness].slot;
+    counter_.primitives(outcome.enough ? outcome.witness + 1 : pending_.size());
     pending_.clear();
-    return enough;
+    return outcome.enough;
   }
 
   Body<V>& a_;
@@ -215,7 +256,7 @@ class Traversal {
   OpenPairs& open_;
   std::vector<Candidate>& pending_;
   std::array<std::uint32_t, W> nodes_a_, nodes_b_;
-  std::size_t witness_ = 0;
+  std::size_t witness_ = Outcome::none;
 };
 
 }  // namespace detail

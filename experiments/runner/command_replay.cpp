@@ -32,7 +32,7 @@ nlohmann::ordered_json totals_of(const Arguments& arguments, const Trace& trace,
           {"frames", trace.frames},
           {"objects", trace.objects},
           {"pairs", trace.pairs()},
-          {arguments.variant.query, result.hits},
+          {arguments.variant.query == "contacts" ? "contacts" : "touching", result.hits},
           {"n_u", count(result.n_u)},
           {"n_v", count(result.n_v)},
           {"n_p", count(result.n_p)},
@@ -50,6 +50,9 @@ void write_answers(const Arguments& arguments, const Trace& trace, const ReplayR
   if (arguments.variant.query == "touching") {
     const std::size_t shape[] = {trace.frames, trace.pairs()};
     write_npy<std::uint8_t>(arguments.out, shape, result.touching);
+  } else if (arguments.variant.query == "distance") {
+    const std::size_t shape[] = {trace.frames, trace.pairs()};
+    write_npy<double>(arguments.out, shape, result.distances);
   } else {
     const std::size_t shape[] = {result.contacts.size(), 5};
     write_npy<std::uint32_t>(arguments.out, shape,
@@ -96,6 +99,10 @@ void add_replay(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--leaf-size", arguments->variant.leaf_size, "triangles in a leaf, at most")
       ->check(CLI::Range(1u, 1u << 16))
+      ->capture_default_str();
+  command
+      ->add_option("--relative-error", arguments->variant.relative_error,
+                   "distances may be so much above the truth, never below")
       ->capture_default_str();
   command->add_option("--precision", arguments->variant.precision, "see `bvlab list precisions`")
       ->capture_default_str();

@@ -52,7 +52,7 @@ struct Definition {
   Settings series;  ///< labels or parameters that a cell must have to be written frame by frame
   bool has_series = false;
   std::size_t series_until = static_cast<std::size_t>(-1);  ///< frames of each
-  std::string text;  ///< the file as it was
+  std::string text;                                         ///< the file as it was
 };
 
 /// One point of the product: every parameter, and the labels of the axes that are no parameters.

@@ -46,8 +46,8 @@ struct SettingOption {
 
 /// Parameters that say how a trace is answered; all the others say which trace it is.
 bool is_of_variant(const std::string& name) {
-  static const std::set<std::string> names{"volume",    "strategy",  "query", "build",
-                                           "leaf_size", "precision", "peer"};
+  static const std::set<std::string> names{"volume",    "strategy",  "query",          "build",
+                                           "leaf_size", "precision", "relative_error", "peer"};
   return names.contains(name);
 }
 
@@ -116,6 +116,9 @@ std::size_t differing(const ReplayResult& result, const ReplayResult& reference)
   std::size_t count = 0;
   for (std::size_t i = 0; i < reference.touching.size(); ++i)
     count += result.touching[i] != reference.touching[i];
+  for (std::size_t i = 0; i < reference.distances.size(); ++i)
+    count +=
+        std::abs(result.distances[i] - reference.distances[i]) > 1e-12 * reference.distances[i];
   std::vector<std::array<std::uint32_t, 5>> difference;
   std::set_symmetric_difference(result.contacts.begin(), result.contacts.end(),
                                 reference.contacts.begin(), reference.contacts.end(),

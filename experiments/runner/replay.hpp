@@ -39,12 +39,13 @@ struct Variant {
   std::string build = "top-down-principal";
   std::uint32_t leaf_size = 1;
   std::string precision = "exact";
+  double relative_error = 0;  ///< of distances
 };
 
 struct ReplayOptions {
   Count count = Count::off;
   unsigned threads = 1;
-  bool keep_answers = true;  ///< fill `touching` or `contacts`
+  bool keep_answers = true;  ///< fill `touching`, `contacts` or `distances`
   bool keep_series = false;  ///< fill `series`
 };
 
@@ -61,6 +62,7 @@ struct ReplayResult {
   double front = 0;                         ///< mean entries per pair and frame
   std::uint64_t hits = 0;                   ///< touching pairs, or contacts, over all frames
   std::vector<std::uint8_t> touching;       ///< (frames, pairs)
+  std::vector<double> distances;            ///< (frames, pairs)
   std::vector<std::array<std::uint32_t, 5>> contacts;  ///< frame, i, j, triangle of i, of j; sorted
   std::vector<FrameCounts> series;                     ///< one for each frame
 };

@@ -29,8 +29,14 @@ inline double seconds_since(Clock::time_point start) {
 
 namespace detail {
 
-/// What one thread finds out about its share of the pairs. Touching fills cells of the shared
-/// array, contacts a list of its own.
+/// How queries are asked.
+struct Manner {
+  TriangleTest test;
+  double relative_error;
+};
+
+/// What one thread finds out about its share of the pairs. Touching and distances fill cells of the
+/// shared array, contacts a list of its own.
 template <class Query>
 struct Answers;
 
@@ -38,14 +44,14 @@ template <>
 struct Answers<Touching> {
   std::vector<std::uint8_t>* cells;  ///< (frames, pairs), or null where answers are not kept
   std::size_t pairs;
-  TriangleTest test;
+  Manner manner;
   std::uint64_t hits = 0;
 
-  Answers(ReplayResult& result, std::size_t frames, std::size_t pairs, bool keep, TriangleTest test)
-      : cells(keep ? &result.touching : nullptr), pairs(pairs), test(test) {
+  Answers(ReplayResult& result, std::size_t frames, std::size_t pairs, bool keep, Manner manner)
+      : cells(keep ? &result.touching : nullptr), pairs(pairs), manner(manner) {
     if (keep) result.touching.resize(frames * pairs);
   }
-  Touching ask() { return Touching(test); }
+  Touching ask() { return Touching(manner.test); }
   void take(std::size_t frame, std::size_t pair, const ObjectPair&, const Touching& query) {
     hits += query.touching();
     if (cells) (*cells)[frame * pairs + pair] = query.touching();
@@ -54,18 +60,37 @@ struct Answers<Touching> {
 };
 
 template <>
+struct Answers<Distance> {
+  std::vector<double>* cells;  ///< (frames, pairs), or null where answers are not kept
+  std::size_t pairs;
+  Manner manner;
+  std::uint64_t hits = 0;
+
+  Answers(ReplayResult& result, std::size_t frames, std::size_t pairs, bool keep, Manner manner)
+      : cells(keep ? &result.distances : nullptr), pairs(pairs), manner(manner) {
+    if (keep) result.distances.resize(frames * pairs);
+  }
+  Distance ask() { return Distance(manner.relative_error); }
+  void take(std::size_t frame, std::size_t pair, const ObjectPair&, const Distance& query) {
+    hits += query.distance() == 0;
+    if (cells) (*cells)[frame * pairs + pair] = query.distance();
+  }
+  void hand_over(ReplayResult&) {}
+};
+
+template <>
 struct Answers<Contacts> {
   bool keep;
-  TriangleTest test;
+  Manner manner;
   std::uint64_t hits = 0;
   std::vector<Contact> found;
   std::vector<std::array<std::uint32_t, 5>> all;
 
-  Answers(ReplayResult&, std::size_t, std::size_t, bool keep, TriangleTest test)
-      : keep(keep), test(test) {}
+  Answers(ReplayResult&, std::size_t, std::size_t, bool keep, Manner manner)
+      : keep(keep), manner(manner) {}
   Contacts ask() {
     found.clear();
-    return Contacts(found, test);
+    return Contacts(found, manner.test);
   }
   void take(std::size_t frame, std::size_t, const ObjectPair& pair, const Contacts&) {
     hits += found.size();
@@ -83,7 +108,7 @@ template <BoundingVolume V, class Strategy, class Query, class Counter>
 class Share {
  public:
   Share(std::span<const Shape<V>> shapes, const Strategy& strategy, std::size_t first,
-        std::size_t stride, const Trace& trace, TriangleTest test, ReplayResult& result,
+        std::size_t stride, const Trace& trace, Manner manner, ReplayResult& result,
         const ReplayOptions& options)
       : trace_(trace),
         result_(result),
@@ -91,7 +116,7 @@ class Share {
         first_(first),
         stride_(stride),
         engine_(shapes, share_of(trace.objects, first, stride), strategy),
-        answers_(result, trace.frames, trace.pairs(), options.keep_answers, test) {}
+        answers_(result, trace.frames, trace.pairs(), options.keep_answers, manner) {}
 
   void play() {
     const auto start = Clock::now();
@@ -140,7 +165,7 @@ class Share {
 
 template <BoundingVolume V, class Strategy, class Query, class Counter>
 void play(std::span<const Shape<V>> shapes, const Strategy& strategy, const Trace& trace,
-          TriangleTest test, const ReplayOptions& options, ReplayResult& result) {
+          Manner manner, const ReplayOptions& options, ReplayResult& result) {
   if (options.keep_series) result.series.resize(trace.frames);
   const std::size_t pairs = trace.pairs();
   // A series is of all pairs together, so one thread plays it.
@@ -150,7 +175,7 @@ void play(std::span<const Shape<V>> shapes, const Strategy& strategy, const Trac
           : std::clamp<std::size_t>(options.threads, 1, std::max<std::size_t>(pairs, 1));
   std::deque<Share<V, Strategy, Query, Counter>> shares;
   for (std::size_t t = 0; t < threads; ++t)
-    shares.emplace_back(shapes, strategy, t, threads, trace, test, result, options);
+    shares.emplace_back(shapes, strategy, t, threads, trace, manner, result, options);
   const auto start = Clock::now();
   {
     std::vector<std::jthread> helpers;
@@ -188,18 +213,19 @@ ReplayResult replay_with(std::span<const TriangleMesh> meshes, const Trace& trac
   for (std::size_t i = 0; i < trace.objects; ++i)
     shapes.push_back({&meshes[i % meshes.size()], &hierarchies[i % meshes.size()]});
   result.build_seconds = seconds_since(start);
-  TriangleTest test = nullptr;
+  detail::Manner manner{intersect_batch<Exact>, variant.relative_error};
   ListOf<Precisions>::with(variant.precision, [&]<class Precision>(std::type_identity<Precision>) {
-    test = intersect_batch<Precision>;
+    manner.test = intersect_batch<Precision>;
   });
   const bool counted = options.count == Count::on || options.keep_series;
   Strategies::with(name_of(variant.strategy), [&]<class Strategy>(std::type_identity<Strategy>) {
     const auto strategy = made_from<Strategy>(variant.strategy);
     Queries::with(variant.query, [&]<class Query>(std::type_identity<Query>) {
       if (counted)
-        detail::play<V, Strategy, Query, Counting>(shapes, strategy, trace, test, options, result);
+        detail::play<V, Strategy, Query, Counting>(shapes, strategy, trace, manner, options,
+                                                   result);
       else
-        detail::play<V, Strategy, Query, NotCounting>(shapes, strategy, trace, test, options,
+        detail::play<V, Strategy, Query, NotCounting>(shapes, strategy, trace, manner, options,
                                                       result);
     });
   });

@@ -18,6 +18,13 @@ struct Candidate {
   std::size_t slot;    ///< of the front's entry they come from, where a front is kept
 };
 
+/// What a query made of candidates.
+struct Outcome {
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  std::size_t witness = none;  ///< the one worth testing first next time, by its index
+  bool enough = false;         ///< the traversal can end here
+};
+
 /// Which of the pairs (*a[i], *b[i]), i < count <= 64, share a point: bit i is pair i's.
 using TriangleTest = std::uint64_t (*)(const Triangle* const* a, const Triangle* const* b,
                                        int count);

@@ -32,11 +32,12 @@ class Contacts {
     return disjoint(a, b);
   }
 
-  std::size_t primitives(std::span<const Candidate> pending) {
-    return for_each_hit(pending, test_, [&](std::size_t i) {
+  Outcome primitives(std::span<const Candidate> pending) {
+    for_each_hit(pending, test_, [&](std::size_t i) {
       found_.push_back({pending[i].a, pending[i].b});
       return false;
     });
+    return {};
   }
 
  private:

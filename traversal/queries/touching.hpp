@@ -25,10 +25,11 @@ class Touching {
     return disjoint(a, b);
   }
 
-  std::size_t primitives(std::span<const Candidate> pending) {
+  Outcome primitives(std::span<const Candidate> pending) {
     const std::size_t first = for_each_hit(pending, test_, [](std::size_t) { return true; });
-    touching_ = first < pending.size();
-    return first;
+    if (first == pending.size()) return {};
+    touching_ = true;
+    return {.witness = first, .enough = true};
   }
 
   bool touching() const { return touching_; }
