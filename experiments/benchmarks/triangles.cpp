@@ -67,7 +67,8 @@ void measure(const TriangleSet& set) {
 int main(int argc, char** argv) {
   using namespace bvlab;
   for (const TriangleSet& set : triangle_sets) {
-    std::apply([&](auto... precision) { (measure<decltype(precision)>(set), ...); }, Precisions{});
+    Precisions::for_each(
+        [&]<class Precision>(std::type_identity<Precision>) { measure<Precision>(set); });
     // What another library asserts about its input it may abort on: no triangles without area.
     measure("fcl", set, peers::count_touching_fcl);
     if (!set.name.starts_with("without area") && set.name != "slivers")

@@ -7,6 +7,7 @@
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/peers.hpp"
+#include "experiments/runner/box_methods.hpp"
 #include "experiments/runner/commands.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/scenes.hpp"
@@ -45,8 +46,12 @@ const Kind kinds[] = {
     {"volumes", lines<Volumes>},
     {"strategies", lines<Strategies>},
     {"queries", lines<Queries>},
+    {"methods",
+     [] {
+       for (const auto& [name, description] : method_descriptions()) line(name, description);
+     }},
     {"scenes", lines<Scenes>},
-    {"precisions", lines<ListOf<Precisions>>},
+    {"precisions", lines<Precisions>},
     {"builds", lines<Builds>},
     {"meshes", [] { lines_of(formula_meshes()); }},
     {"peers", [] { lines_of(peers()); }},

@@ -58,13 +58,11 @@ using Decide = std::vector<std::uint8_t> (*)(const std::vector<Triangle>&);
 
 Decide decider(const std::string& name) {
   Decide decide = nullptr;
-  std::string names;
-  const auto offer = [&]<class Precision>(Precision) {
-    if (Precision::name == name) decide = verdicts_on<Precision>;
-    names += (names.empty() ? "" : ", ") + std::string(Precision::name);
-  };
-  std::apply([&](auto... precision) { (offer(precision), ...); }, Precisions{});
-  if (!decide) throw Unusable("--precision", "unknown name '" + name + "'; there are " + names);
+  const bool known = Precisions::with(name, [&]<class Precision>(std::type_identity<Precision>) {
+    decide = verdicts_on<Precision>;
+  });
+  if (!known)
+    throw Unusable("--precision", "unknown name '" + name + "'; there are " + Precisions::names());
   return decide;
 }
 

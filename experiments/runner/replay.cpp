@@ -53,7 +53,7 @@ void check(const Variant& variant) {
   check_name<Volumes>("--volume", variant.volume);
   check_name<Strategies>("--strategy", name_of(variant.strategy));
   check_name<Queries>("--query", variant.query);
-  check_name<ListOf<Precisions>>("--precision", variant.precision);
+  check_name<Precisions>("--precision", variant.precision);
   check_name<Builds>("--build", variant.build);
   Strategies::with(name_of(variant.strategy),
                    [&]<class S>(std::type_identity<S>) { made_from<S>(variant.strategy); });

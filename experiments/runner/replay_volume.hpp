@@ -214,7 +214,7 @@ ReplayResult replay_with(std::span<const TriangleMesh> meshes, const Trace& trac
     shapes.push_back({&meshes[i % meshes.size()], &hierarchies[i % meshes.size()]});
   result.build_seconds = seconds_since(start);
   detail::Manner manner{intersect_batch<Exact>, variant.relative_error};
-  ListOf<Precisions>::with(variant.precision, [&]<class Precision>(std::type_identity<Precision>) {
+  Precisions::with(variant.precision, [&]<class Precision>(std::type_identity<Precision>) {
     manner.test = intersect_batch<Precision>;
   });
   const bool counted = options.count == Count::on || options.keep_series;

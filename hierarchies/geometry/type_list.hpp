@@ -40,17 +40,4 @@ struct TypeList {
   }
 };
 
-namespace detail {
-template <class Tuple>
-struct ListOfTuple;
-template <class... Types>
-struct ListOfTuple<std::tuple<Types...>> {
-  using type = TypeList<Types...>;
-};
-}  // namespace detail
-
-/// The types of a std::tuple as a list.
-template <class Tuple>
-using ListOf = typename detail::ListOfTuple<Tuple>::type;
-
 }  // namespace bvlab

@@ -59,8 +59,8 @@ void expect_one_by_one(const std::vector<Pair>& batch) {
 
 /// A batch says of each pair what is said of it alone, at every precision.
 void expect_right_at_once(std::vector<Pair>& batch) {
-  std::apply([&](auto... precision) { (expect_one_by_one<decltype(precision)>(batch), ...); },
-             Precisions{});
+  Precisions::for_each(
+      [&]<class Precision>(std::type_identity<Precision>) { expect_one_by_one<Precision>(batch); });
   batch.clear();
 }
 

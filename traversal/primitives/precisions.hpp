@@ -4,7 +4,8 @@
 #pragma once
 
 #include <string_view>
-#include <tuple>
+
+#include "hierarchies/geometry/type_list.hpp"
 
 namespace bvlab {
 
@@ -33,6 +34,6 @@ struct Float32 {
   static constexpr bool has_fallback = false;
 };
 
-using Precisions = std::tuple<Exact, Float64, Float32>;
+using Precisions = TypeList<Exact, Float64, Float32>;
 
 }  // namespace bvlab
