@@ -9,8 +9,9 @@
 ///
 /// What the talk leaves open is decided so:
 /// - a rebuild is not itself a run without growth, so the run after it always uses the list;
-/// - a run that a hit cuts short counts as growth where the list grew, and otherwise says nothing:
-///   it did not see the whole list, so it neither adds to the runs without growth nor ends them;
+/// - a run that a hit cuts short counts like any other: as growth where the list grew, and as a run
+///   without growth where it did not (were it not to count, the list of two bodies in lasting
+///   contact would never be rebuilt, and in long runs it grows to ten times what it need be);
 /// - the pair that was hit stays in the list and is tested first in the next run (a witness);
 /// - pairs that were pushed but not reached when a hit cut a run short stay in the list.
 #pragma once
@@ -42,12 +43,9 @@ class Deferred {
       b.require(0, counter);
     }
     const std::size_t before = front_.size();
-    const bool finished = traverse<B>(a, b, query, counter, workspace, front_);
+    traverse<B>(a, b, query, counter, workspace, front_);
     if (rebuild) return;
-    if (front_.size() > before)
-      still_ = 0;
-    else if (finished)
-      ++still_;
+    still_ = front_.size() > before ? 0 : still_ + 1;
   }
 
   const Front& front() const { return front_; }
