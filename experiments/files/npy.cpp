@@ -3,11 +3,8 @@
 
 #include <bit>
 #include <cctype>
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
 #include <cstring>
-#include <memory>
 
 #include "experiments/files/unusable.hpp"
 
@@ -149,40 +146,28 @@ template <class T>
 std::size_t checked_size(const Header& header, std::size_t bytes, const std::string& name,
                          std::span<const std::size_t> shape) {
   if (header.type != descriptor<T> && !(sizeof(T) == 1 && header.type == "u1"))
-    throw Unusable(name, "holds '" + header.type + "' where '" + std::string(descriptor<T>) +
-                             "' is needed");
+    throw Unusable(
+        name, "holds '" + header.type + "' where '" + std::string(descriptor<T>) + "' is needed");
   bool fits = header.shape.size() == shape.size();
   for (std::size_t i = 0; fits && i < shape.size(); ++i)
     fits = shape[i] == any_length || shape[i] == header.shape[i];
   if (!fits)
-    throw Unusable(name, "has shape " + shown(header.shape) + " where " + shown(shape) +
-                             " is needed");
+    throw Unusable(name,
+                   "has shape " + shown(header.shape) + " where " + shown(shape) + " is needed");
   if (header.fortran_order) throw Unusable(name, "is in Fortran order; C order is needed");
   std::size_t size = 1;
   for (const std::size_t length : header.shape)
-    if (length == 0) return bytes == header.data_offset ? 0 : throw Unusable(name, "trailing bytes");
+    if (length == 0)
+      return bytes == header.data_offset ? 0 : throw Unusable(name, "trailing bytes");
   for (const std::size_t length : header.shape)
-    if (__builtin_mul_overflow(size, length, &size)) throw Unusable(name, "truncated: shape too large");
+    if (__builtin_mul_overflow(size, length, &size))
+      throw Unusable(name, "truncated: shape too large");
   const std::size_t held = (bytes - header.data_offset) / sizeof(T);
   if (held < size)
     throw Unusable(name, "truncated: holds " + std::to_string(held) + " of " +
                              std::to_string(size) + " values");
   if ((bytes - header.data_offset) != size * sizeof(T)) throw Unusable(name, "trailing bytes");
   return size;
-}
-
-std::string slurp(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw Unusable(path.string(), "is a directory");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             std::fclose);
-  if (!file) throw Unusable(path.string(), std::strerror(errno));
-  std::string bytes;
-  if (const auto size = std::filesystem::file_size(path, ignored); !ignored) bytes.reserve(size + 1);
-  char block[1 << 16];
-  while (const std::size_t n = std::fread(block, 1, sizeof block, file.get())) bytes.append(block, n);
-  if (std::ferror(file.get())) throw Unusable(path.string(), "cannot be read");
-  return bytes;
 }
 
 }  // namespace
@@ -201,12 +186,12 @@ Array<T> parse_npy(std::string_view bytes, const std::string& name,
 
 template <class T>
 Array<T> read_npy(const std::filesystem::path& path, std::span<const std::size_t> shape) {
-  return parse_npy<T>(slurp(path), path.string(), shape);
+  return parse_npy<T>(read_whole(path), path.string(), shape);
 }
 
 std::variant<Array<float>, Array<double>> read_npy_floating(const std::filesystem::path& path,
                                                             std::span<const std::size_t> shape) {
-  const std::string bytes = slurp(path);
+  const std::string bytes = read_whole(path);
   if (parse_header(bytes, path.string()).type == descriptor<float>)
     return parse_npy<float>(bytes, path.string(), shape);
   return parse_npy<double>(bytes, path.string(), shape);
@@ -227,10 +212,10 @@ std::string npy_header(std::span<const std::size_t> shape) {
   return header + dictionary;
 }
 
-#define BVLAB_INSTANTIATE(T)                                                                  \
-  template Array<T> parse_npy<T>(std::string_view, const std::string&,                        \
-                                 std::span<const std::size_t>);                               \
-  template Array<T> read_npy<T>(const std::filesystem::path&, std::span<const std::size_t>);  \
+#define BVLAB_INSTANTIATE(T)                                                                 \
+  template Array<T> parse_npy<T>(std::string_view, const std::string&,                       \
+                                 std::span<const std::size_t>);                              \
+  template Array<T> read_npy<T>(const std::filesystem::path&, std::span<const std::size_t>); \
   template std::string npy_header<T>(std::span<const std::size_t>);
 BVLAB_INSTANTIATE(float)
 BVLAB_INSTANTIATE(double)

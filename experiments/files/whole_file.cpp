@@ -6,9 +6,13 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
+#include <memory>
 #include <stdexcept>
-#include <string>
+#include <utility>
+
+#include "experiments/files/unusable.hpp"
 
 namespace bvlab {
 namespace {
@@ -17,57 +21,140 @@ namespace {
   throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(error));
 }
 
-bool write_all(int file, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(file, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    text.remove_prefix(static_cast<std::size_t>(written));
+/// An open file; closed at the end unless that has been done and its outcome looked at.
+class Descriptor {
+ public:
+  explicit Descriptor(int file) : file_(file) {}
+  Descriptor(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (file_ >= 0) ::close(file_);
   }
+  explicit operator bool() const { return file_ >= 0; }
+  int get() const { return file_; }
+  bool close() { return ::close(std::exchange(file_, -1)) == 0; }
+
+  bool write(std::span<const std::string_view> parts) const {
+    for (std::string_view text : parts)
+      while (!text.empty()) {
+        const ssize_t written = ::write(file_, text.data(), text.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return false;
+        text.remove_prefix(static_cast<std::size_t>(written));
+      }
+    return true;
+  }
+
+  /// All there, with the rights that the file is to have, and on the disk.
+  bool finish(std::span<const std::string_view> parts, mode_t mode) const {
+    return write(parts) && ::fchmod(file_, mode) == 0 && ::fsync(file_) == 0;
+  }
+
+ private:
+  int file_;
+};
+
+/// A device or a pipe (/dev/stdout, say) has no "beside": it is written straight through.
+void write_through(const std::filesystem::path& path, std::span<const std::string_view> parts) {
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  if (!file || !file.write(parts) || !file.close()) fail(path, errno);
+}
+
+/// A name beside `path` that is free now.
+std::string name_beside(const std::filesystem::path& path, int attempt) {
+  return path.string() + ".partial-" + std::to_string(::getpid()) + "." + std::to_string(attempt);
+}
+
+/// Gives the nameless file its name. A name that is taken can only be replaced by renaming, so the
+/// file, whole already, bears another one for that moment.
+bool give_name(const Descriptor& file, const std::filesystem::path& path) {
+  const std::string self = "/proc/self/fd/" + std::to_string(file.get());
+  const auto link = [&](const char* name) {
+    return ::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
+  };
+  if (link(path.c_str())) return true;
+  if (errno != EEXIST) return false;
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    const std::string beside = name_beside(path, attempt);
+    if (!link(beside.c_str())) {
+      if (errno == EEXIST) continue;
+      return false;
+    }
+    if (::rename(beside.c_str(), path.c_str()) == 0) return true;
+    const int error = errno;
+    ::unlink(beside.c_str());
+    errno = error;
+    return false;
+  }
+  return false;
+}
+
+/// False, with nothing done, where the file system (or a machine without /proc) has no such files.
+bool write_nameless(const std::filesystem::path& path, std::span<const std::string_view> parts,
+                    mode_t mode) {
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  Descriptor file(::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600));
+  struct stat ignored;
+  if (!file || ::stat("/proc/self/fd", &ignored) != 0) return false;
+  if (!file.finish(parts, mode) || !give_name(file, path)) fail(path, errno);
   return true;
+}
+
+void write_beside(const std::filesystem::path& path, std::span<const std::string_view> parts,
+                  mode_t mode) {
+  std::string beside = path.string() + ".partial-XXXXXX";
+  Descriptor file(::mkostemp(beside.data(), O_CLOEXEC));
+  if (!file) fail(path, errno);
+  if (file.finish(parts, mode) && file.close() && ::rename(beside.c_str(), path.c_str()) == 0)
+    return;
+  const int error = errno;
+  ::unlink(beside.c_str());
+  fail(path, error);
 }
 
 }  // namespace
 
+std::string read_whole(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw Unusable(path.string(), "is a directory");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             std::fclose);
+  if (!file) throw Unusable(path.string(), std::strerror(errno));
+  std::string bytes;
+  if (const auto size = std::filesystem::file_size(path, ignored); !ignored)
+    bytes.reserve(size + 1);
+  char block[1 << 16];
+  while (const std::size_t n = std::fread(block, 1, sizeof block, file.get()))
+    bytes.append(block, n);
+  if (std::ferror(file.get())) throw Unusable(path.string(), "cannot be read");
+  return bytes;
+}
+
 void write_whole(const std::filesystem::path& path, std::span<const std::string_view> parts) {
   struct stat status;
   const bool exists = ::stat(path.c_str(), &status) == 0;
-  // A device or a pipe (/dev/stdout, say) has no "beside": it is written straight through.
-  if (exists && !S_ISREG(status.st_mode)) {
-    const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-    if (file < 0) fail(path, errno);
-    for (const auto part : parts)
-      if (!write_all(file, part)) {
-        const int error = errno;
-        ::close(file);
-        fail(path, error);
-      }
-    if (::close(file) != 0) fail(path, errno);
-    return;
-  }
-  std::string beside = path.string() + ".partial-XXXXXX";
-  const int file = ::mkostemp(beside.data(), O_CLOEXEC);
-  if (file < 0) fail(path, errno);
-  const auto give_up = [&](int error) {
-    ::unlink(beside.c_str());
-    fail(path, error);
-  };
-  for (const auto part : parts)
-    if (!write_all(file, part)) {
-      const int error = errno;
-      ::close(file);
-      give_up(error);
-    }
+  if (exists && !S_ISREG(status.st_mode)) return write_through(path, parts);
   const mode_t mask = ::umask(0);
   ::umask(mask);
   const mode_t mode = exists ? (status.st_mode & 07777) : (0666 & ~mask);
-  if (::fchmod(file, mode) != 0 || ::fsync(file) != 0) {
-    const int error = errno;
-    ::close(file);
-    give_up(error);
+  if (!write_nameless(path, parts, mode)) write_beside(path, parts, mode);
+}
+
+void require_place(const std::string& option, const std::filesystem::path& path) {
+  if (path.empty()) return;
+  const auto refuse = [&](const std::string& what) {
+    throw Unusable(option + " " + path.string(), what);
+  };
+  struct stat status;
+  if (::stat(path.c_str(), &status) == 0) {
+    if (S_ISDIR(status.st_mode)) refuse("is a directory");
+    if (!S_ISREG(status.st_mode)) return;  // a device says itself what it thinks of writing
   }
-  if (::close(file) != 0) give_up(errno);
-  if (::rename(beside.c_str(), path.c_str()) != 0) give_up(errno);
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  if (::stat(folder.c_str(), &status) != 0)
+    refuse("folder " + folder.string() + ": " + std::strerror(errno));
+  if (!S_ISDIR(status.st_mode)) refuse("folder " + folder.string() + ": is no folder");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    refuse("folder " + folder.string() + ": " + std::strerror(errno));
 }
 
 }  // namespace bvlab

@@ -1,20 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A file that appears whole or not at all: written beside its place under another name, flushed
-/// to the disk, then renamed.
+/// A file as one piece: read as a whole, and written so that it appears whole or not at all, also
+/// when the program is killed.
 #pragma once
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace bvlab {
 
-/// Replaces `path` by `parts`, one after the other. Throws std::runtime_error naming the file and
-/// the system's reason; then `path` is as it was before and nothing is left beside it.
+/// All bytes of a file. Throws Unusable naming the file and the system's reason.
+std::string read_whole(const std::filesystem::path& path);
+
+/// Replaces `path` by `parts`, one after the other: written without a name (or, where the file
+/// system knows no such files, beside its place under another name), flushed to the disk, then
+/// given its name. Throws std::runtime_error naming the file and the system's reason; then `path`
+/// is as it was before and nothing is left beside it.
 void write_whole(const std::filesystem::path& path, std::span<const std::string_view> parts);
 
 inline void write_whole(const std::filesystem::path& path, std::string_view text) {
   write_whole(path, std::span(&text, 1));
 }
+
+/// Throws Unusable, naming the option and the path, if nothing can be written at `path`: its folder
+/// is missing or read-only, or it is a folder itself. Asked before the work is done, not after.
+/// An empty path asks for nothing.
+void require_place(const std::string& option, const std::filesystem::path& path);
 
 }  // namespace bvlab

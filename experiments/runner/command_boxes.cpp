@@ -11,6 +11,7 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/runner/box_methods.hpp"
 #include "experiments/runner/commands.hpp"
+#include "experiments/runner/whole_number.hpp"
 
 namespace bvlab {
 namespace {
@@ -80,6 +81,8 @@ Found find(const Arguments& arguments, const Array<T>& trace) {
 void run(const Arguments& arguments) {
   make_method<float>(arguments.method,
                      Settings{});  // refuses an unknown name before the file is read
+  require_place("--out", arguments.out);
+  require_place("--json", arguments.json);
   static constexpr std::size_t shape[] = {any_length, any_length, 6};
   const auto trace = read_npy_floating(arguments.trace, shape);
   const Found found = std::visit([&](const auto& array) { return find(arguments, array); }, trace);
@@ -127,7 +130,7 @@ void add_boxes(CLI::App& app) {
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
   command->add_option("--threads", arguments->threads)
-      ->check(CLI::Range(1, 1024))
+      ->check(whole_number(1, 1024))
       ->capture_default_str();
   command->add_option("--out", arguments->out,
                       "overlapping pairs: uint32 (k, 3), frame, i, j, sorted");

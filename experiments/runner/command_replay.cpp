@@ -7,6 +7,7 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/runner/commands.hpp"
 #include "experiments/runner/replay.hpp"
+#include "experiments/runner/whole_number.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 
 namespace bvlab {
@@ -63,6 +64,8 @@ void write_answers(const Arguments& arguments, const Trace& trace, const ReplayR
 
 void run(const Arguments& arguments) {
   check(arguments.variant);
+  require_place("--out", arguments.out);
+  require_place("--json", arguments.json);
   std::vector<TriangleMesh> meshes;
   for (const auto& file : arguments.meshes) meshes.push_back(read_mesh(file));
   const Trace trace = read_trace(arguments.trace);
@@ -98,7 +101,7 @@ void add_replay(CLI::App& app) {
   command->add_option("--build", arguments->variant.build, "see `bvlab list builds`")
       ->capture_default_str();
   command->add_option("--leaf-size", arguments->variant.leaf_size, "triangles in a leaf, at most")
-      ->check(CLI::Range(1u, 1u << 16))
+      ->check(whole_number(1, 1u << 16))
       ->capture_default_str();
   command
       ->add_option("--relative-error", arguments->variant.relative_error,
@@ -107,7 +110,7 @@ void add_replay(CLI::App& app) {
   command->add_option("--precision", arguments->variant.precision, "see `bvlab list precisions`")
       ->capture_default_str();
   command->add_option("--threads", arguments->threads)
-      ->check(CLI::Range(1u, 1024u))
+      ->check(whole_number(1, 1024))
       ->capture_default_str();
   command->add_option("--count", arguments->count, "on: fill n_u, n_v, n_p (and time that)")
       ->check(CLI::IsMember({"on", "off"}))

@@ -48,6 +48,7 @@ void add_run(CLI::App& app) {
                       "folder of the record (default: a new one, experiments/record/<date>.<n>)");
   command->callback([definition, record] {
     const Definition read = read_definition(*definition);
+    check(read);
     const std::filesystem::path folder =
         record->empty() ? fresh_record("experiments/record") : std::filesystem::path(*record);
     open_record(folder, read.text, "bvlab run " + *definition + " --record " + folder.string());

@@ -8,6 +8,7 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/runner/commands.hpp"
 #include "experiments/runner/touches_any.hpp"
+#include "experiments/runner/whole_number.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/read_mesh.hpp"
@@ -44,6 +45,8 @@ void write_meshes(const std::string& directory, const std::vector<std::string>& 
 
 template <class S>
 void run(const S& scene, const Arguments& arguments) {
+  require_place("--out", arguments.out);
+  if constexpr (requires { scene.check(); }) scene.check();
   std::vector<std::string> names;
   std::vector<TriangleMesh> meshes;
   std::vector<Extent> extents;
@@ -67,9 +70,19 @@ struct Adding {
     if constexpr (std::is_same_v<T, Length>) {
       command
           .add_option_function<std::string>(
-              flag, [&value](const std::string& word) { value = length_from(word); }, text)
+              flag,
+              [&value, flag](const std::string& word) {
+                try {
+                  value = length_from(word);
+                } catch (const Unusable& fault) {
+                  throw Unusable(flag, fault.what());
+                }
+              },
+              text)
           ->type_name("LENGTH")
           ->default_str(text_of(value));
+    } else if constexpr (std::is_unsigned_v<T>) {
+      command.add_option(flag, value, text)->check(whole_number())->capture_default_str();
     } else {
       command.add_option(flag, value, text)->capture_default_str();
     }
@@ -90,6 +103,7 @@ void add(CLI::App& parent) {
       "--shape", arguments->names,
       "the same, a mesh by its name: bunny (where none is given), " + formula_mesh_names());
   command->add_option("--polygons", arguments->polygons, "triangles of each mesh given by name")
+      ->check(whole_number())
       ->capture_default_str();
   command->footer(
       "A LENGTH is a number, or one followed by `leaf` (radii of the smallest leaf "

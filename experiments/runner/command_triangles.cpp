@@ -68,6 +68,8 @@ Decide decider(const std::string& name) {
 
 void triangles(const Arguments& arguments) {
   const Decide decide = decider(arguments.precision);
+  require_place("--out", arguments.out);
+  require_place("--json", arguments.json);
   const std::vector<Triangle> corners = read_pairs(arguments.pairs);
   const auto start = std::chrono::steady_clock::now();
   const std::vector<std::uint8_t> verdicts = decide(corners);

@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
+#include <set>
 #include <sstream>
 
 #include "experiments/files/unusable.hpp"
+#include "experiments/files/whole_file.hpp"
 #include "experiments/scenes/scenes.hpp"
 
 namespace bvlab {
@@ -46,6 +47,7 @@ class Reader {
   explicit Reader(const std::string& name) : name_(name) {}
 
   Definition read(const std::string& text) {
+    check_depth(text);
     toml::table table;
     try {
       table = toml::parse(text, name_);
@@ -54,6 +56,7 @@ class Reader {
     }
     Definition definition;
     definition.text = text;
+    definition.file = name_;
     for (auto&& [key, node] : table) {
       if (key == "name")
         definition.name = string(node, "name");
@@ -72,12 +75,50 @@ class Reader {
     }
     if (definition.name.empty() || definition.name.find('/') != std::string::npos)
       throw Unusable(name_, "needs a name (without '/')");
+    check_size(definition.axes);
+    check_series(definition);
     return definition;
   }
 
  private:
   [[noreturn]] void fail(const toml::source_region& where, const std::string& what) const {
     throw Unusable(name_, "line " + std::to_string(where.begin.line) + ": " + what);
+  }
+
+  /// Keys with dots make tables in tables, as deep as the file likes: reading them,
+  /// and giving them back, takes stack for each.
+  void check_depth(const std::string& text) const {
+    constexpr std::ptrdiff_t deepest = 1000;
+    std::istringstream lines(text);
+    std::size_t number = 0;
+    for (std::string line; ++number, std::getline(lines, line);)
+      if (std::count(line.begin(), line.end(), '.') > deepest)
+        throw Unusable(name_, "line " + std::to_string(number) + ": more than " +
+                                  std::to_string(deepest) + " dots");
+  }
+
+  void check_size(const std::vector<Definition::Axis>& axes) const {
+    std::size_t cells = 1;
+    for (const auto& axis : axes)
+      if ((cells *= axis.values.size()) > most_cells)
+        throw Unusable(name_, "axis '" + axis.name + "': the axes up to this one multiply into " +
+                                  std::to_string(cells) + " cells; " + std::to_string(most_cells) +
+                                  " are the most");
+  }
+
+  void check_series(const Definition& definition) const {
+    for (const auto& [key, value] : definition.series) {
+      std::string names;
+      bool known = false;
+      const auto offer = [&, &key = key](const std::string& name) {
+        known = known || name == key;
+        names += (names.empty() ? "" : ", ") + name;
+      };
+      for (const auto& axis : definition.axes)
+        if (!axis.is_parameter) offer(axis.name);
+      for (const auto& [name, ignored] : default_parameters()) offer(name);
+      if (!known) throw Unusable(name_, "series: unknown '" + key + "'; there are " + names);
+    }
   }
 
   std::string string(const toml::node& node, const std::string& key) const {
@@ -97,6 +138,12 @@ class Reader {
     if (const auto value = node.value_exact<std::int64_t>()) return std::to_string(*value);
     if (const auto value = node.value_exact<double>()) return shortest(*value);
     fail(node.source(), "'" + key + "' must be a number or a string");
+  }
+
+  static bool is_parameter(const std::string& name) {
+    const auto& all = default_parameters();
+    return std::any_of(all.begin(), all.end(),
+                       [&](const auto& each) { return each.first == name; });
   }
 
   void known(const std::string& parameter, const toml::source_region& where) const {
@@ -141,7 +188,12 @@ class Reader {
     const auto* array = node.as_array();
     if (!array) fail(node.source(), "axes are written as [[axis]]");
     std::vector<Definition::Axis> result;
-    for (auto&& each : *array) result.push_back(axis(table(each, "an axis")));
+    for (auto&& each : *array) {
+      result.push_back(axis(table(each, "an axis")));
+      for (std::size_t i = 0; i + 1 < result.size(); ++i)
+        if (result[i].name == result.back().name)
+          fail(each.source(), "a second axis '" + result[i].name + "'");
+    }
     return result;
   }
 
@@ -157,7 +209,11 @@ class Reader {
     const auto* list = (values ? values : tables)->as_array();
     if (!list || list->empty()) fail(from.source(), "axis '" + axis.name + "' has no values");
     axis.is_parameter = values != nullptr;
-    if (values) known(axis.name, name->source());
+    if (values)
+      known(axis.name, name->source());
+    else if (is_parameter(axis.name))
+      fail(name->source(), "axis '" + axis.name + "' is a parameter: it needs values");
+    std::set<std::string> labels;
     for (auto&& each : *list) {
       if (values) {
         const std::string value = scalar(each, axis.name);
@@ -168,6 +224,9 @@ class Reader {
         if (!label) fail(one.source(), "a value of axis '" + axis.name + "' needs a name");
         axis.values.push_back({string(*label, "a value's name"), settings(one, "name")});
       }
+      // Cells are told apart by what stands in their row.
+      if (const auto& label = axis.values.back().label; !labels.insert(label).second)
+        fail(each.source(), "axis '" + axis.name + "' has '" + label + "' twice");
     }
     return axis;
   }
@@ -213,10 +272,7 @@ Definition parse_definition(const std::string& text, const std::string& name) {
 }
 
 Definition read_definition(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw Unusable(path, "cannot be read");
-  return parse_definition(text.str(), path);
+  return parse_definition(read_whole(path), path);
 }
 
 std::vector<Cell> cells_of(const Definition& definition) {

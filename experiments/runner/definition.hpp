@@ -53,6 +53,7 @@ struct Definition {
   bool has_series = false;
   std::size_t series_until = static_cast<std::size_t>(-1);  ///< frames of each
   std::string text;                                         ///< the file as it was
+  std::string file;                                         ///< for messages
 };
 
 /// One point of the product: every parameter, and the labels of the axes that are no parameters.
@@ -66,6 +67,10 @@ struct Cell {
 
 /// All parameters, in the order of a record's columns, with their defaults.
 const Settings& default_parameters();
+
+/// No experiment has more; what multiplies into more is a slip of the pen, and is refused before
+/// memory runs out.
+inline constexpr std::size_t most_cells = 100000;
 
 /// Throws Unusable naming the file and the line or the key.
 Definition read_definition(const std::string& path);

@@ -36,7 +36,11 @@ struct SettingOption {
     value = cell[name];
   }
   void operator()(std::string_view name, Length& value, std::string_view) const {
-    value = length_from(cell[name]);
+    try {
+      value = length_from(cell[name]);
+    } catch (const Unusable& fault) {
+      throw Unusable(std::string(name), fault.what());
+    }
   }
   template <class T>
   void operator()(std::string_view name, T& value, std::string_view) const {
@@ -82,23 +86,35 @@ std::vector<TriangleMesh> meshes_of(const Cell& cell) {
   return meshes;
 }
 
+/// Calls `use` with the cell's scene, its options set.
+template <class Use>
+void with_scene(const Cell& cell, Use&& use) {
+  const bool known = Scenes::with(cell["scene"], [&]<class S>(std::type_identity<S>) {
+    S scene;
+    scene.visit_options(SettingOption{cell});
+    use(scene);
+  });
+  if (!known) throw Unusable("no scene '" + cell["scene"] + "'; there are " + Scenes::names());
+}
+
 Prepared prepared(const Cell& cell) {
   Prepared ready;
   ready.meshes = meshes_of(cell);
   std::vector<Extent> extents;
   for (const auto& mesh : ready.meshes) extents.push_back(extent_of(mesh));
-  const bool known = Scenes::with(cell["scene"], [&]<class S>(std::type_identity<S>) {
-    S scene;
-    scene.visit_options(SettingOption{cell});
+  with_scene(cell, [&](const auto& scene) {
     auto array = scene.generate(extents, touches_any(ready.meshes, scene.objects));
     ready.trace = {array.shape[0], array.shape[1], std::move(array.data)};
   });
-  if (!known) throw Unusable("no scene '" + cell["scene"] + "'; there are " + Scenes::names());
   return ready;
 }
 
 void check(const Cell& cell) {
   check(variant_of(cell));
+  number<std::size_t>("polygons", cell["polygons"]);
+  with_scene(cell, [](const auto& scene) {
+    if constexpr (requires { scene.check(); }) scene.check();
+  });
   if (cell["peer"].empty()) return;
   const Peer* const other = peer(cell["peer"]);
   if (!other) throw Unusable("no peer '" + cell["peer"] + "'; there are " + peer_names());
@@ -162,7 +178,6 @@ class Experiment {
               columns({"repetition", "time_ns", "first_ns", "build_ns", "pairs", "hits",
                        "differing", "n_u", "n_v", "n_p", "front"})),
         frames_(record / (definition.name + ".frames.csv"), frame_columns()) {
-    for (const auto& cell : cells_) check(cell);
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       auto& group = by_trace_[trace_key(cells_[i]) + cells_[i]["query"]];
       if (group.empty()) order_.push_back(&group);
@@ -239,16 +254,21 @@ class Experiment {
     for (std::size_t i = 0; i < cells.size(); ++i)
       differences.push_back(differing(counted[i], counted.back()));
     time(ready, cells, counted, differences);
-    for (std::size_t i = 0; i < cells.size(); ++i)
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      Row key;
+      for (const auto& axis : definition_.axes) key.push_back((*cells[i])[axis.name]);
+      // A run that was killed between the two files has left this part here and not there.
+      frames_.forget(key);
       for (std::size_t frame = 0;
            frame < std::min(counted[i].series.size(), definition_.series_until); ++frame) {
         const auto& c = counted[i].series[frame];
         Row row;
-        for (const auto& axis : definition_.axes) row.push_back((*cells[i])[axis.name]);
+        for (const auto& label : key) row.push_back(label);
         for (const auto value : {std::uint64_t{frame}, c.n_u, c.n_v, c.n_p, c.front, c.hits})
           row.push_back(std::to_string(value));
         frames_.add(std::move(row));
       }
+    }
     if (definition_.has_series) frames_.save();
     rows_.save();
   }
@@ -291,6 +311,14 @@ class Experiment {
 };
 
 }  // namespace
+
+void check(const Definition& definition) {
+  try {
+    for (const auto& cell : cells_of(definition)) check(cell);
+  } catch (const Unusable& fault) {
+    throw Unusable(definition.file, fault.what());
+  }
+}
 
 void run_experiment(const Definition& definition, const std::filesystem::path& record,
                     const Progress& progress) {

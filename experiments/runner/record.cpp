@@ -4,6 +4,7 @@
 #include <sys/utsname.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -105,6 +106,13 @@ Table::Table(std::filesystem::path path, Row columns)
                                          std::to_string(columns_.size()));
     rows_.push_back(std::move(rows[i]));
   }
+}
+
+void Table::forget(const Row& key) {
+  std::erase_if(rows_, [&](const Row& row) {
+    return std::equal(key.begin(), key.end(), row.begin(),
+                      row.begin() + static_cast<std::ptrdiff_t>(key.size()));
+  });
 }
 
 void Table::save() const {

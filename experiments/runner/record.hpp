@@ -21,6 +21,8 @@ class Table {
   const Row& columns() const { return columns_; }
   const std::vector<Row>& rows() const { return rows_; }
   void add(Row row) { rows_.push_back(std::move(row)); }
+  /// Drops the rows that begin with these fields.
+  void forget(const Row& key);
   void save() const;
 
  private:

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/runner/replay.hpp"
 
-#include <algorithm>
-#include <cmath>
-
-#include "experiments/files/npy.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/runner/strategy_text.hpp"
 #include "hierarchies/builds.hpp"
@@ -15,28 +11,6 @@
 namespace bvlab {
 
 static_assert(Volumes::size == BVLAB_VOLUMES, "volumes.hpp must hold one entry a line");
-
-void Trace::poses(std::size_t frame, std::span<Pose> poses) const {
-  const double* v = values.data() + frame * objects * 7;
-  for (std::size_t i = 0; i < objects; ++i, v += 7)
-    poses[i] = *pose_from({v[0], v[1], v[2]}, v[3], v[4], v[5], v[6]);
-}
-
-Trace read_trace(const std::string& path) {
-  constexpr std::size_t shape[] = {any_length, any_length, 7};
-  auto array = read_npy<double>(path, shape);
-  Trace trace{array.shape[0], array.shape[1], std::move(array.data)};
-  for (std::size_t i = 0; i < trace.values.size(); i += 7) {
-    const double* v = trace.values.data() + i;
-    if (pose_from({v[0], v[1], v[2]}, v[3], v[4], v[5], v[6])) continue;
-    const bool finite = std::all_of(v, v + 7, [](double x) { return std::isfinite(x); });
-    const std::size_t object = i / 7 % trace.objects, frame = i / 7 / trace.objects;
-    throw Unusable(path, std::string(finite ? "zero quaternion" : "not a finite number") +
-                             " in frame " + std::to_string(frame) + ", object " +
-                             std::to_string(object));
-  }
-  return trace;
-}
 
 namespace {
 
@@ -62,6 +36,8 @@ void check(const Variant& variant) {
 ReplayResult replay(std::span<const TriangleMesh> meshes, const Trace& trace,
                     const Variant& variant, const ReplayOptions& options) {
   check(variant);
+  // Nothing happens without frames, so bodies are not made, however many there would be.
+  if (trace.frames == 0 && trace.objects > 0) return replay(meshes, Trace{}, variant, options);
   ReplayResult result;
   Volumes::with(variant.volume, [&]<class V>(std::type_identity<V>) {
     result = replay_with<V>(meshes, trace, variant, options);

@@ -10,25 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "experiments/runner/trace.hpp"
 #include "hierarchies/bounding_volume.hpp"
-#include "hierarchies/geometry/pose.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
 namespace bvlab {
-
-/// A scene's poses, frame by frame: x y z qw qx qy qz for each object.
-struct Trace {
-  std::size_t frames = 0, objects = 0;
-  std::vector<double> values;  ///< C order, shape (frames, objects, 7)
-
-  std::size_t pairs() const { return objects > 0 ? objects * (objects - 1) / 2 : 0; }
-
-  /// The poses of one frame into `poses`, which has one entry for each object.
-  void poses(std::size_t frame, std::span<Pose> poses) const;
-};
-
-/// Refuses what is not a trace: shape, NaN, infinity, zero quaternions.
-Trace read_trace(const std::string& path);
 
 enum class Count { off, on };
 

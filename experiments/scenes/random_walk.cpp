@@ -245,13 +245,10 @@ class Walk {
 
 }  // namespace
 
-Array<double> RandomWalk::generate(std::span<const Extent> meshes,
-                                   const TouchesAny& touches) const {
-  need(!meshes.empty(), "no mesh to move");
+void RandomWalk::check() const {
   need(freedoms == "one" || freedoms == "all", "freedoms '" + freedoms + "': there are one, all");
   need(contact == "pass" || contact == "reject",
        "contact '" + contact + "': there are pass, reject");
-  need(contact == "pass" || touches, "contact: nothing to look for contacts with");
   need(moving <= objects,
        "moving: " + std::to_string(moving) + " of " + std::to_string(objects) + " bodies");
   need(degrees >= 0 && degrees <= 180, "degrees: must be 0 to 180");
@@ -260,6 +257,13 @@ Array<double> RandomWalk::generate(std::span<const Extent> meshes,
   std::size_t entries = 0;
   need(!__builtin_mul_overflow(frames, objects, &entries) && entries <= (std::size_t{1} << 32),
        "frames, objects: more than 2^32 poses");
+}
+
+Array<double> RandomWalk::generate(std::span<const Extent> meshes,
+                                   const TouchesAny& touches) const {
+  check();
+  need(!meshes.empty(), "no mesh to move");
+  need(contact == "pass" || touches, "contact: nothing to look for contacts with");
   return Walk(*this, meshes, touches).run();
 }
 

@@ -55,6 +55,9 @@ struct RandomWalk {
     visit("seed", seed, "of the random numbers");
   }
 
+  /// Throws Unusable, naming the option, where values cannot be, whatever the meshes.
+  void check() const;
+
   Array<double> generate(std::span<const Extent> meshes, const TouchesAny& touches) const;
 };
 

@@ -2,11 +2,7 @@
 #include "experiments/scenes/read_mesh.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
-#include <cstring>
-#include <memory>
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
@@ -14,20 +10,6 @@
 
 namespace bvlab {
 namespace {
-
-std::string slurp(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw Unusable(path.string(), "is a directory");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             std::fclose);
-  if (!file) throw Unusable(path.string(), std::strerror(errno));
-  std::string bytes;
-  char block[1 << 16];
-  while (const std::size_t n = std::fread(block, 1, sizeof block, file.get()))
-    bytes.append(block, n);
-  if (std::ferror(file.get())) throw Unusable(path.string(), "cannot be read");
-  return bytes;
-}
 
 std::string extension_of(const std::string& name) {
   std::string extension = std::filesystem::path(name).extension().string();
@@ -52,7 +34,7 @@ TriangleMesh parse_mesh(std::string_view bytes, const std::string& name) {
 }
 
 TriangleMesh read_mesh(const std::filesystem::path& path) {
-  const std::string bytes = slurp(path);
+  const std::string bytes = read_whole(path);
   if (bytes.empty()) throw Unusable(path.string(), "is empty");
   const std::string extension = extension_of(path.string());
   for (const auto& format : own_formats)

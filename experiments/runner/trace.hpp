@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A motion trace: where every object of a scene stands, frame by frame.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hierarchies/geometry/pose.hpp"
+
+namespace bvlab {
+
+/// A scene's poses, frame by frame: x y z qw qx qy qz for each object.
+struct Trace {
+  std::size_t frames = 0, objects = 0;
+  std::vector<double> values;  ///< C order, shape (frames, objects, 7)
+
+  std::size_t pairs() const { return objects > 0 ? objects * (objects - 1) / 2 : 0; }
+
+  /// The poses of one frame into `poses`, which has one entry for each object.
+  void poses(std::size_t frame, std::span<Pose> poses) const;
+};
+
+/// Refuses what is not a trace: shape, NaN, infinity, zero quaternions, more frames or objects than
+/// 32 bits number.
+Trace read_trace(const std::string& path);
+
+/// The same from bytes in memory; `name` stands in for the file in messages.
+Trace parse_trace(std::string_view bytes, const std::string& name);
+
+}  // namespace bvlab

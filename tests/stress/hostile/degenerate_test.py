@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Input that is degenerate and legal: taken without a word, answered in full, in arrays of the
+promised type, shape and order."""
+
+import json
+import unittest
+
+import numpy as np
+from program import TETRAHEDRON, TRIANGLE, ProgramTest, names_of, poses
+
+MESHES = {
+    "triangle.off": TRIANGLE,
+    "tetrahedron.off": TETRAHEDRON,
+    "open.off": "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n",
+    "needle.off": "OFF\n3 1 0\n0 0 0\n1 0 0\n0.5 0 0\n3 0 1 2\n",
+    "point.off": "OFF\n1 1 0\n0 0 0\n3 0 0 0\n",
+    "twice.off": "OFF\n6 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 3 4 5\n",
+    "crossed.off": "OFF\n6 2 0\n0 0 0\n1 0 0\n0 1 0\n.2 .2 -1\n.2 .2 1\n.3 .2 1\n3 0 1 2\n3 3 4 5\n",
+}
+TRIANGLES = {name: 2 if name in ("open.off", "twice.off", "crossed.off") else 1 for name in MESHES}
+TRIANGLES["tetrahedron.off"] = 4
+
+
+class Replay(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        for name, text in MESHES.items():
+            self.write(name, text)
+
+    def replay(self, meshes, trace, query, *more):
+        self.write("poses.npy", trace)
+        given = [word for mesh in meshes for word in ("--mesh", mesh)]
+        given += ["--trace", "poses.npy", "--query", query, "--out", "out.npy", "--json", "out.json"]
+        self.assertEqual(self.take("replay", *given, *more), "")
+        totals = json.loads((self.folder / "out.json").read_text())
+        frames, objects = trace.shape[:2]
+        pairs = objects * (objects - 1) // 2
+        self.assertEqual((totals["frames"], totals["pairs"]), (frames, pairs))
+        if query == "touching":
+            found = self.array("out.npy", "u1", (frames, pairs))
+            self.assertEqual(totals["touching"], int(found.sum()))
+        elif query == "contacts":
+            found = self.array("out.npy", "u4", (totals["contacts"], 5))
+            rows = [tuple(row) for row in found]
+            self.assertEqual(rows, sorted(set(rows)))
+        else:
+            found = self.array("out.npy", "f8", (frames, pairs))
+            self.assertTrue(np.all(found >= 0))
+        return found
+
+    def test_every_mesh_in_every_way(self):
+        trace = np.concatenate([poses(1, 3, 0), poses(1, 3, 0.5), poses(1, 3, 5)])
+        for mesh, count in TRIANGLES.items():
+            for volume in names_of("volumes"):
+                for strategy in names_of("strategies"):
+                    way = ["--volume", volume, "--strategy", strategy]
+                    with self.subTest(mesh=mesh, way=way):
+                        touching = self.replay([mesh], trace, "touching", *way)
+                        shifted = 0 if mesh == "point.off" else 1
+                        near = [shifted, int(mesh not in ("point.off", "crossed.off")), shifted]
+                        if mesh in ("triangle.off", "needle.off", "twice.off", "tetrahedron.off"):
+                            self.assertEqual(touching[1].tolist(), near)
+                        self.assertEqual(touching[0].tolist(), [1, 1, 1])
+                        self.assertEqual(touching[2].tolist(), [0, 0, 0])
+                        contacts = self.replay([mesh], trace, "contacts", *way)
+                        own = [(0, 0, 1, t, t) for t in range(count)]
+                        self.assertLessEqual(set(own), {tuple(row) for row in contacts})
+                        self.assertFalse(np.any(contacts[:, 0] == 2))
+                        if "distance" in names_of("queries"):
+                            distance = self.replay([mesh], trace, "distance", *way)
+                            self.assertEqual((distance == 0).tolist(), (touching == 1).tolist())
+
+    def test_every_build_and_leaf_size(self):
+        trace = poses(2, 4, 0.5)
+        every = list(MESHES)
+        expected = self.replay(every, trace, "contacts")
+        for build in names_of("builds"):
+            for size in (1, 2, 1000):
+                way = ["--build", build, "--leaf-size", size]
+                found = self.replay(every, trace, "contacts", *way)
+                np.testing.assert_array_equal(found, expected, str(way))
+
+    def test_few_objects_and_frames(self):
+        for query in names_of("queries"):
+            for strategy in names_of("strategies"):
+                for frames, objects in ((0, 0), (0, 1), (0, 5), (3, 0), (3, 1), (1, 2), (0, 2**31)):
+                    way = ["--strategy", strategy, "--threads", 2, "--count", "on"]
+                    with self.subTest(query=query, strategy=strategy, shape=(frames, objects)):
+                        trace = np.zeros((frames, objects, 7))
+                        trace[..., 3] = 1
+                        self.replay(list(MESHES), trace, query, *way)
+
+    def test_quaternions_of_any_length(self):
+        trace = poses(2, 3, 0)
+        expected = self.replay(["tetrahedron.off"], trace, "contacts")
+        for length in (5e-324, 1e-200, 1e-10, 3.0, 1e200, 1.7e308):
+            trace[..., 3] = length
+            found = self.replay(["tetrahedron.off"], trace, "contacts")
+            np.testing.assert_array_equal(found, expected, str(length))
+
+    def test_the_ends_of_the_numbers(self):
+        """Vertices far out, where squares overflow, and close in, where they vanish."""
+        for size in ("1e-320", "1e-300", "1e-160", "1e-30", "1e30", "1e150", "1e300"):
+            self.write("size.off", TRIANGLE.replace("1", size).replace(f"3 {size} 0", "3 1 0", 1)
+                       .replace(f"0 {size} 2\n", "0 1 2\n"))
+            trace = np.concatenate([poses(1, 2, 0), poses(1, 2, 3 * float(size))])
+            for volume in names_of("volumes"):
+                for strategy in names_of("strategies"):
+                    way = ["--volume", volume, "--strategy", strategy]
+                    touching = self.replay(["size.off"], trace, "touching", *way)
+                    self.assertEqual(touching.tolist(), [[1], [0]], (size, way))
+
+    def test_totals_on_standard_output(self):
+        self.write("poses.npy", poses(2, 2))
+        said = self.take("replay", "--mesh", "triangle.off", "--trace", "poses.npy")
+        self.assertEqual(json.loads(said)["frames"], 2)
+
+
+class Boxes(ProgramTest):
+    def boxes(self, trace, *more):
+        self.write("boxes.npy", trace)
+        given = ["--trace", "boxes.npy", "--out", "out.npy", "--json", "out.json", *more]
+        self.assertEqual(self.take("boxes", *given), "")
+        totals = json.loads((self.folder / "out.json").read_text())
+        return self.array("out.npy", "u4", (totals["overlaps"], 3)).tolist()
+
+    def test_every_method(self):
+        point = np.zeros((2, 3, 6))
+        corner = np.array([[[0, 0, 0, 1, 1, 1], [1, 1, 1, 2, 2, 2], [1, 1, 1, 1, 1, 1]]], float)
+        all_pairs = [[0, 0, 1], [0, 0, 2], [0, 1, 2]]
+        for method in names_of("methods"):
+            for coherent in ("on", "off"):
+                way = ["--method", method, "--coherent", coherent]
+                for dtype in ("f4", "f8"):
+                    with self.subTest(way=way, dtype=dtype):
+                        for shape in ((0, 0, 6), (0, 3, 6), (3, 0, 6), (3, 1, 6)):
+                            self.assertEqual(self.boxes(np.zeros(shape, dtype), *way), [])
+                        found = self.boxes(point.astype(dtype), *way)
+                        self.assertEqual(found, all_pairs + [[1, i, j] for _, i, j in all_pairs])
+                        self.assertEqual(self.boxes(corner.astype(dtype), *way), all_pairs)
+                        largest = np.finfo(dtype).max
+                        wide = np.zeros((1, 2, 6), dtype)
+                        wide[..., :3], wide[..., 3:] = -largest, largest
+                        self.assertEqual(self.boxes(wide, *way), [[0, 0, 1]])
+
+
+class Triangles(ProgramTest):
+    def test_without_area(self):
+        pairs = np.zeros((4, 18))  # points at one place
+        pairs[1, 9:] = 1  # at two
+        pairs[2, [3, 6]] = 1, 2  # a point on a segment
+        pairs[3, [3, 6]] = 1, 2
+        pairs[3, [10, 13, 16]] = 1e-300  # and next to it
+        self.write("pairs.npy", pairs)
+        self.take("triangles", "--pairs", "pairs.npy", "--out", "out.npy", "--json", "out.json")
+        self.assertEqual(self.array("out.npy", "u1", (4,)).tolist(), [1, 0, 1, 0])
+
+    def test_none(self):
+        self.write("pairs.npy", np.zeros((0, 18)))
+        self.take("triangles", "--pairs", "pairs.npy", "--out", "out.npy", "--json", "out.json")
+        self.array("out.npy", "u1", (0,))
+
+
+class Scene(ProgramTest):
+    def test_little_of_everything(self):
+        self.write("mesh.off", TRIANGLE)
+        for objects, frames in ((0, 0), (0, 3), (1, 0), (1, 1), (2, 3)):
+            given = ["--objects", objects, "--frames", frames, "--mesh", "mesh.off"]
+            self.take("scene", "random-walk", *given, "--out", "out.npy", "--meshes", "meshes")
+            self.array("out.npy", "f8", (frames, objects, 7))
+        given = ["--trace", "out.npy", "--mesh", "meshes/0-mesh.off", "--json", "totals.json"]
+        self.take("replay", *given)
+
+
+if __name__ == "__main__":
+    unittest.main()

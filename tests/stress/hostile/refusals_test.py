@@ -1,0 +1,443 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Everything that bvlab refuses: exit 2 (1 for what is no fault of the caller's), one line that
+names the file or the option, nothing on standard output, no file left behind."""
+
+import os
+import shutil
+import subprocess
+import unittest
+
+import numpy as np
+from program import BVLAB, TETRAHEDRON, TRIANGLE, ProgramTest, names_of, poses
+
+METHOD = names_of("methods")[0]
+NOT_NUMBERS = ("x", "1x", "0x10", "1.5", "1e1000000", "", "-0x1", "٣")
+
+
+def boxes(frames=1, count=3):
+    array = np.zeros((frames, count, 6))
+    array[..., 3:] = 1
+    return array
+
+
+class Arrays(ProgramTest):
+    """The three kinds of input array, each with everything that can be wrong with it."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("mesh.off", TETRAHEDRON)
+        self.kinds = {
+            "replay": (["--mesh", "mesh.off", "--trace"], poses(2, 3)),
+            "boxes": (["--method", METHOD, "--trace"], boxes(2)),
+            "triangles": (["--pairs"], np.ones((4, 18))),
+        }
+
+    def refuse_all(self, content, *mentions, kinds=("replay", "boxes", "triangles")):
+        for kind in kinds:
+            arguments, good = self.kinds[kind]
+            data = content(good) if callable(content) else content
+            if data is not None:
+                self.write("in.npy", data)
+            out = ["--out", "out.npy", "--json", "out.json"]
+            self.refuse(kind, *arguments, "in.npy", *out, mentions=["in.npy: ", *mentions])
+
+    def bytes_of(self, array):
+        self.write("whole.npy", array)
+        return (self.folder / "whole.npy").read_bytes()
+
+    def test_missing(self):
+        self.refuse_all(None, "No such file")
+
+    def test_a_folder(self):
+        (self.folder / "in.npy").mkdir()
+        self.refuse_all(None, "is a directory")
+
+    def test_empty_and_foreign(self):
+        self.refuse_all(b"", "not a .npy file")
+        self.refuse_all(b"\x93NUMPY", "not a .npy file")
+        self.refuse_all(TETRAHEDRON, "not a .npy file")
+
+    def test_truncated_anywhere(self):
+        for keep in (11, 60, 100, 127, 128, 136, -1):
+            self.refuse_all(lambda good: self.bytes_of(good)[:keep], "truncated")
+
+    def test_trailing_bytes(self):
+        self.refuse_all(lambda good: self.bytes_of(good) + b"x", "trailing")
+
+    def test_shape(self):
+        self.refuse_all(lambda good: good.ravel(), "shape")
+        self.refuse_all(lambda good: good[..., :-1], "shape")
+        self.refuse_all(lambda good: good[None], "shape")
+        self.refuse_all(np.ones(()), "shape ()")
+
+    def test_type(self):
+        for dtype in ("f2", "i4", "i8", ">f8", "c16", "?", "U3"):
+            self.refuse_all(lambda good: good.astype(dtype), "holds", "needed")
+        self.refuse_all(lambda good: good.astype("f4"), "holds", kinds=("replay", "triangles"))
+
+    def test_order(self):
+        self.refuse_all(lambda good: np.asfortranarray(good), "Fortran")
+
+    def test_promises_of_the_header(self):
+        def promised(shape):
+            head = f"{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}".encode()
+            return lambda good: b"\x93NUMPY\1\0" + len(head).to_bytes(2, "little") + head
+
+        for shape in ((2**62, 2**62, 7), (10**9, 1, 7)):
+            self.refuse_all(promised(shape), "truncated", kinds=["replay"])
+        for shape in ((2**62, 2**62, 6), (10**9, 1, 6)):
+            self.refuse_all(promised(shape), "truncated", kinds=["boxes"])
+        self.refuse_all(promised((2**60, 18)), "truncated", kinds=["triangles"])
+        self.refuse_all(promised((0, 2**40, 7)), "32 bits", kinds=["replay"])
+        self.refuse_all(promised((2**40, 0, 7)), "32 bits", kinds=["replay"])
+        self.refuse_all(promised("(99999999999999999999999, 7)"), "malformed")
+        self.refuse_all(promised("(-1, 2, 7)"), "malformed")
+
+    def test_not_finite(self):
+        for value, word in ((np.nan, "NaN"), (np.inf, "infinit"), (-np.inf, "infinit")):
+            for place in (0, 3, 5, -1):
+                def spoiled(good):
+                    good = good.copy()
+                    good.reshape(-1)[place] = value
+                    return good
+
+                self.refuse_all(spoiled, word, kinds=("boxes", "triangles"))
+                self.refuse_all(spoiled, "not a finite number in frame", kinds=["replay"])
+
+    def test_zero_quaternion(self):
+        for zero in (0.0, -0.0):
+            trace = poses(3, 2)
+            trace[1, 1, 3:] = zero
+            self.refuse_all(trace, "zero quaternion in frame 1, object 1", kinds=["replay"])
+
+    def test_upside_down_box(self):
+        for dtype in ("f4", "f8"):
+            trace = boxes(2).astype(dtype)
+            trace[1, 2, 4] = -1
+            self.refuse_all(trace, "frame 1, box 2: lo > hi", kinds=["boxes"])
+
+
+class Meshes(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("poses.npy", poses(2, 3))
+
+    def refuse_mesh(self, name, content, *mentions):
+        self.write(name, content)
+        rest = ["--trace", "poses.npy", "--out", "out.npy", "--json", "out.json"]
+        self.refuse("replay", "--mesh", name, *rest, mentions=[name, *mentions])
+        rest = ["--out", "out.npy", "--meshes", "meshes"]
+        self.refuse("scene", "random-walk", "--mesh", name, *rest, mentions=[name, *mentions])
+
+    def test_missing(self):
+        rest = ["--trace", "poses.npy", "--out", "out.npy"]
+        self.refuse("replay", "--mesh", "none.off", *rest, mentions="none.off: No such file")
+        self.write("good.off", TRIANGLE)
+        self.refuse("replay", "--mesh", "good.off", "--mesh", "none.glb", *rest, mentions="none.glb")
+
+    def test_a_folder(self):
+        (self.folder / "folder.off").mkdir()
+        rest = ["--trace", "poses.npy", "--out", "out.npy"]
+        self.refuse("replay", "--mesh", "folder.off", *rest, mentions="folder.off: is a directory")
+
+    def test_every_format(self):
+        for extension in ("off", "obj", "ply", "stl", "gltf", "glb", "wrl", "3ds", "dae", "xyz", ""):
+            name = f"bad.{extension}" if extension else "bad"
+            self.refuse_mesh(name, b"", "is empty")
+            self.refuse_mesh(name, b"\n")
+            self.refuse_mesh(name, b"nonsense\n" * 3)
+            self.refuse_mesh(name, bytes(range(256)) * 4)
+
+    def test_truncated(self):
+        for length in (3, 8, 20, 35, 60):
+            self.refuse_mesh("cut.off", TETRAHEDRON[:length])
+
+    def test_without_triangles(self):
+        self.refuse_mesh("points.off", "OFF\n2 0 0\n0 0 0\n1 1 1\n", "no triangles")
+        self.refuse_mesh("points.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n", "no triangles")
+        self.refuse_mesh("line.off", "OFF\n2 1 0\n0 0 0\n1 1 1\n2 0 1\n", "no triangles")
+        self.refuse_mesh("none.stl", "solid\nendsolid\n", "no triangles")
+
+    def test_index_out_of_range(self):
+        for index in ("4", "-1", "4294967296", "99999999999999999999"):
+            self.refuse_mesh("far.off", TETRAHEDRON.replace("2 1\n", f"2 {index}\n"), "line 7")
+        for index in ("0", "4", "-4", "4294967297"):
+            self.refuse_mesh("far.obj", f"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {index}\n", "line 4")
+
+    def test_not_finite(self):
+        for value in ("nan", "inf", "-inf", "1e999", "-1e999"):
+            self.refuse_mesh("odd.off", TRIANGLE.replace("1 0 0", f"1 {value} 0"), "line 4")
+            self.refuse_mesh("odd.obj", f"v 0 0 0\nv 1 0 {value}\nv 0 1 0\nf 1 2 3\n", "line 2")
+
+
+class Names(ProgramTest):
+    """An unknown name is answered with those there are."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("mesh.off", TETRAHEDRON)
+        self.write("poses.npy", poses(2, 3))
+        self.write("boxes.npy", boxes())
+        self.write("pairs.npy", np.ones((1, 18)))
+        self.replay = ["replay", "--mesh", "mesh.off", "--trace", "poses.npy", "--out", "out.npy"]
+
+    def test_of_replay(self):
+        kinds = {"volume": "volumes", "strategy": "strategies", "query": "queries",
+                 "precision": "precisions", "build": "builds"}
+        for option, kind in kinds.items():
+            for name in ("frob", "", names_of(kind)[0] + "x"):
+                given = ["--" + option, name]
+                self.refuse(*self.replay, *given, mentions=["--" + option, *names_of(kind)])
+        for value in ("deferred:-1", "deferred:x", "deferred:", "deferred:99999999999", "deferred:1:1"):
+            self.refuse(*self.replay, "--strategy", value, mentions=["--strategy", value])
+        self.refuse(*self.replay, "--strategy", "recursive:1", mentions="takes no parameter")
+        self.refuse(*self.replay, "--count", "maybe", mentions=["--count", "on", "off"])
+
+    def test_of_the_other_commands(self):
+        rest = ["--out", "out.npy"]
+        given = ["boxes", "--trace", "boxes.npy", "--method", "frob"]
+        self.refuse(*given, *rest, mentions=["--method", *names_of("methods")])
+        given = ["boxes", "--trace", "boxes.npy", "--coherent", "maybe"]
+        self.refuse(*given, *rest, mentions=["--coherent", "on", "off"])
+        given = ["triangles", "--pairs", "pairs.npy", "--precision", "frob"]
+        self.refuse(*given, *rest, mentions=["--precision", *names_of("precisions")])
+        self.refuse("scene", "frob", *rest, mentions=["frob", *names_of("scenes")])
+        given = ["scene", "random-walk", "--shape", "frob"]
+        self.refuse(*given, *rest, mentions=["frob", "bunny", *names_of("meshes")])
+        given = ["scene", "random-walk", "--shape", "box", "--freedoms", "frob"]
+        self.refuse(*given, *rest, mentions=["freedoms", "one", "all"])
+        given = ["scene", "random-walk", "--shape", "box", "--contact", "frob"]
+        self.refuse(*given, *rest, mentions=["contact", "pass", "reject"])
+        kinds = ["volumes", "strategies", "queries", "methods", "scenes", "precisions"]
+        self.refuse("list", "frob", mentions=["frob", *kinds])
+
+    def test_of_commands(self):
+        commands = ["replay", "boxes", "triangles", "run", "scene", "list"]
+        self.refuse(mentions=commands)
+        self.refuse("frob", mentions=["frob", *commands])
+        self.refuse("--frob", mentions=["--frob"])
+
+    def test_of_options(self):
+        self.refuse(*self.replay, "--frob", mentions="--frob")
+        self.refuse(*self.replay, "frob", mentions="frob")
+        self.refuse("scene", "random-walk", "--out", "out.npy", "--frob", mentions="--frob")
+        self.refuse("boxes", "--trace", "boxes.npy", "--frob=1", mentions="--frob")
+        self.refuse("replay", "--mesh", "mesh.off", mentions="--trace")
+        self.refuse("replay", "--trace", "poses.npy", mentions="--mesh")
+        self.refuse("boxes", mentions="--trace")
+        self.refuse("triangles", mentions="--pairs")
+        self.refuse("scene", mentions=names_of("scenes"))
+        self.refuse("scene", "random-walk", mentions="--out")
+        self.refuse("run", mentions="definition")
+        self.refuse(*self.replay, "--volume", mentions="--volume")
+
+    def test_on_one_line_whatever_is_quoted(self):
+        self.refuse("triangles", "--pairs", "a\nb\r\x1b[31m", mentions="a?b??[31m: No such file")
+        self.refuse("list", "a\nb", mentions="a?b")
+
+
+class Values(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("mesh.off", TETRAHEDRON)
+        self.write("poses.npy", poses(2, 3))
+        self.write("boxes.npy", boxes())
+        self.replay = ["replay", "--mesh", "mesh.off", "--trace", "poses.npy", "--out", "out.npy"]
+
+    def test_whole_numbers(self):
+        wrong = ("0", "-1", "-4294967295", "-18446744073709551615", *NOT_NUMBERS)
+        scene = ["scene", "random-walk", "--mesh", "mesh.off", "--out", "out.npy"]
+        for value in wrong:
+            self.refuse(*self.replay, f"--threads={value}", mentions="--threads")
+            self.refuse(*self.replay, f"--leaf-size={value}", mentions="--leaf-size")
+            given = ["boxes", "--trace", "boxes.npy", "--out", "out.npy"]
+            self.refuse(*given, f"--threads={value}", mentions="--threads")
+            if value == "0":
+                continue
+            for option in ("objects", "frames", "moving", "seed", "polygons"):
+                self.refuse(*scene, f"--{option}={value}", mentions="--" + option)
+        self.refuse(*self.replay, "--threads=1000000", mentions="--threads")
+        self.refuse(*self.replay, "--leaf-size=1000000", mentions="--leaf-size")
+
+    def test_of_scenes(self):
+        scene = ["scene", "random-walk", "--mesh", "mesh.off", "--out", "out.npy", "--frames", "3"]
+        for option in ("side", "step"):
+            for value in ("-1", "-1leaf", "nan", "inf", "x", "", "1 mile", "1e999", "1leafs"):
+                self.refuse(*scene, f"--{option}={value}", mentions="--" + option)
+        self.refuse(*scene, "--side=1", "--step=2", mentions="step")
+        for value in ("-1", "181", "nan", "inf", "x", ""):
+            self.refuse(*scene, f"--degrees={value}", mentions="degrees")
+        for option in ("persistence", "teleport"):
+            for value in ("-0.1", "1.1", "nan", "inf", "x", ""):
+                self.refuse(*scene, f"--{option}={value}", mentions=option)
+        self.refuse(*scene, "--objects=2", "--moving=3", mentions="moving: 3 of 2 bodies")
+        self.refuse(*scene, f"--objects={2**34}", mentions="objects")
+        self.refuse(*scene, "--frames=18446744073709551615", mentions="frames")
+        self.refuse(*scene, "--side=0", "--step=0", "--contact=reject", mentions="side: no room")
+        crowd = ["scene", "random-walk", "--shape=icosphere", "--out=out.npy"]
+        self.refuse(*crowd, "--polygons=0", mentions="0 polygons")
+
+
+class Definitions(ProgramTest):
+    START = 'name = "small"\n[parameters]\nmesh = "box"\npolygons = 12\nobjects = 2\nframes = 3\n'
+
+    def refuse_definition(self, content, *mentions):
+        self.write("bad.toml", content)
+        mentions = ["bad.toml: ", *mentions]
+        return self.refuse("run", "bad.toml", "--record", "record", mentions=mentions)
+
+    def test_files(self):
+        self.refuse("run", "none.toml", "--record", "record", mentions="none.toml: No such file")
+        (self.folder / "folder.toml").mkdir()
+        self.refuse("run", "folder.toml", "--record", "record", mentions="folder.toml: is a dir")
+        self.refuse_definition("", "name")
+        self.refuse_definition(bytes(range(256)))
+        self.refuse_definition("name = 'x'\nname = 'y'\n", "line 2")
+        self.refuse_definition("name = \n", "line 1")
+        self.refuse_definition("[[[[\n", "line 1")
+
+    def test_keys(self):
+        self.refuse_definition(self.START + "frob = 1\n", "line 7", "frob", "mesh", "polygons")
+        self.refuse_definition("frob = 1\n" + self.START, "line 1", "frob")
+        self.refuse_definition("description = 'no name'\n", "name")
+        self.refuse_definition("name = 'a/b'\n", "name")
+        self.refuse_definition("name = 3\n", "line 1", "string")
+        for value in ("0", "-1", "1.5", "'three'", "100000"):
+            self.refuse_definition(f"repetitions = {value}\n" + self.START, "line 1", "repetitions")
+        self.refuse_definition("name = 'x'\nparameters = 3\n", "line 2", "table")
+        self.refuse_definition(self.START + "seed = [1]\n", "line 7", "seed")
+        self.refuse_definition(self.START + "[series]\nfrob = 1\n", "series", "frob", "seed")
+
+    def test_axes(self):
+        def axis(text):
+            return self.START + "[[axis]]\n" + text
+
+        self.refuse_definition(self.START + "[axis]\nname = 'seed'\n", "[[axis]]")
+        self.refuse_definition(axis("values = [1]\n"), "line 7", "name")
+        self.refuse_definition(axis("name = 'seed'\n"), "line 7", "values")
+        self.refuse_definition(axis("name = 'seed'\nvalues = []\n"), "seed", "no values")
+        self.refuse_definition(axis("name = 'seed'\nvalues = [[1]]\n"), "line 9", "seed")
+        self.refuse_definition(axis("name = 'frob'\nvalues = [1]\n"), "line 8", "frob", "seed")
+        self.refuse_definition(axis("name = 'seed'\nvalues = [1, 1]\n"), "line 9", "seed", "twice")
+        self.refuse_definition(axis("name = 'seed'\nvalues = [1]\n") + "[[axis]]\nname = 'seed'\n"
+                               "values = [2]\n", "seed")
+        self.refuse_definition(axis("name = 'way'\n[[axis.value]]\nmoving = 1\n"), "line 9", "name")
+        self.refuse_definition(axis("name = 'seed'\n[[axis.value]]\nname = 'a'\n"), "seed", "values")
+
+    def test_names_and_numbers(self):
+        kinds = {"scene": "scenes", "volume": "volumes", "strategy": "strategies",
+                 "query": "queries", "build": "builds", "precision": "precisions", "peer": "peers"}
+        for parameter, kind in kinds.items():
+            self.refuse_definition(self.START + f"{parameter} = 'frob'\n", "frob", *names_of(kind))
+            self.refuse_definition(self.START + f"[[axis]]\nname = '{parameter}'\n"
+                                   f"values = ['{names_of(kind)[0]}', 'frob']\n", "frob")
+        for parameter in ("seed", "moving", "leaf_size"):
+            for value in ("-1", "1.5", "'x'", "99999999999999999999999.0", "''"):
+                self.refuse_definition(self.START + f"{parameter} = {value}\n", parameter)
+        for value in ("-1", "'1 mile'", "nan", "inf"):
+            self.refuse_definition(self.START + f"step = {value}\n", "step")
+        for value in ("-1", "200", "nan"):
+            self.refuse_definition(self.START + f"degrees = {value}\n", "degrees")
+        self.refuse_definition(self.START + "moving = 3\n", "moving")
+
+    def test_billions_of_cells(self):
+        numbers = ", ".join(map(str, range(100)))
+        text = self.START
+        for name in ("seed", "moving", "degrees", "leaf_size", "persistence", "teleport"):
+            text += f"[[axis]]\nname = '{name}'\nvalues = [{numbers}]\n"
+        self.refuse_definition(text, "cells", "degrees")
+
+    def test_tables_in_tables(self):
+        self.refuse_definition("name = 'deep'\n" + "a." * 100000 + "a = 1\n", "line 2", "dots")
+        self.refuse_definition("name = 'deep'\nparameters = " + "[" * 100000 + "\n", "line 2")
+        self.refuse_definition("name = 'deep'\nparameters = " + "{a=" * 100000 + "\n", "line 2")
+
+    def test_records(self):
+        self.write("good.toml", self.START)
+        self.write("record", "a file")
+        self.refuse("run", "good.toml", "--record", "record", mentions="record")
+        self.write("other/definition.toml", "name = 'other'\n")
+        self.refuse("run", "good.toml", "--record", "other", mentions="another definition")
+        self.take("run", "good.toml", "--record", "kept")
+        self.write("kept/small.csv", "seed,frob\n1,2\n")
+        self.refuse("run", "good.toml", "--record", "kept", mentions="small.csv: has other columns")
+
+
+class Places(ProgramTest):
+    """Results that cannot be written."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("mesh.off", TETRAHEDRON)
+        self.write("poses.npy", poses(200, 9))
+        self.write("boxes.npy", boxes(300, 50))
+        self.write("pairs.npy", np.ones((100000, 18)))
+        self.commands = [
+            ["replay", "--mesh", "mesh.off", "--trace", "poses.npy", "--query", "contacts"],
+            ["boxes", "--trace", "boxes.npy", "--method", METHOD],
+            ["triangles", "--pairs", "pairs.npy"],
+        ]
+        self.scene = ["scene", "random-walk", "--mesh", "mesh.off"]
+
+    def test_missing_folder(self):
+        for command in self.commands:
+            self.refuse(*command, "--out", "none/out.npy", mentions=["--out", "none/out.npy"])
+            given = ["--out", "out.npy", "--json", "none/out.json"]
+            self.refuse(*command, *given, mentions=["--json", "none/out.json"])
+        self.refuse(*self.scene, "--out", "none/out.npy", mentions=["--out", "none/out.npy"])
+        self.refuse(*self.scene, "--out", "mesh.off/out.npy", mentions=["--out", "mesh.off"])
+
+    def test_folder_instead_of_file(self):
+        (self.folder / "folder").mkdir()
+        for command in [*self.commands, self.scene]:
+            self.refuse(*command, "--out", "folder", mentions=["--out", "folder", "directory"])
+        self.refuse(*self.scene, "--out", "o.npy", "--meshes", "mesh.off", mentions="mesh.off")
+
+    def test_read_only_folder(self):
+        nobody = {}
+        if os.geteuid() == 0:
+            nobody = {"user": 65534, "group": 65534}
+            self.folder.chmod(0o755)
+            try:
+                subprocess.run([BVLAB, "list", "scenes"], check=True, capture_output=True, **nobody)
+            except (OSError, subprocess.CalledProcessError):
+                self.skipTest("the program cannot be run by another user")
+        (self.folder / "shut").mkdir(mode=0o555)
+        for command in [*self.commands, self.scene]:
+            given = [*command, "--out", "shut/out.npy"]
+            self.refuse(*given, mentions=["--out", "shut", "Permission denied"], **nobody)
+
+    def test_full_device(self):
+        for command in [*self.commands, self.scene]:
+            given = [*command, "--out", "/dev/full"]
+            self.refuse(*given, mentions=["/dev/full", "No space left"], exit=1)
+        for command in self.commands:
+            given = [*command, "--json", "/dev/full"]
+            self.refuse(*given, mentions=["/dev/full", "No space left"], exit=1)
+
+    def test_full_standard_output(self):
+        for command in [*self.commands, ["list"], ["--help"]]:
+            with open("/dev/full", "w", encoding="ascii") as full:
+                self.refuse(*command, mentions="standard output", exit=1, stdout=full)
+
+    def test_full_disk(self):
+        """On a disk of 16 KiB, which only this process and its children see."""
+        mount = "mkdir -p disk && mount -t tmpfs -o size=16k none disk && exec "
+        probe = ["unshare", "--mount", "sh", "-c", mount + "true"]
+        if shutil.which("unshare") is None or subprocess.run(
+            probe, cwd=self.folder, capture_output=True, check=False
+        ).returncode:
+            self.skipTest("nothing can be mounted here")
+        script = mount + 'sh -c \'echo old > disk/old.npy; "$@"; echo $?; ls -A disk; cat disk/old.npy\' sh "$@"'
+        for command in [*self.commands, [*self.scene, "--frames", "1000"]]:
+            for name in ("new.npy", "old.npy"):
+                done = subprocess.run(
+                    ["unshare", "--mount", "sh", "-c", script, "sh", BVLAB, *command]
+                    + ["--out", "disk/" + name], cwd=self.folder, capture_output=True, text=True, check=True)
+                with self.subTest(command=command, name=name):
+                    self.assertEqual(done.stdout, "1\nold.npy\nold\n")
+                    self.assertRegex(done.stderr, rf"\Abvlab: disk/{name}: [^\n]*No space left[^\n]*\n\Z")
+
+
+if __name__ == "__main__":
+    unittest.main()
