@@ -48,6 +48,7 @@ class Reader {
 
   Definition read(const std::string& text) {
     check_depth(text);
+    check_characters(text);
     toml::table table;
     try {
       table = toml::parse(text, name_);
@@ -85,8 +86,8 @@ class Reader {
     throw Unusable(name_, "line " + std::to_string(where.begin.line) + ": " + what);
   }
 
-  /// Keys with dots make tables in tables, as deep as the file likes: reading them,
-  /// and giving them back, takes stack for each.
+  /// Keys with dots make tables in tables, as deep as the file likes: reading them, and giving them
+  /// back, takes stack for each.
   void check_depth(const std::string& text) const {
     constexpr std::ptrdiff_t deepest = 1000;
     std::istringstream lines(text);
@@ -95,6 +96,44 @@ class Reader {
       if (std::count(line.begin(), line.end(), '.') > deepest)
         throw Unusable(name_, "line " + std::to_string(number) + ": more than " +
                                   std::to_string(deepest) + " dots");
+  }
+
+  /// Letters beyond ASCII belong into strings and comments. (Elsewhere toml++ 3.3 asks whether they
+  /// are blanks, and on the answer for most of them runs into what it declares unreachable.)
+  void check_characters(std::string_view text) const {
+    std::size_t line = 1;
+    for (std::size_t i = text.starts_with("\xef\xbb\xbf") ? 3 : 0; i < text.size();) {
+      std::size_t end = i + 1;
+      if (text[i] == '#')
+        end = std::min(text.find('\n', i), text.size());
+      else if (text[i] == '"' || text[i] == '\'')
+        end = end_of_string(text, i);
+      else if (static_cast<unsigned char>(text[i]) >= 128)
+        throw Unusable(name_, "line " + std::to_string(line) +
+                                  ": a letter that is not ASCII outside of strings and comments");
+      line += static_cast<std::size_t>(std::count(&text[i], text.data() + end, '\n'));
+      i = end;
+    }
+  }
+
+  /// Behind the string that starts at `i`, or where it has to end at the latest.
+  static std::size_t end_of_string(std::string_view text, std::size_t i) {
+    const char quote = text[i];
+    const std::string three(3, quote);
+    const bool long_one = text.substr(i).starts_with(three);
+    for (i += long_one ? 3 : 1; i < text.size(); ++i) {
+      if (text[i] == '\n' && !long_one) return i;
+      if (text[i] == '\\' && quote == '"' && !text.substr(i).starts_with("\\\n")) {
+        ++i;
+      } else if (text[i] == quote && !long_one) {
+        return i + 1;
+      } else if (text.substr(i).starts_with(three)) {
+        // Quotes just before the end are part of the string.
+        for (i += 3; text.substr(i, 1) == three.substr(0, 1);) ++i;
+        return i;
+      }
+    }
+    return text.size();
   }
 
   void check_size(const std::vector<Definition::Axis>& axes) const {

@@ -97,9 +97,12 @@ void append_polygon(TriangleMesh& mesh, std::span<const std::uint32_t> corners) 
   }
   Ring ring(flattened(mesh, corners));
   std::uint32_t at = 1;
+  // Without an ear the polygon crosses itself, and any cut is as good as another.
+  bool has_ears = true;
   for (std::size_t left = corners.size(); left > 3; --left) {
     std::size_t looked_at = 0;
-    while (looked_at < left && !ring.is_ear(at)) at = ring.next(at), ++looked_at;
+    while (has_ears && looked_at < left && !ring.is_ear(at)) at = ring.next(at), ++looked_at;
+    has_ears = has_ears && looked_at < left;
     mesh.triangles.push_back({corners[ring.previous(at)], corners[at], corners[ring.next(at)]});
     const std::uint32_t after = ring.next(at);
     ring.remove(at);
