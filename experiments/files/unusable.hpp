@@ -8,9 +8,16 @@
 
 namespace bvlab {
 
+/// The message on one line, and all of it, whatever the names and words that it quotes hold.
+inline std::string one_line(std::string message) {
+  for (char& c : message)
+    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
+  return message;
+}
+
 struct Unusable : std::runtime_error {
-  using std::runtime_error::runtime_error;
-  Unusable(const std::string& file, const std::string& what) : std::runtime_error(file + ": " + what) {}
+  explicit Unusable(const std::string& what) : std::runtime_error(one_line(what)) {}
+  Unusable(const std::string& file, const std::string& what) : Unusable(file + ": " + what) {}
 };
 
 }  // namespace bvlab

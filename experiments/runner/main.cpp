@@ -15,11 +15,9 @@
 namespace bvlab {
 namespace {
 
-/// Says what went wrong, on one line whatever names it quotes.
-int complain(int exit, std::string what) {
-  for (char& c : what)
-    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
-  std::fprintf(stderr, "bvlab: %s\n", what.c_str());
+/// Says what went wrong.
+int complain(int exit, const std::string& what) {
+  std::fprintf(stderr, "bvlab: %s\n", one_line(what).c_str());
   return exit;
 }
 
