@@ -53,9 +53,11 @@ class Descriptor {
   int file_;
 };
 
-/// A device or a pipe (/dev/stdout, say) has no "beside": it is written straight through.
+/// A device or a pipe has no "beside": it is written straight through; and so is standard output,
+/// of which others may have written the beginning.
 void write_through(const std::filesystem::path& path, std::span<const std::string_view> parts) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  const bool is_output = path == "/dev/stdout";
+  Descriptor file(is_output ? ::dup(STDOUT_FILENO) : ::open(path.c_str(), O_WRONLY | O_CLOEXEC));
   if (!file || !file.write(parts) || !file.close()) fail(path, errno);
 }
 
@@ -116,6 +118,9 @@ void write_beside(const std::filesystem::path& path, std::span<const std::string
 std::string read_whole(const std::filesystem::path& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) throw Unusable(path.string(), "is a directory");
+  // Some have no end.
+  if (std::filesystem::is_character_file(path, ignored))
+    throw Unusable(path.string(), "is a device");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                              std::fclose);
   if (!file) throw Unusable(path.string(), std::strerror(errno));
@@ -132,11 +137,17 @@ std::string read_whole(const std::filesystem::path& path) {
 void write_whole(const std::filesystem::path& path, std::span<const std::string_view> parts) {
   struct stat status;
   const bool exists = ::stat(path.c_str(), &status) == 0;
-  if (exists && !S_ISREG(status.st_mode)) return write_through(path, parts);
+  if (path == "/dev/stdout" || (exists && !S_ISREG(status.st_mode)))
+    return write_through(path, parts);
+  // A link stays; what it points to is replaced.
+  std::error_code ignored;
+  const auto place = exists && std::filesystem::is_symlink(path, ignored)
+                         ? std::filesystem::canonical(path)
+                         : path;
   const mode_t mask = ::umask(0);
   ::umask(mask);
   const mode_t mode = exists ? (status.st_mode & 07777) : (0666 & ~mask);
-  if (!write_nameless(path, parts, mode)) write_beside(path, parts, mode);
+  if (!write_nameless(place, parts, mode)) write_beside(place, parts, mode);
 }
 
 void require_place(const std::string& option, const std::filesystem::path& path) {
@@ -145,6 +156,7 @@ void require_place(const std::string& option, const std::filesystem::path& path)
     throw Unusable(option + " " + path.string(), what);
   };
   struct stat status;
+  if (path == "/dev/stdout") return;
   if (::stat(path.c_str(), &status) == 0) {
     if (S_ISDIR(status.st_mode)) refuse("is a directory");
     if (!S_ISREG(status.st_mode)) return;  // a device says itself what it thinks of writing

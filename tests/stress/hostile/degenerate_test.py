@@ -115,6 +115,26 @@ class Replay(ProgramTest):
         said = self.take("replay", "--mesh", "triangle.off", "--trace", "poses.npy")
         self.assertEqual(json.loads(said)["frames"], 2)
 
+    def test_result_on_standard_output(self):
+        self.write("poses.npy", poses(3, 4))
+        given = ["replay", "--mesh", "triangle.off", "--trace", "poses.npy", "--json", "out.json"]
+        self.take(*given, "--out", "out.npy")
+        expected = (self.folder / "out.npy").read_bytes()
+        with open(self.folder / "said.npy", "wb") as said:
+            done = self.run_bvlab(*given, "--out", "/dev/stdout", stdout=said)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual((self.folder / "said.npy").read_bytes(), expected)
+
+    def test_a_link_stays(self):
+        self.write("poses.npy", poses(3, 4))
+        (self.folder / "elsewhere").mkdir()
+        (self.folder / "elsewhere" / "out.npy").write_text("old")
+        (self.folder / "out.npy").symlink_to("elsewhere/out.npy")
+        given = ["--mesh", "triangle.off", "--trace", "poses.npy", "--json", "out.json"]
+        self.take("replay", *given, "--out", "out.npy")
+        self.assertTrue((self.folder / "out.npy").is_symlink())
+        self.array("elsewhere/out.npy", "u1", (3, 6))
+
 
 class Boxes(ProgramTest):
     def boxes(self, trace, *more):

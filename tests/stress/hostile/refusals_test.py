@@ -52,6 +52,12 @@ class Arrays(ProgramTest):
         (self.folder / "in.npy").mkdir()
         self.refuse_all(None, "is a directory")
 
+    def test_a_device(self):
+        for kind, (arguments, _) in self.kinds.items():
+            for device in ("/dev/zero", "/dev/null"):
+                given = [*arguments, device, "--out", "out.npy"]
+                self.refuse(kind, *given, mentions=[device, "is a device"])
+
     def test_empty_and_foreign(self):
         self.refuse_all(b"", "not a .npy file")
         self.refuse_all(b"\x93NUMPY", "not a .npy file")
