@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/runner/replay.hpp"
 
+#include <cmath>
+
 #include "experiments/files/unusable.hpp"
 #include "experiments/runner/strategy_text.hpp"
 #include "hierarchies/builds.hpp"
@@ -29,6 +31,11 @@ void check(const Variant& variant) {
   check_name<Queries>("--query", variant.query);
   check_name<Precisions>("--precision", variant.precision);
   check_name<Builds>("--build", variant.build);
+  if (variant.leaf_size < 1 || variant.leaf_size > 1u << 16)
+    throw Unusable("--leaf-size " + std::to_string(variant.leaf_size) + ": must be 1 to 65536");
+  if (!(variant.relative_error >= 0) || !std::isfinite(variant.relative_error))
+    throw Unusable("--relative-error " + std::to_string(variant.relative_error) +
+                   ": must be a number that is not negative");
   Strategies::with(name_of(variant.strategy),
                    [&]<class S>(std::type_identity<S>) { made_from<S>(variant.strategy); });
 }

@@ -262,6 +262,9 @@ class Values(ProgramTest):
                 continue
             for option in ("objects", "frames", "moving", "seed", "polygons"):
                 self.refuse(*scene, f"--{option}={value}", mentions="--" + option)
+        for value in ("-1", "-0.001", "nan", "inf", "x", "", "1e999"):
+            given = ["--query=distance", f"--relative-error={value}"]
+            self.refuse(*self.replay, *given, mentions="--relative-error")
         self.refuse(*self.replay, "--threads=1000000", mentions="--threads")
         self.refuse(*self.replay, "--leaf-size=1000000", mentions="--leaf-size")
 
@@ -342,6 +345,10 @@ class Definitions(ProgramTest):
                 self.refuse_definition(self.START + f"{parameter} = {value}\n", parameter)
         for value in ("-1", "'1 mile'", "nan", "inf"):
             self.refuse_definition(self.START + f"step = {value}\n", "step")
+        for value in ("0", "100000"):
+            self.refuse_definition(self.START + f"leaf_size = {value}\n", "leaf-size")
+        for value in ("-1", "nan", "inf", "'x'"):
+            self.refuse_definition(self.START + f"relative_error = {value}\n", "relative")
         for value in ("-1", "200", "nan"):
             self.refuse_definition(self.START + f"degrees = {value}\n", "degrees")
         self.refuse_definition(self.START + "moving = 3\n", "moving")
