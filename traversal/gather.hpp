@@ -74,7 +74,7 @@ template <Batched B, class V>
   static_assert(std::is_standard_layout_v<V> && sizeof(V) % sizeof(T) == 0);
   static_assert(sizeof(Over<V, B>) == sizeof(B) * fields && sizeof(B) == sizeof(T) * lanes);
   Over<V, B> result;
-  T* out = reinterpret_cast<T*>(&result);
+  [[maybe_unused]] T* const out = reinterpret_cast<T*>(&result);
   if constexpr (std::is_same_v<T, float> && lanes >= 4 && fields >= 4) {
     // The last group overlaps the one before where the fields are no multiple of four.
     for (int field = 0; field < fields; field += 4) {
@@ -84,9 +84,12 @@ template <Batched B, class V>
           out + from * lanes);
     }
   } else {
-    for (int i = 0; i < lanes; ++i) {
-      const T* row = reinterpret_cast<const T*>(base + indices[i]);
-      for (int field = 0; field < fields; ++field) out[field * lanes + i] = row[field];
+    // Filled beside the batch and copied: a batch may not be written through a T*.
+    for (int field = 0; field < fields; ++field) {
+      T column[lanes];
+      for (int i = 0; i < lanes; ++i)
+        column[i] = reinterpret_cast<const T*>(base + indices[i])[field];
+      std::memcpy(reinterpret_cast<char*>(&result) + sizeof column * field, column, sizeof column);
     }
   }
   return result;
