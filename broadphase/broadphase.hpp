@@ -30,7 +30,7 @@ namespace bvlab {
 /// Boxes must be free of faults (`first_fault`). The pairs stay valid until the next call. Made
 /// with `Coherence::off`, a method forgets every frame, and keeps its memory.
 template <class M>
-concept BroadPhaseMethod = std::constructible_from<M, const Settings&> &&
+concept BroadPhaseMethod = std::constructible_from<M, const MethodSettings&> &&
     requires(M method, Boxes<typename M::Scalar> boxes) {
   { M::name } -> std::convertible_to<std::string_view>;
   { M::description } -> std::convertible_to<std::string_view>;

@@ -15,7 +15,7 @@ enum class Coherence { off, on };
 /// Whether the pairs that began and ended are reported besides all pairs.
 enum class Changes { unreported, reported };
 
-struct Settings {
+struct MethodSettings {
   Coherence coherence = Coherence::on;
   Changes changes = Changes::unreported;
   int threads = 1;

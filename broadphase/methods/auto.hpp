@@ -20,7 +20,7 @@ class Auto {
   static constexpr std::string_view description =
       "picks a method from number, overlap, sizes and motion, and says why";
 
-  explicit Auto(const Settings& settings)
+  explicit Auto(const MethodSettings& settings)
       : settings_(settings), blocks_(settings), sweep_(settings) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {
@@ -40,7 +40,7 @@ class Auto {
  private:
   static constexpr std::size_t few = 1000;  ///< measured: where the two cost the same from scratch
 
-  Settings settings_;
+  MethodSettings settings_;
   Blocks<T, Contact> blocks_;
   SortAndSweep<T, Contact> sweep_;
   std::string reason_;

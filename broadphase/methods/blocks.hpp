@@ -22,6 +22,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <thread>
 #include <vector>
 
 #include "broadphase/settings.hpp"
@@ -41,7 +42,7 @@ class Blocks {
       "our own: blocks of sixteen neighbours, joined by vector comparisons and kept while they "
       "move";
 
-  explicit Blocks(const Settings& settings) : settings_(settings) {}
+  explicit Blocks(const MethodSettings& settings) : settings_(settings) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {
     began_.clear();
@@ -123,14 +124,42 @@ class Blocks {
       before_.append(pairs_.view());
     }
     PairList& list = pairs_.rewritten();
+    const bool alone = settings_.threads <= 1 || tree_.leaves() < leaves_worth_sharing;
     visits_ = 0;
     tree_.join([&](std::uint32_t a, std::uint32_t b) {
       ++visits_;
-      Pair* out = list.room_for(block_width * block_width + block_width);
-      list.end_at(a == b ? pairs_within(out, a) : pairs_between(out, a, b));
+      if (alone) add_pairs(list, a, b);
     });
+    if (!alone) join_in_shares(list);
     if (compare) difference_(before_.view(), pairs_.view(), began_, ended_);
   }
+  void add_pairs(PairList& list, std::uint32_t a, std::uint32_t b) const {
+    Pair* out = list.room_for(block_width * block_width + block_width);
+    list.end_at(a == b ? pairs_within(out, a) : pairs_between(out, a, b));
+  }
+  /// Every thread walks the tree, which is cheap, and compares its share of the leaf pairs. Shares
+  /// follow each other, so the list is the one that a single thread would have written.
+  void join_in_shares(PairList& list) {
+    const auto threads = static_cast<std::size_t>(settings_.threads);
+    shares_.resize(threads);
+    const auto work = [&](std::size_t t) {
+      shares_[t].clear();
+      const std::size_t first = visits_ * t / threads, last = visits_ * (t + 1) / threads;
+      std::size_t at = 0;
+      tree_.join([&](std::uint32_t a, std::uint32_t b) {
+        if (at >= first && at < last) add_pairs(shares_[t], a, b);
+        ++at;
+      });
+    };
+    {
+      std::vector<std::jthread> others;
+      for (std::size_t t = 1; t < threads; ++t) others.emplace_back(work, t);
+      work(0);
+    }
+    for (const PairList& share : shares_) list.append(share.view());
+  }
+  /// Below this a thread takes longer to start than the join does.
+  static constexpr std::uint32_t leaves_worth_sharing = 1000;
   Pair* pairs_within(Pair* out, std::uint32_t a) const {
     const Block<T>& block = tree_.leaf(a);
     const Loaded<T> loaded(block);
@@ -669,7 +698,7 @@ class Blocks {
     used_ = 0, judged_ = 0;
   }
 
-  Settings settings_;
+  MethodSettings settings_;
   State state_ = State::empty;
   std::size_t count_ = 0;  ///< boxes of the last frame
   std::string_view reason_;
@@ -698,6 +727,7 @@ class Blocks {
   std::vector<T> largest_;
 
   PairList began_, ended_, before_, after_;
+  std::vector<PairList> shares_;
   std::vector<Segment> ended_segments_;
   PairDifference difference_;
 };

@@ -14,7 +14,7 @@ class BruteForce {
   static constexpr std::string_view name = "brute-force";
   static constexpr std::string_view description = "every box against every other; the reference";
 
-  explicit BruteForce(const Settings&) {}
+  explicit BruteForce(const MethodSettings&) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {
     pairs_.clear();

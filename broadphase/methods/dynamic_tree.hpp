@@ -21,7 +21,7 @@ class DynamicTree {
   static constexpr std::string_view description =
       "binary tree of fattened boxes, re-inserted when they escape";
 
-  explicit DynamicTree(const Settings& settings) : coherence_(settings.coherence) {}
+  explicit DynamicTree(const MethodSettings& settings) : coherence_(settings.coherence) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {
     pairs_.clear();

@@ -19,7 +19,7 @@ class Grid {
   static constexpr std::string_view description =
       "uniform grid, cells compared with vector comparisons";
 
-  explicit Grid(const Settings&) {}
+  explicit Grid(const MethodSettings&) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {
     pairs_.clear();

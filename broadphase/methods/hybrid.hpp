@@ -21,7 +21,7 @@ class Hybrid {
   static constexpr std::string_view name = "hybrid";
   static constexpr std::string_view description = "streamed segment tree, scanned below a cutoff";
 
-  explicit Hybrid(const Settings& settings)
+  explicit Hybrid(const MethodSettings& settings)
       : cutoff_(std::max<std::ptrdiff_t>(settings.cutoff, 2)) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {

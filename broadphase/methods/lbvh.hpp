@@ -19,7 +19,7 @@ class Lbvh {
   static constexpr std::string_view description =
       "binary tree over the Morton order, asked box by box";
 
-  explicit Lbvh(const Settings& settings) : coherence_(settings.coherence) {}
+  explicit Lbvh(const MethodSettings& settings) : coherence_(settings.coherence) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {
     pairs_.clear();

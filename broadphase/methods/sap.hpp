@@ -18,8 +18,8 @@ class Sap {
   static constexpr std::string_view description =
       "incremental sweep and prune on three axes, pairs kept";
 
-  explicit Sap(const Settings& settings)
-      : coherence_(settings.coherence), fresh_(Settings{.coherence = Coherence::off}) {}
+  explicit Sap(const MethodSettings& settings)
+      : coherence_(settings.coherence), fresh_(MethodSettings{.coherence = Coherence::off}) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {
     const bool keep = coherence_ == Coherence::on && count_ == boxes.size() && count_ > 0;

@@ -21,7 +21,7 @@ class SortAndSweep {
   static constexpr std::string_view description =
       "sorted along one axis, swept with vector comparisons";
 
-  explicit SortAndSweep(const Settings& settings)
+  explicit SortAndSweep(const MethodSettings& settings)
       : coherence_(settings.coherence), sorted_(settings.coherence) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {

@@ -56,10 +56,12 @@ class Bullet final : public BoxPeer {
     if (kind_ == Kind::trees)
       broadphase_ = std::make_unique<btDbvtBroadphase>();
     else
-      broadphase_ = std::make_unique<bt32BitAxisSweep3>(vector(all.lo), vector(all.hi), static_cast<unsigned>(boxes.size()) + 2);
+      broadphase_ = std::make_unique<bt32BitAxisSweep3>(vector(all.lo), vector(all.hi),
+                                                        static_cast<unsigned>(boxes.size()) + 2);
     for (std::uint32_t k = 0; k < boxes.size(); ++k)
-      proxies_.push_back(broadphase_->createProxy(vector(boxes[k].lo), vector(boxes[k].hi), 0,
-                                                  reinterpret_cast<void*>(static_cast<std::uintptr_t>(k + 1)), 1, 1, nullptr));
+      proxies_.push_back(broadphase_->createProxy(
+          vector(boxes[k].lo), vector(boxes[k].hi), 0,
+          reinterpret_cast<void*>(static_cast<std::uintptr_t>(k + 1)), 1, 1, nullptr));
   }
   void release() {
     for (auto* proxy : proxies_) broadphase_->destroyProxy(proxy, nullptr);

@@ -32,15 +32,21 @@ class Cgal final : public BoxPeer {
     pairs_.clear();
     for (std::uint32_t k = 0; k < boxes.size(); ++k) items_.push_back({boxes[k], k});
     if (run_ == Run::alone) {
-      CGAL::box_self_intersection_d(items_.begin(), items_.end(), [this](const IndexedBox& a, const IndexedBox& b) {
-        pairs_.push_back(ordered(a.index, b.index));
-      }, cutoff_);
+      CGAL::box_self_intersection_d(
+          items_.begin(), items_.end(),
+          [this](const IndexedBox& a, const IndexedBox& b) {
+            pairs_.push_back(ordered(a.index, b.index));
+          },
+          cutoff_);
       return pairs_;
     }
     tbb::enumerable_thread_specific<std::vector<Pair>> found;
     CGAL::box_self_intersection_d<CGAL::Parallel_tag>(
         items_.begin(), items_.end(),
-        [&](const IndexedBox& a, const IndexedBox& b) { found.local().push_back(ordered(a.index, b.index)); }, cutoff_);
+        [&](const IndexedBox& a, const IndexedBox& b) {
+          found.local().push_back(ordered(a.index, b.index));
+        },
+        cutoff_);
     for (const auto& some : found) pairs_.insert(pairs_.end(), some.begin(), some.end());
     return pairs_;
   }

@@ -21,13 +21,17 @@ class Embree final : public BoxPeer {
     if (boxes.size() != count_) enter();
     rtcCommitGeometry(rtcGetGeometry(scene_, 0));
     rtcCommitScene(scene_);
-    rtcCollide(scene_, scene_, [](void* self, RTCCollision* found, unsigned count) {
-      auto& peer = *static_cast<Embree*>(self);
-      for (unsigned k = 0; k < count; ++k) {
-        const auto a = found[k].primID0, b = found[k].primID1;
-        if (a < b && overlap<Closed>(peer.boxes_[a], peer.boxes_[b])) peer.pairs_.push_back({a, b});
-      }
-    }, this);
+    rtcCollide(
+        scene_, scene_,
+        [](void* self, RTCCollision* found, unsigned count) {
+          auto& peer = *static_cast<Embree*>(self);
+          for (unsigned k = 0; k < count; ++k) {
+            const auto a = found[k].primID0, b = found[k].primID1;
+            if (a < b && overlap<Closed>(peer.boxes_[a], peer.boxes_[b]))
+              peer.pairs_.push_back({a, b});
+          }
+        },
+        this);
     return pairs_;
   }
 
@@ -41,12 +45,16 @@ class Embree final : public BoxPeer {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count_));
     rtcSetGeometryUserData(geometry, this);
-    rtcSetGeometryBoundsFunction(geometry, [](const RTCBoundsFunctionArguments* arguments) {
-      const Box<float>& box = static_cast<Embree*>(arguments->geometryUserPtr)->boxes_[arguments->primID];
-      RTCBounds& b = *arguments->bounds_o;
-      b.lower_x = box.lo[0], b.lower_y = box.lo[1], b.lower_z = box.lo[2];
-      b.upper_x = box.hi[0], b.upper_y = box.hi[1], b.upper_z = box.hi[2];
-    }, nullptr);
+    rtcSetGeometryBoundsFunction(
+        geometry,
+        [](const RTCBoundsFunctionArguments* arguments) {
+          const Box<float>& box =
+              static_cast<Embree*>(arguments->geometryUserPtr)->boxes_[arguments->primID];
+          RTCBounds& b = *arguments->bounds_o;
+          b.lower_x = box.lo[0], b.lower_y = box.lo[1], b.lower_z = box.lo[2];
+          b.upper_x = box.hi[0], b.upper_y = box.hi[1], b.upper_z = box.hi[2];
+        },
+        nullptr);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene_, geometry, 0);
     rtcReleaseGeometry(geometry);

@@ -26,7 +26,8 @@ class Fcl final : public BoxPeer {
     for (std::uint32_t k = 0; k < boxes.size(); ++k) {
       // The object's box is set directly: the manager reads nothing else of it.
       auto& aabb = const_cast<fcl::AABB<float>&>(objects_[k]->getAABB());
-      for (int axis = 0; axis < 3; ++axis) aabb.min_[axis] = boxes[k].lo[axis], aabb.max_[axis] = boxes[k].hi[axis];
+      for (int axis = 0; axis < 3; ++axis)
+        aabb.min_[axis] = boxes[k].lo[axis], aabb.max_[axis] = boxes[k].hi[axis];
       objects_[k]->setUserData(reinterpret_cast<void*>(static_cast<std::uintptr_t>(k)));
       if (fresh) pointers_.resize(boxes.size()), pointers_[k] = objects_[k].get();
     }
@@ -35,10 +36,12 @@ class Fcl final : public BoxPeer {
     else
       manager_->update();
     pairs_.clear();
-    manager_->collide(this, [](fcl::CollisionObject<float>* a, fcl::CollisionObject<float>* b, void* self) {
-      if (a->getAABB().overlap(b->getAABB())) static_cast<Fcl*>(self)->pairs_.push_back(ordered(index(a), index(b)));
-      return false;
-    });
+    manager_->collide(
+        this, [](fcl::CollisionObject<float>* a, fcl::CollisionObject<float>* b, void* self) {
+          if (a->getAABB().overlap(b->getAABB()))
+            static_cast<Fcl*>(self)->pairs_.push_back(ordered(index(a), index(b)));
+          return false;
+        });
     return pairs_;
   }
 
@@ -46,7 +49,8 @@ class Fcl final : public BoxPeer {
   static std::uint32_t index(fcl::CollisionObject<float>* object) {
     return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(object->getUserData()));
   }
-  std::shared_ptr<fcl::CollisionGeometry<float>> shape_ = std::make_shared<fcl::Sphere<float>>(1.0f);
+  std::shared_ptr<fcl::CollisionGeometry<float>> shape_ =
+      std::make_shared<fcl::Sphere<float>>(1.0f);
   std::unique_ptr<Manager> manager_;
   std::vector<std::unique_ptr<fcl::CollisionObject<float>>> objects_;
   std::vector<fcl::CollisionObject<float>*> pointers_;
@@ -56,10 +60,12 @@ class Fcl final : public BoxPeer {
 }  // namespace
 
 std::unique_ptr<BoxPeer> make_fcl_boxes(const std::string& name) {
-  if (name == "fcl-tree") return std::make_unique<Fcl<fcl::DynamicAABBTreeCollisionManager<float>>>();
+  if (name == "fcl-tree")
+    return std::make_unique<Fcl<fcl::DynamicAABBTreeCollisionManager<float>>>();
   if (name == "fcl-ssap") return std::make_unique<Fcl<fcl::SSaPCollisionManager<float>>>();
   if (name == "fcl-sap") return std::make_unique<Fcl<fcl::SaPCollisionManager<float>>>();
-  if (name == "fcl-interval") return std::make_unique<Fcl<fcl::IntervalTreeCollisionManager<float>>>();
+  if (name == "fcl-interval")
+    return std::make_unique<Fcl<fcl::IntervalTreeCollisionManager<float>>>();
   return nullptr;
 }
 

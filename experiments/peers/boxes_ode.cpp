@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// ODE's hash space and its sweep and prune. A geometry is a box with a centre and three lengths, so
-/// its bounds are rounded anew; each pair reported is compared with the boxes themselves.
+/// ODE's hash space and its sweep and prune. A geometry is a box with a centre and three lengths,
+/// so its bounds are rounded anew; each pair reported is compared with the boxes themselves.
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -31,7 +31,8 @@ class Ode final : public BoxPeer {
       for (int axis = 0; axis < 3; ++axis) {
         centre[axis] = (double(b.lo[axis]) + double(b.hi[axis])) / 2;
         // A little longer than the box, so that no rounding loses what touches.
-        length[axis] = (double(b.hi[axis]) - double(b.lo[axis])) * (1 + 1e-6) + std::abs(centre[axis]) * 1e-6 + 1e-30;
+        length[axis] = (double(b.hi[axis]) - double(b.lo[axis])) * (1 + 1e-6) +
+                       std::abs(centre[axis]) * 1e-6 + 1e-30;
       }
       dGeomBoxSetLengths(geometries_[k], length[0], length[1], length[2]);
       dGeomSetPosition(geometries_[k], centre[0], centre[1], centre[2]);
@@ -52,7 +53,8 @@ class Ode final : public BoxPeer {
   void enter() {
     if (space_) dSpaceDestroy(space_);
     geometries_.clear();
-    space_ = kind_ == Kind::hash ? dHashSpaceCreate(nullptr) : dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
+    space_ = kind_ == Kind::hash ? dHashSpaceCreate(nullptr)
+                                 : dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ);
     for (std::size_t k = 0; k < boxes_.size(); ++k) {
       geometries_.push_back(dCreateBox(space_, 1, 1, 1));
       dGeomSetData(geometries_.back(), reinterpret_cast<void*>(k));

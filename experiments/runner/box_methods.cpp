@@ -10,7 +10,7 @@ namespace {
 template <class M>
 class Named final : public AnyMethod<typename M::Scalar> {
  public:
-  explicit Named(const Settings& settings) : method_(settings) {}
+  explicit Named(const MethodSettings& settings) : method_(settings) {}
   std::span<const Pair> overlapping(Boxes<typename M::Scalar> boxes) override {
     return method_.overlapping(boxes);
   }
@@ -28,7 +28,7 @@ class Named final : public AnyMethod<typename M::Scalar> {
 }  // namespace
 
 template <class T>
-std::unique_ptr<AnyMethod<T>> make_method(std::string_view name, const Settings& settings) {
+std::unique_ptr<AnyMethod<T>> make_method(std::string_view name, const MethodSettings& settings) {
   std::unique_ptr<AnyMethod<T>> method;
   const bool known = Methods<T>::with(name, [&](auto type) {
     method = std::make_unique<Named<typename decltype(type)::type>>(settings);
@@ -37,8 +37,8 @@ std::unique_ptr<AnyMethod<T>> make_method(std::string_view name, const Settings&
     throw Unusable("--method " + std::string(name) + ": unknown; there are " + Methods<T>::names());
   return method;
 }
-template std::unique_ptr<AnyMethod<float>> make_method(std::string_view, const Settings&);
-template std::unique_ptr<AnyMethod<double>> make_method(std::string_view, const Settings&);
+template std::unique_ptr<AnyMethod<float>> make_method(std::string_view, const MethodSettings&);
+template std::unique_ptr<AnyMethod<double>> make_method(std::string_view, const MethodSettings&);
 
 std::vector<std::pair<std::string, std::string>> method_descriptions() {
   std::vector<std::pair<std::string, std::string>> all;

@@ -24,7 +24,7 @@ class AnyMethod {
 
 /// The method of that name for closed boxes; throws Unusable, naming those there are.
 template <class T>
-std::unique_ptr<AnyMethod<T>> make_method(std::string_view name, const Settings& settings);
+std::unique_ptr<AnyMethod<T>> make_method(std::string_view name, const MethodSettings& settings);
 
 /// "name  what it is", one entry a method.
 std::vector<std::pair<std::string, std::string>> method_descriptions();

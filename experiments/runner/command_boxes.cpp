@@ -58,7 +58,7 @@ Found find(const Arguments& arguments, const Array<T>& trace) {
   const auto seconds_since = [](Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
   };
-  Settings settings;
+  MethodSettings settings;
   settings.coherence = arguments.coherent == "on" ? Coherence::on : Coherence::off;
   settings.threads = arguments.threads;
   Found found;
@@ -80,7 +80,7 @@ Found find(const Arguments& arguments, const Array<T>& trace) {
 
 void run(const Arguments& arguments) {
   make_method<float>(arguments.method,
-                     Settings{});  // refuses an unknown name before the file is read
+                     MethodSettings{});  // refuses an unknown name before the file is read
   require_place("--out", arguments.out);
   require_place("--json", arguments.json);
   static constexpr std::size_t shape[] = {any_length, any_length, 6};

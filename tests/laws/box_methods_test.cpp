@@ -14,7 +14,7 @@ struct Fake {
   using Scalar = float;
   static constexpr std::string_view name = "fake";
   static constexpr std::string_view description = "finds nothing";
-  explicit Fake(const Settings&) {}
+  explicit Fake(const MethodSettings&) {}
   std::span<const Pair> overlapping(Boxes<float>) { return {}; }
 };
 static_assert(BroadPhaseMethod<Fake>);
@@ -41,8 +41,8 @@ class BoxMethod : public ::testing::Test {
   using Contact = typename ContactOf<M>::type;
   static_assert(BroadPhaseMethod<M>);
 
-  static Settings settings(Coherence coherence) {
-    Settings s;
+  static MethodSettings settings(Coherence coherence) {
+    MethodSettings s;
     s.coherence = coherence;
     s.changes = Changes::reported;
     s.cutoff = 8;  // so that small frames are divided

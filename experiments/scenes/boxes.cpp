@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/scenes/boxes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/files/unusable.hpp"
+
+namespace bvlab {
+namespace {
+
+using Centre = std::array<float, 3>;
+
+class Maker {
+ public:
+  explicit Maker(unsigned seed) : random_(seed) {}
+
+  float uniform(float lo, float hi) {
+    return lo + (hi - lo) * (static_cast<float>(random_() >> 8) * 0x1p-24f);
+  }
+  float normal() {  // the sum of twelve uniform numbers: the same everywhere, unlike the library's
+    float sum = -6;
+    for (int k = 0; k < 12; ++k) sum += uniform(0, 1);
+    return sum;
+  }
+  Centre in_cube() { return {uniform(0, 1), uniform(0, 1), uniform(0, 1)}; }
+  Centre on_sphere() {
+    for (;;) {
+      const Centre c{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+      const float r = std::sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
+      if (r > 1 || r < 0.1f) continue;
+      return {c[0] / r, c[1] / r, c[2] / r};
+    }
+  }
+  static Box<float> around(const Centre& c, const Centre& extent) {
+    Box<float> box;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.lo[axis] = c[axis] - extent[axis] / 2;
+      box.hi[axis] = c[axis] + extent[axis] / 2;
+    }
+    return box;
+  }
+  /// Edges from half to one and a half times the size.
+  Centre edges(float size) {
+    return {size * uniform(0.5f, 1.5f), size * uniform(0.5f, 1.5f), size * uniform(0.5f, 1.5f)};
+  }
+
+  std::mt19937& random() { return random_; }
+
+ private:
+  std::mt19937 random_;
+};
+
+std::vector<Box<float>> adjacent(std::size_t count, Maker& make) {
+  auto side = static_cast<std::size_t>(std::cbrt(static_cast<double>(count)) + 1e-9);
+  std::vector<Box<float>> boxes;
+  for (std::size_t x = 0; x < side; ++x)
+    for (std::size_t y = 0; y < side; ++y)
+      for (std::size_t z = 0; z < side; ++z) {
+        const auto a = static_cast<float>(x), b = static_cast<float>(y), c = static_cast<float>(z);
+        boxes.push_back({{a, b, c}, {a + 1, b + 1, c + 1}});
+      }
+  std::shuffle(boxes.begin(), boxes.end(), make.random());
+  return boxes;
+}
+
+}  // namespace
+
+std::vector<std::string> box_set_names() {
+  return {"random", "sphere-packed", "adjacent", "sphere-sparse", "clusters",
+          "mixed",  "elongated",     "flock",    "pile"};
+}
+std::vector<std::string> box_motion_names() {
+  return {"still", "drift", "rigid", "breathe", "part", "teleport"};
+}
+
+std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count, unsigned seed) {
+  Maker make(seed);
+  if (name == "adjacent") return adjacent(count, make);
+  const float spacing = 1 / std::cbrt(static_cast<float>(std::max<std::size_t>(count, 1)));
+  std::vector<Centre> centres;
+  for (int k = 0; k < 20; ++k) centres.push_back(make.in_cube());
+  const auto one = [&]() -> Box<float> {
+    if (name == "random") return make.around(make.in_cube(), make.edges(0.095f));
+    if (name == "sphere-packed") return make.around(make.on_sphere(), make.edges(0.08f));
+    if (name == "sphere-sparse")
+      return make.around(make.on_sphere(), make.edges(2.4f / std::sqrt(static_cast<float>(count))));
+    if (name == "clusters") {
+      const Centre& c = centres[make.random()() % centres.size()];
+      return make.around({c[0] + 0.02f * make.normal(), c[1] + 0.02f * make.normal(),
+                          c[2] + 0.02f * make.normal()},
+                         make.edges(0.15f * spacing));
+    }
+    if (name == "mixed")
+      return make.around(make.in_cube(),
+                         make.edges(5 * spacing * std::pow(10.0f, -6 * make.uniform(0, 1))));
+    if (name == "elongated") {
+      Centre extent = make.edges(0.2f * spacing);
+      extent[make.random()() % 3] *= 20;
+      return make.around(make.in_cube(), extent);
+    }
+    if (name == "flock") return make.around(make.in_cube(), make.edges(0.8f * spacing));
+    if (name == "pile") {  // heaped towards the floor
+      Centre c = make.in_cube();
+      c[2] *= 0.3f * c[2];
+      return make.around(c, make.edges(0.5f * spacing));
+    }
+    std::string known;
+    for (const auto& set : box_set_names()) known += (known.empty() ? "" : ", ") + set;
+    throw Unusable("set " + name + ": unknown; there are " + known);
+  };
+  std::vector<Box<float>> boxes;
+  boxes.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) boxes.push_back(one());
+  return boxes;
+}
+
+BoxMotion::BoxMotion(std::string motion, double displacement, const std::string& set,
+                     std::vector<Box<float>> boxes, unsigned seed)
+    : motion_(std::move(motion)),
+      displacement_(static_cast<float>(displacement)),
+      start_(boxes),
+      boxes_(std::move(boxes)),
+      random_(seed + 1) {
+  if (const auto known = box_motion_names();
+      std::find(known.begin(), known.end(), motion_) == known.end())
+    throw Unusable("motion " + motion_ +
+                   ": unknown; there are still, drift, rigid, breathe, part, teleport");
+  Maker make(seed + 2);
+  const std::size_t every = motion_ == "part" ? 100 : set == "pile" && motion_ == "drift" ? 50 : 1;
+  for (std::size_t k = 0; k < boxes_.size(); ++k) {
+    Centre v{make.uniform(-1, 1), make.uniform(-1, 1), make.uniform(-1, 1)};
+    if (set == "flock") v = {1 + 0.1f * v[0], 0.5f + 0.1f * v[1], 0.1f * v[2]};
+    if (motion_ == "rigid") v = {1, 0.7f, -0.4f};
+    velocity_.push_back(v);
+    if (make.random()() % every == 0) movers_.push_back(k);
+  }
+}
+
+void BoxMotion::step() {
+  ++frame_;
+  if (motion_ == "still") return;
+  if (motion_ == "teleport") return std::shuffle(boxes_.begin(), boxes_.end(), random_);
+  for (const std::size_t k : movers_)
+    if (motion_ == "breathe") {
+      const std::size_t axis = k % 3;
+      Box<float>& box = boxes_[k];
+      const float extent = start_[k].hi[axis] - start_[k].lo[axis];
+      box.hi[axis] =
+          start_[k].hi[axis] +
+          extent * 0.5f * std::abs(std::sin(static_cast<float>(frame_) * displacement_ * 2));
+    } else {
+      drift(k);
+    }
+}
+
+void BoxMotion::drift(std::size_t k) {
+  Box<float>& box = boxes_[k];
+  for (int axis = 0; axis < 3; ++axis) {
+    const float extent = start_[k].hi[axis] - start_[k].lo[axis];
+    float by = velocity_[k][static_cast<std::size_t>(axis)] * displacement_ * extent;
+    if (std::abs(box.lo[axis] + by - start_[k].lo[axis]) > 5 * extent)
+      velocity_[k][static_cast<std::size_t>(axis)] *= -1, by = -by;
+    box.lo[axis] += by;
+    box.hi[axis] += by;
+  }
+}
+
+}  // namespace bvlab

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Built-in sets of boxes and how they move, the same for the same seed. Sets of the seed paper:
+/// `random` (over-packed, k = O(n^2)), `sphere-packed` (the same on a sphere), `adjacent` (cubes
+/// that touch exactly), `sphere-sparse` (k = O(n)). Sets it left out: `clusters`, `mixed` (sizes
+/// over six decades), `elongated`, `flock` (velocities correlated), `pile` (most boxes at rest).
+#pragma once
+
+#include <array>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "broadphase/box.hpp"
+
+namespace bvlab {
+
+std::vector<std::string> box_set_names();
+
+/// `adjacent` has as many boxes as the largest cube of cubes within `count`; the others have
+/// `count`. Throws Unusable for an unknown name.
+std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count, unsigned seed);
+
+/// Moves a set frame by frame:
+///   still     nothing moves;
+///   drift     every box with a velocity of its own, `displacement` of its size a frame, turning
+///             back after five sizes (`flock`: nearly the same velocity for all; `pile`: one box in
+///             fifty);
+///   rigid     all by the same translation;
+///   breathe   boxes grow and shrink along one axis each;
+///   part      one box in a hundred drifts;
+///   teleport  every box takes the place of another.
+class BoxMotion {
+ public:
+  BoxMotion(std::string motion, double displacement, const std::string& set,
+            std::vector<Box<float>> boxes, unsigned seed);
+  const std::vector<Box<float>>& boxes() const { return boxes_; }
+  void step();
+
+ private:
+  void drift(std::size_t k);
+
+  std::string motion_;
+  float displacement_;
+  std::vector<Box<float>> start_, boxes_;
+  std::vector<std::array<float, 3>> velocity_;
+  std::vector<std::size_t> movers_;
+  std::mt19937 random_;
+  int frame_ = 0;
+};
+
+std::vector<std::string> box_motion_names();
+
+}  // namespace bvlab
