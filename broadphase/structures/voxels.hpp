@@ -51,6 +51,7 @@ class Voxels {
 
   /// Grows with x, so a box that starts before another ends does not start in a later cell.
   std::int32_t cell(int axis, T x) const {
+    if (last_[axis] == 0) return 0;
     const double at = (static_cast<double>(x) - low_[axis]) * scale_[axis];
     return static_cast<std::int32_t>(std::min(std::max(at, 0.0), last_[axis]));
   }

@@ -15,7 +15,7 @@ class Ode final : public BoxPeer {
  public:
   enum class Kind { hash, sweep };
   explicit Ode(Kind kind) : kind_(kind) {
-    static const bool ready = dInitODE2(0) != 0;
+    static const bool ready = dInitODE2(0) && dAllocateODEDataForThread(dAllocateMaskAll);
     (void)ready;
   }
   ~Ode() override {
