@@ -218,7 +218,7 @@ int main_of(int argc, char** argv) {
   std::ifstream file(argv[1]);
   if (!file) throw Unusable(std::string(argv[1]) + ": " + std::strerror(errno));
   const std::string text((std::istreambuf_iterator<char>(file)), {});
-  const toml::table definition = toml::parse(text, argv[1]);
+  const toml::table definition = toml::parse(std::string_view(text), std::string_view(argv[1]));
   const auto name = definition["name"].value_or(std::string("boxes"));
   const std::filesystem::path record =
       argc == 4 ? std::filesystem::path(argv[3]) : fresh_record("experiments/record");
