@@ -68,7 +68,8 @@ Variant variant_of(const Cell& cell) {
           cell["query"],
           cell["build"],
           number<std::uint32_t>("leaf_size", cell["leaf_size"]),
-          cell["precision"]};
+          cell["precision"],
+          number<double>("relative_error", cell["relative_error"])};
 }
 
 struct Prepared {

@@ -347,6 +347,8 @@ class Definitions(ProgramTest):
             self.refuse_definition(self.START + f"step = {value}\n", "step")
         for value in ("0", "100000"):
             self.refuse_definition(self.START + f"leaf_size = {value}\n", "leaf-size")
+        for value in ("-1", "nan", "inf", "'x'"):
+            self.refuse_definition(self.START + f"relative_error = {value}\n", "relative")
         for value in ("-1", "200", "nan"):
             self.refuse_definition(self.START + f"degrees = {value}\n", "degrees")
         self.refuse_definition(self.START + "moving = 3\n", "moving")
