@@ -169,7 +169,8 @@ def draw_over_time(frames, column, label, out, name):
         axis.set_ylabel(label)
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", ncol=3, frameon=False,
-                  bbox_to_anchor=(0.5, -0.05))
+                  bbox_to_anchor=(0.5, -0.1), title=f"running mean over {SMOOTHED} frames",
+                  title_fontsize=8)
     figure.tight_layout()
     return style.save(figure, out, name)
 
@@ -195,8 +196,8 @@ def main():
     out = arguments.out or Path(arguments.record) / "figures"
     frames = pd.read_csv(Path(arguments.record) / "nine-bunnies.frames.csv")
     for path in (draw_table(runs, out), draw_runs(runs, out),
-                 draw_over_time(frames, "n_v", f"$N_v$ per frame (mean of {SMOOTHED})", out, "nine-bunnies-tests"),
-                 draw_over_time(frames, "front", f"entries, all fronts (mean of {SMOOTHED})", out, "nine-bunnies-front")):
+                 draw_over_time(frames, "n_v", "$N_v$ per frame", out, "nine-bunnies-tests"),
+                 draw_over_time(frames, "front", "entries of all fronts", out, "nine-bunnies-front")):
         print(path)
 
 

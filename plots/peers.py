@@ -15,8 +15,13 @@ import matplotlib.pyplot as plt
 import style
 
 
+ORDER = ["sphere recursive", "sphere separation-list", "sphere deferred", "fcl-obb", "fcl-obbrss",
+         "cgal"]
+
+
 def read(record):
-    rows = pd.read_csv(Path(record) / "peers.csv", keep_default_na=False)
+    (table,) = Path(record).glob("*.csv")
+    rows = pd.read_csv(table, keep_default_na=False)
     rows["us_per_pair"] = rows.time_ns / rows.pairs / 1e3
     return rows
 
@@ -35,7 +40,8 @@ def name_of(variant):
 def print_table(rows):
     middle = rows.groupby(["query", "polygons", "density", "motion", "variant"],
                           sort=False).us_per_pair.median().unstack("variant")
-    middle = middle[list(dict.fromkeys(rows.variant))]
+    middle = middle[sorted(middle.columns, key=ORDER.index)]
+    middle = middle.dropna(axis=1, how="all")
     ours = [v for v in middle.columns if v.startswith("sphere")]
     peers = [v for v in middle.columns if v not in ours]
     middle["recursive / best peer"] = middle["sphere recursive"] / middle[peers].min(axis=1)
@@ -45,10 +51,12 @@ def print_table(rows):
         print(middle.round(3).to_string())
 
 
-def draw(rows, out):
+def draw(rows, out, name):
     panels = list(rows.groupby(["query", "polygons"], sort=False))
-    figure, axes = plt.subplots(2, int(np.ceil(len(panels) / 2)), figsize=(7.2, 4.8), squeeze=False)
-    variants = list(dict.fromkeys(rows.variant))
+    lines = int(np.ceil(len(panels) / 2))
+    figure, axes = plt.subplots(lines, min(2, len(panels)), figsize=(7.2, 3.2 * lines),
+                                squeeze=False)
+    variants = sorted(dict.fromkeys(rows.variant), key=ORDER.index)
     for axis, ((query, polygons), group) in zip(axes.flat, panels):
         cells = list(dict.fromkeys(zip(group.density, group.motion)))
         for k, variant in enumerate(variants):
@@ -61,8 +69,8 @@ def draw(rows, out):
                           **style.marker_style(name_of(variant)))
         axis.set_yscale("log")
         axis.set_title(f"{query}, {polygons} polygons")
-        axis.set_xticks(range(len(cells)), [f"{d}\\n{m.replace(', ', ',' + chr(10))}" for d, m in cells],
-                        fontsize=5)
+        axis.set_xticks(range(len(cells)), [f"{d}; {m}" for d, m in cells], fontsize=6,
+                        rotation=35, ha="right", rotation_mode="anchor")
         axis.grid(axis="x", visible=False)
     for axis in axes[:, 0]:
         axis.set_ylabel("µs per pair and frame")
@@ -70,7 +78,7 @@ def draw(rows, out):
     figure.legend(handles, labels, loc="lower center", ncol=len(variants), frameon=False,
                   bbox_to_anchor=(0.5, -0.05))
     figure.tight_layout()
-    return style.save(figure, out, "peers")
+    return style.save(figure, out, name)
 
 
 def main():
@@ -83,7 +91,8 @@ def main():
         print(f"{variant}: {count} answers differ from ours; refused")
         rows = rows[rows.variant != variant]
     print_table(rows)
-    print(draw(rows, arguments.out or Path(arguments.record) / "figures"))
+    (table,) = Path(arguments.record).glob("*.csv")
+    print(draw(rows, arguments.out or Path(arguments.record) / "figures", table.stem))
 
 
 if __name__ == "__main__":
