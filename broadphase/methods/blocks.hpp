@@ -7,7 +7,7 @@
 /// moved:
 ///   nothing moved      the boxes are compared with the last frame's, and the list stands;
 ///   moved a little     *listed*: each leaf keeps a margin around it, and the pairs of leaves whose
-///                      margins meet are kept in a list (BibTeX: verlet1967), each with the pairs
+///                      margins meet are kept in a list (BibTeX: verlet1967computer), each with the pairs
 ///                      of boxes found in it as bits and with the *slack* by which every one of its
 ///                      comparisons was decided: until the two leaves together have moved that far,
 ///                      none can come out otherwise and nothing is compared. What is compared

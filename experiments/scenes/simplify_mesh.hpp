@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A mesh with fewer triangles: edges collapse one after the other, the cheapest first, by the cost
-/// and placement of Lindstrom and Turk [lindstrom_turk_1998], as CGAL has them. Under a second for
+/// and placement of Lindstrom and Turk [lindstrom1998fast], as CGAL has them. Under a second for
 /// a hundred thousand triangles.
 #pragma once
 

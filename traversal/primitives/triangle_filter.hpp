@@ -201,7 +201,7 @@ template <Scalar S, CornersAre corners = CornersAre::given>
   const Mask<S> known = all_known<S>(sides_a, bound) & all_known<S>(sides_b, bound);
   if (everywhere<S>(verdict.apart | !known)) return verdict;
   // The planes cross in a line from which each triangle cuts an interval. With each apex above the
-  // other's plane, they overlap unless one of two determinants is positive [guigue2003].
+  // other's plane, they overlap unless one of two determinants is positive [guigue2003fast].
   Turned<S> p(a, sides_a), s(b, sides_b);
   const Vector<S> q = choose<S>(s.above, p.next, p.last), r = choose<S>(s.above, p.last, p.next);
   const Vector<S> t = choose<S>(p.above, s.next, s.last), w = choose<S>(p.above, s.last, s.next);

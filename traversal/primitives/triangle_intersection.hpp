@@ -2,7 +2,7 @@
 /// Whether two closed triangles share a point, exactly, for any finite corners: zero-area
 /// triangles (segments and points), coplanar ones and touching included.
 ///
-/// Plane sides first, then at most two orientations of mixed corners [guigue2003], each sign
+/// Plane sides first, then at most two orientations of mixed corners [guigue2003fast], each sign
 /// exact. Flat pairs (coplanar or of zero area) are decided in a projection by exact separating
 /// lines.
 #pragma once
