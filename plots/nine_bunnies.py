@@ -95,33 +95,40 @@ def nearest_reading(runs):
 
 
 def draw_table(runs, out):
-    """Speedup by reading and density, quartiles over the ten runs, published values as lines."""
-    ratios = speedups(runs)
+    """Speedup by reading and density, in tests and in time: quartiles over the ten runs, published
+    values as lines."""
     readings = list(dict.fromkeys(runs.reading))
     densities = list(dict.fromkeys(runs.density))
-    figure, axes = plt.subplots(1, len(densities), figsize=(7.2, 0.5 * len(readings) + 1.1),
-                                sharex=True, sharey=True)
-    for axis, density in zip(np.atleast_1d(axes), densities):
-        for k, name in enumerate(LISTS):
-            quartiles = np.array([ratios.loc[(reading, density)][name].quantile([0.25, 0.5, 0.75])
-                                  for reading in readings])
-            places = np.arange(len(readings)) + (k - 0.5) * 0.38
-            axis.barh(places, quartiles[:, 1], height=0.36, label=name, **style.bar_style(name))
-            axis.errorbar(quartiles[:, 1], places, fmt="none", ecolor="black", elinewidth=0.8,
-                          xerr=[quartiles[:, 1] - quartiles[:, 0], quartiles[:, 2] - quartiles[:, 1]])
-            published = PUBLISHED["recursive"].mean() / PUBLISHED[name].mean()
-            axis.axvline(published, linewidth=1.4, label=f"{name}, published", **style.line_style(name))
-        axis.axvline(1, color="black", linewidth=0.8)
-        axis.set_title(density)
+    figure, axes = plt.subplots(2, len(densities), figsize=(7.2, 0.86 * len(readings) + 1.2),
+                                sharex=True, sharey=True, squeeze=False)
+    for line, (what, label) in zip(axes, (("n_v", "$N_v$"), ("time_ns", "time"))):
+        ratios = speedups(runs, what)
+        for axis, density in zip(line, densities):
+            draw_speedups(axis, [ratios.loc[(reading, density)] for reading in readings])
+            axis.set_title(f"{label}, recursive / list; {density}")
+    axes[0, 0].set_yticks(range(len(readings)), readings)
+    axes[0, 0].invert_yaxis()
+    for axis in axes[1]:
         axis.set_xlabel("speedup over the recursive algorithm")
-        axis.grid(axis="y", visible=False)
-    first = np.atleast_1d(axes)[0]
-    first.set_yticks(range(len(readings)), readings)
-    first.invert_yaxis()
-    handles, labels = first.get_legend_handles_labels()
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.tight_layout()
     figure.legend(handles, labels, loc="lower center", ncol=4, frameon=False,
-                  bbox_to_anchor=(0.5, -0.09))
+                  bbox_to_anchor=(0.5, -0.05))
     return style.save(figure, out, "nine-bunnies-table")
+
+
+def draw_speedups(axis, tables):
+    for k, name in enumerate(LISTS):
+        quartiles = np.array([table[name].quantile([0.25, 0.5, 0.75]) for table in tables])
+        places = np.arange(len(tables)) + (k - 0.5) * 0.38
+        axis.barh(places, quartiles[:, 1], height=0.36, label=name, **style.bar_style(name))
+        axis.errorbar(quartiles[:, 1], places, fmt="none", ecolor="black", elinewidth=0.8,
+                      xerr=[quartiles[:, 1] - quartiles[:, 0], quartiles[:, 2] - quartiles[:, 1]])
+        published = PUBLISHED["recursive"].mean() / PUBLISHED[name].mean()
+        axis.axvline(published, linewidth=1.4, label=f"{name}, published time",
+                     **style.line_style(name))
+    axis.axvline(1, color="black", linewidth=0.8)
+    axis.grid(axis="y", visible=False)
 
 
 def draw_runs(runs, out):
