@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Once frames stop growing, no method allocates.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "broadphase/broadphase.hpp"
+#include "tests/laws/boxes_for_test.hpp"
+
+namespace {
+std::atomic<std::size_t> allocations = 0;
+void* counted(std::size_t bytes, std::size_t alignment) {
+  ++allocations;
+  void* memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
+}  // namespace
+void* operator new(std::size_t bytes) {
+  return counted(bytes ? bytes : 1, alignof(std::max_align_t));
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  return counted(bytes ? bytes : 1, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+
+namespace bvlab {
+namespace {
+
+TEST(Allocations, NoneInSteadyState) {
+  BoxMaker<float> random(6);
+  const Frame<float> base = random.boxes(1500, 0, 1, 0.02f, 0.08f);
+  Frame<float> boxes = base;
+  const auto at = [&](int frame) {
+    const float by = 0.002f * static_cast<float>(std::abs(frame % 8 - 4));
+    for (std::size_t k = 0; k < boxes.size(); ++k)
+      for (int axis = 0; axis < 3; ++axis) {
+        const float mine = k % 3 == static_cast<std::size_t>(axis) ? by : -by;
+        boxes[k].lo[axis] = base[k].lo[axis] + mine;
+        boxes[k].hi[axis] = base[k].hi[axis] + mine;
+      }
+  };
+  for (const Coherence coherence : {Coherence::off, Coherence::on})
+    Methods<float>::for_each([&](auto type) {
+      using M = typename decltype(type)::type;
+      MethodSettings settings;
+      settings.coherence = coherence;
+      M method(settings);
+      for (int frame = 0; frame < 48; ++frame) at(frame), method.overlapping(boxes);
+      const std::size_t before = allocations;
+      std::size_t found = 0;
+      for (int frame = 48; frame < 64; ++frame)
+        at(frame), found += method.overlapping(boxes).size();
+      EXPECT_EQ(allocations - before, 0u)
+          << M::name << (coherence == Coherence::on ? ", coherent" : "");
+      EXPECT_GT(found, 0u);
+    });
+}
+
+}  // namespace
+}  // namespace bvlab
