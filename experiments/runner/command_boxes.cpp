@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// `bvlab boxes`: a box trace through one broad-phase method.
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "broadphase/box.hpp"
 #include "experiments/files/npy.hpp"
+#include "experiments/files/peak_bytes.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/runner/box_methods.hpp"
 #include "experiments/runner/commands.hpp"
@@ -20,12 +19,6 @@ struct Arguments {
   std::string trace, method = "auto", coherent = "on", out, json;
   int threads = 1;
 };
-
-std::uint64_t peak_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-}
 
 struct Found {
   double seconds = 0;        // from boxes to pairs, every frame

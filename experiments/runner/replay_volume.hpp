@@ -40,42 +40,46 @@ struct Manner {
 template <class Query>
 struct Answers;
 
-template <>
-struct Answers<Touching> {
-  std::vector<std::uint8_t>* cells;  ///< (frames, pairs), or null where answers are not kept
+/// One cell of the shared array for each frame and pair.
+template <class Cell>
+struct Cells {
+  std::vector<Cell>* cells;  ///< (frames, pairs), or null where answers are not kept
   std::size_t pairs;
-  Manner manner;
   std::uint64_t hits = 0;
 
-  Answers(ReplayResult& result, std::size_t frames, std::size_t pairs, bool keep, Manner manner)
-      : cells(keep ? &result.touching : nullptr), pairs(pairs), manner(manner) {
-    if (keep) result.touching.resize(frames * pairs);
+  Cells(std::vector<Cell>& shared, std::size_t frames, std::size_t pairs, bool keep)
+      : cells(keep ? &shared : nullptr), pairs(pairs) {
+    if (keep) shared.resize(frames * pairs);
   }
-  Touching ask() { return Touching(manner.test); }
-  void take(std::size_t frame, std::size_t pair, const ObjectPair&, const Touching& query) {
-    hits += query.touching();
-    if (cells) (*cells)[frame * pairs + pair] = query.touching();
+  void put(std::size_t frame, std::size_t pair, bool hit, Cell answer) {
+    hits += hit;
+    if (cells) (*cells)[frame * pairs + pair] = answer;
   }
   void hand_over(ReplayResult&) {}
 };
 
 template <>
-struct Answers<Distance> {
-  std::vector<double>* cells;  ///< (frames, pairs), or null where answers are not kept
-  std::size_t pairs;
+struct Answers<Touching> : Cells<std::uint8_t> {
   Manner manner;
-  std::uint64_t hits = 0;
 
   Answers(ReplayResult& result, std::size_t frames, std::size_t pairs, bool keep, Manner manner)
-      : cells(keep ? &result.distances : nullptr), pairs(pairs), manner(manner) {
-    if (keep) result.distances.resize(frames * pairs);
+      : Cells(result.touching, frames, pairs, keep), manner(manner) {}
+  Touching ask() { return Touching(manner.test); }
+  void take(std::size_t frame, std::size_t pair, const ObjectPair&, const Touching& query) {
+    put(frame, pair, query.touching(), query.touching());
   }
+};
+
+template <>
+struct Answers<Distance> : Cells<double> {
+  Manner manner;
+
+  Answers(ReplayResult& result, std::size_t frames, std::size_t pairs, bool keep, Manner manner)
+      : Cells(result.distances, frames, pairs, keep), manner(manner) {}
   Distance ask() { return Distance(manner.relative_error); }
   void take(std::size_t frame, std::size_t pair, const ObjectPair&, const Distance& query) {
-    hits += query.distance() == 0;
-    if (cells) (*cells)[frame * pairs + pair] = query.distance();
+    put(frame, pair, query.distance() == 0, query.distance());
   }
-  void hand_over(ReplayResult&) {}
 };
 
 template <>
