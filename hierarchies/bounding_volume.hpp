@@ -8,6 +8,7 @@
 
 #include "hierarchies/geometry/placement.hpp"
 #include "hierarchies/geometry/scalar.hpp"
+#include "hierarchies/geometry/triangle_mesh.hpp"
 
 namespace bvlab {
 
@@ -15,10 +16,34 @@ namespace bvlab {
 template <class V, class S>
 using Over = typename V::template over<S>;
 
+namespace detail {
+template <class V>
+struct PlacementOf {
+  using type = Placement<Element<typename V::scalar>>;
+};
+template <class V>
+requires requires { typename V::placement; }
+struct PlacementOf<V> {
+  using type = typename V::placement;
+};
+}  // namespace detail
+
+/// What V is posed by. A volume that needs more of a pose than `Placement` declares a `placement`
+/// of its own; it is made from the same things, once whenever a body moves.
+template <class V>
+using PlacementOf = typename detail::PlacementOf<V>::type;
+
 /// What V becomes where tests are made.
 template <class V>
-using Posed = decltype(posed(std::declval<const V&>(),
-                             std::declval<const Placement<Element<typename V::scalar>>&>()));
+using Posed = decltype(posed(std::declval<const V&>(), std::declval<const PlacementOf<V>&>()));
+
+/// A volume that is fitted better where it sees the surface between the points. All corners of the
+/// triangles are among the points.
+template <class V>
+concept FittedToTriangles = requires(std::span<const Vec3<double>> points,
+                                     std::span<const Triangle> triangles) {
+  { V::enclosing(points, triangles) } -> std::same_as<V>;
+};
 
 /// A solid that encloses points and can be compared cheaply with its own kind.
 ///
@@ -32,7 +57,7 @@ using Posed = decltype(posed(std::declval<const V&>(),
 ///   batches       lane by lane, a batch says what the scalar says.
 template <class V>
 concept BoundingVolume = requires(const V a, const V b, std::span<const Vec3<double>> points,
-                                  const Placement<typename V::scalar> placement, const Posed<V> p,
+                                  const PlacementOf<V> placement, const Posed<V> p,
                                   const Posed<V> q) {
   { V::name } -> std::convertible_to<std::string_view>;
   { V::description } -> std::convertible_to<std::string_view>;

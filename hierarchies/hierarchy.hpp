@@ -67,7 +67,14 @@ class Hierarchy {
     corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
     points_.clear();
     for (const auto vertex : corners_) points_.push_back(mesh.vertices[vertex]);
-    volumes_[i] = V::enclosing(points_);
+    if constexpr (FittedToTriangles<V>) {
+      triangles_.clear();
+      for (std::uint32_t place = begin_[i]; place < end_[i]; ++place)
+        triangles_.push_back(mesh.corners(primitives_[place]));
+      volumes_[i] = V::enclosing(points_, triangles_);
+    } else {
+      volumes_[i] = V::enclosing(points_);
+    }
     if (const Node& node = nodes_[i]; node.count == 0) {
       const V both = merge(volumes_[node.first], volumes_[node.first + 1]);
       // Written so that a size that is not a number loses.
@@ -83,6 +90,7 @@ class Hierarchy {
   // Only while fitting:
   std::vector<std::uint32_t> begin_, end_, corners_;
   std::vector<Vec3<double>> points_;
+  std::vector<Triangle> triangles_;
 };
 
 }  // namespace bvlab

@@ -5,11 +5,13 @@
 
 #include "hierarchies/bounding_volume.hpp"
 #include "hierarchies/geometry/type_list.hpp"
+#include "hierarchies/volumes/obb.hpp"
 #include "hierarchies/volumes/sphere.hpp"
 
 namespace bvlab {
 
 using Volumes = TypeList<  //
-    Sphere<float>>;
+    Sphere<float>,         //
+    Obb<float>>;
 
 }  // namespace bvlab

@@ -31,7 +31,7 @@ class Body {
     if (epoch_ > 0 && pose == pose_ && origin == origin_) return false;
     pose_ = pose;
     origin_ = origin;
-    placement_ = Placement<typename V::scalar>(pose, origin, hierarchy_->reach());
+    placement_ = PlacementOf<V>(pose, origin, hierarchy_->reach());
     if (++epoch_ == 0) forget();
     return true;
   }
@@ -79,7 +79,7 @@ class Body {
   const Hierarchy<V>* hierarchy_;
   Pose pose_;
   Vec3<double> origin_ = Vec3<double>::Zero();
-  Placement<typename V::scalar> placement_;
+  PlacementOf<V> placement_;
   std::uint32_t epoch_ = 0;
   std::vector<Posed<V>> volumes_;
   std::vector<std::uint32_t> volume_epochs_;  // one for two siblings

@@ -7,17 +7,24 @@
 /// |v|, |c| <= reach. With p = fl_T(fl_T(R) c + fl_T(t - o)) as `moved` computes it, and
 /// e = unit roundoff of T,
 ///
-///   |w - o - p| <= |w - (Rv + t)| + |R (v - c)| + |R c + t - o - p|
-///               <= 8u (reach + |t|) + stretch |v - c| + 10e (reach + |t - o|):
+///   |w - o - p| <= |w - (Rv + t)| + |R (v - c)| + |R c - Q c| + |Q c + t - o - p|
+///               <= 8u (reach + |t|) + stretch |v - c| + |R - Q| reach + 10e (reach + |t - o|):
 ///
+/// - Q is R where R is orthonormal to 32u, as far as that can be told in float64; else the
+///   orthonormal matrix next to it, by Newton's iteration for the polar factor (higham1986polar):
+///   a product of a thousand rotations has drifted, and volumes with axes rely on right angles.
+///   where R is off by more than 0.01, `slack` is infinite, and nothing is told apart;
 /// - each component of w is a sum of four products and terms, off by at most
 ///   gamma_4 (|R_i| |v| + |t_i|); over three components and with |R_i| <= 1.01 that is less than
 ///   8u (|v| + |t|);
 /// - |R x| <= |x| sqrt(1 + |R'R - I|_F), whatever matrix the user gave as a rotation;
-/// - rounding R, c's products, t - o and the sums is gamma_5 per component, less than
+/// - rounding Q, c's products, t - o and the sums is gamma_5 per component, less than
 ///   10e (|c| + |t - o|) over three components.
 ///
-/// `slack` is the sum of the first and the last term, plus a length whose square is still a normal
+/// Likewise |R d - directed(d)| <= (|R - Q| + 8e) |d| = tilt |d| for a direction: there are four
+/// roundings in a component, none larger than e |Q_i| |d|, and 4 sqrt(3) < 7.
+///
+/// `slack` is the sum of all terms but the second, plus a length whose square is still a normal
 /// number of T, which pays for every underflow in what is computed from posed volumes. Lengths
 /// therefore become `length * stretch + slack`, and that is what `grown` gives, rounded safely.
 #pragma once
@@ -36,6 +43,7 @@ struct Placement {
   Vec3<T> translation = Vec3<T>::Zero();
   T stretch = 1;  ///< at least the 2-norm of the rotation, with room for two roundings
   T slack = 0;    ///< in units of the mesh
+  T tilt = 0;     ///< at least |R d - directed(d)| for a unit vector d
 
   Placement() = default;
 
@@ -44,17 +52,21 @@ struct Placement {
   Placement(const Pose& pose, const Vec3<double>& origin, double reach) {
     constexpr double u = unit_roundoff<double>, e = unit_roundoff<T>;
     const Vec3<double> offset = pose.translation - origin;
-    rotation = pose.rotation.cast<T>();
+    const double defect = defect_of(pose.rotation);
+    const Mat3<double> nearest = orthonormal(pose.rotation, defect);
+    const double turned = defect <= sound_defect ? 0 : (pose.rotation - nearest).norm() + 8 * u;
+    rotation = nearest.cast<T>();
     translation = rounded<T>(offset);
-    const Mat3<double> defect =
-        pose.rotation.transpose() * pose.rotation - Mat3<double>::Identity();
     // `grown` rounds twice, and the defect itself is computed with an error below 16u.
     const double room = 1 + 4 * e;
-    stretch = rounded_up<T>(std::sqrt(1 + defect.norm() + 16 * u) * room);
+    stretch = rounded_up<T>(std::sqrt(1 + defect + 16 * u) * room);
+    tilt = rounded_up<T>((turned + 8 * e) * room);
     const double tiny = std::ldexp(1.0, std::numeric_limits<T>::min_exponent / 2 + 2);
-    slack = rounded_up<T>(
-        (8 * u * (reach + pose.translation.norm()) + 10 * e * (reach + offset.norm()) + tiny) *
-        room);
+    slack = rounded_up<T>((8 * u * (reach + pose.translation.norm()) +
+                           10 * e * (reach + offset.norm()) + turned * reach + tiny) *
+                          room);
+    if (!(defect <= 0.01) || !(defect_of(nearest) <= sound_defect))
+      slack = std::numeric_limits<T>::infinity();
   }
 
   /// The point c, given in the mesh's frame, relative to the origin. S is T or a batch of it.
@@ -76,6 +88,24 @@ struct Placement {
   template <Scalar S>
   S grown(const S& length) const {
     return length * S(stretch) + S(slack);
+  }
+
+ private:
+  static constexpr double sound_defect = 32 * unit_roundoff<double>;
+
+  static double defect_of(const Mat3<double>& m) {
+    return (m.transpose() * m - Mat3<double>::Identity()).norm();
+  }
+
+  /// Each step squares the defect, down to less than 32u, which is rounding. What is no rotation by
+  /// far is replaced, lest it make numbers that are none.
+  static Mat3<double> orthonormal(Mat3<double> m, double defect) {
+    if (!(defect <= 0.01)) return Mat3<double>::Identity();
+    for (int step = 0; step < 8 && !(defect <= sound_defect); ++step) {
+      m = (m * (1.5 * Mat3<double>::Identity() - 0.5 * (m.transpose() * m))).eval();
+      defect = defect_of(m);
+    }
+    return m;
   }
 };
 

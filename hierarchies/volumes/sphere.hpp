@@ -77,12 +77,13 @@ Mask<S> disjoint(const Sphere<S>& a, const Sphere<S>& b) {
 /// At most the distance between the two balls; 0 where they may meet.
 template <class S>
 S gap(const Sphere<S>& a, const Sphere<S>& b) {
-  using std::max, std::min, std::sqrt;
+  using std::min, std::sqrt;
   constexpr Element<S> e = unit_roundoff<S>;
   // A square that overflows belongs to a distance that is larger still.
   const S largest = std::numeric_limits<Element<S>>::max();
   const S distance = sqrt(min(largest, squared_norm<S>(a.centre - b.centre)));
-  return max(S(0), distance * S(1 - 8 * e) - (a.radius + b.radius) * S(1 + 2 * e));
+  const S apart = distance * S(1 - 8 * e) - (a.radius + b.radius) * S(1 + 2 * e);
+  return select(apart > S(0), apart, S(0));  // so that a NaN counts as nothing
 }
 
 /// Is the point, in the frame of the sphere, inside? True where the sphere is not finite.

@@ -48,7 +48,7 @@ std::vector<std::uint32_t> check(const Hierarchy<V>& h, std::uint32_t node,
       below.insert(below.end(), more.begin(), more.end());
     }
   }
-  const Placement<typename V::scalar> here;
+  const PlacementOf<V> here;
   for (const auto triangle : below)
     for (const auto& corner : mesh.corners(triangle))
       EXPECT_TRUE(contains(posed(h.volume(node), here),

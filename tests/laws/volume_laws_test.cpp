@@ -89,7 +89,7 @@ struct Standing {
     const double reach =
         std::max<double>(reach_of(points), static_cast<double>(bvlab::reach(local)));
     for (const auto& p : points) world.push_back(pose(p));
-    volume = posed(local, Placement<typename V::scalar>(pose, origin, reach * (1 + 1e-6)));
+    volume = posed(local, PlacementOf<V>(pose, origin, reach * (1 + 1e-6)));
   }
 };
 
@@ -108,7 +108,7 @@ TYPED_TEST(VolumeLaws, WhatIsGivenIsInsideAndMergingKeepsItSo) {
     const Points a = hostile.cloud(), b = hostile.cloud();
     const auto va = TypeParam::enclosing(a), vb = TypeParam::enclosing(b);
     const auto both = merge(va, vb);
-    const Placement<typename TypeParam::scalar> here;
+    const PlacementOf<TypeParam> here;
     for (const auto& p : a) {
       ASSERT_TRUE(contains(posed(va, here), wide(p))) << "round " << round;
       ASSERT_TRUE(contains(posed(both, here), wide(p))) << "round " << round;
@@ -193,7 +193,7 @@ void batches_agree() {
   for (int round = 0; round < rounds / 20; ++round) {
     std::vector<Posed<V>> volumes;
     std::vector<V> locals;
-    Placement<typename V::scalar> placement(hostile.pose(1), Vec3<double>::Zero(), 10);
+    PlacementOf<V> placement(hostile.pose(1), Vec3<double>::Zero(), 10);
     for (int i = 0; i < 3 * W; ++i) {
       Points points;
       const Vec3<double> offset = hostile.direction() * hostile.uniform(0, 3);
