@@ -5,13 +5,22 @@
 
 #include "hierarchies/bounding_volume.hpp"
 #include "hierarchies/geometry/type_list.hpp"
+#include "hierarchies/volumes/kdop.hpp"
 #include "hierarchies/volumes/obb.hpp"
+#include "hierarchies/volumes/rss.hpp"
+#include "hierarchies/volumes/shell.hpp"
 #include "hierarchies/volumes/sphere.hpp"
 
 namespace bvlab {
 
 using Volumes = TypeList<  //
     Sphere<float>,         //
-    Obb<float>>;
+    Obb<float>,            //
+    Aabb<float>,           //
+    Kdop14<float>,         //
+    Kdop18<float>,         //
+    Kdop26<float>,         //
+    Rss<float>,            //
+    Shell<float>>;
 
 }  // namespace bvlab

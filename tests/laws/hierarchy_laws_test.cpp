@@ -30,6 +30,15 @@ template <class V>
 class HierarchyLaws : public ::testing::Test {};
 TYPED_TEST_SUITE(HierarchyLaws, TypesOf<Volumes>);
 
+/// The corners, and points between that are off by no more than rounding, which is monotone.
+std::vector<Vec3<long double>> points_of(const Triangle& corners) {
+  std::vector<Vec3<long double>> points;
+  for (const auto& corner : corners) points.push_back(corner.cast<long double>());
+  for (std::size_t i = 0; i < 3; ++i) points.push_back((points[i] + points[(i + 1) % 3]) / 2);
+  for (std::size_t i = 0; i < 3; ++i) points.push_back((points[i] + points[(i + 1) % 3 + 3]) / 2);
+  return points;
+}
+
 /// Checks the subtree and gives the triangles below it.
 template <class V>
 std::vector<std::uint32_t> check(const Hierarchy<V>& h, std::uint32_t node,
@@ -50,9 +59,8 @@ std::vector<std::uint32_t> check(const Hierarchy<V>& h, std::uint32_t node,
   }
   const PlacementOf<V> here;
   for (const auto triangle : below)
-    for (const auto& corner : mesh.corners(triangle))
-      EXPECT_TRUE(contains(posed(h.volume(node), here),
-                           Vec3<long double>(corner.template cast<long double>())));
+    for (const auto& point : points_of(mesh.corners(triangle)))
+      EXPECT_TRUE(contains(posed(h.volume(node), here), point));
   return below;
 }
 

@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A spherical shell: what is between inner and outer from the centre and within an angle of the
+/// axis (krishnan1998spherical). Thin where surface is curved, which no box is.
+///
+/// The shell is the set of points centre + y with inner <= |y| <= outer and
+/// y.axis >= cosine |y| |axis|; in all directions where the cosine is not positive. The axis is of
+/// unit length but for 16e. One N_u is about 40 operations, one N_v about 250.
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "hierarchies/geometry/enclosing_ball.hpp"
+#include "hierarchies/geometry/placement.hpp"
+#include "hierarchies/geometry/principal_axes.hpp"
+#include "hierarchies/geometry/triangle_mesh.hpp"
+
+namespace bvlab {
+
+namespace detail {
+
+/// At most the distance from `o` to the triangle. For any vector m the triangle is beyond the plane
+/// m.(x - o) = min m.(corner - o); m leads to its nearest point as far as that was found.
+inline double distance_below(const Vec3<double>& o, const Triangle& triangle) {
+  const Vec3<double> a = triangle[0] - o, b = triangle[1] - o, c = triangle[2] - o;
+  const auto bound = [&](const Vec3<double>& m) {
+    const double length = m.norm();
+    return length > 0 ? std::min({m.dot(a), m.dot(b), m.dot(c)}) / length : 0.0;
+  };
+  const auto on_segment = [](const Vec3<double>& p, const Vec3<double>& q) -> Vec3<double> {
+    const Vec3<double> d = q - p;
+    const double squared = d.squaredNorm();
+    return squared > 0 ? Vec3<double>(p + std::clamp(-p.dot(d) / squared, 0.0, 1.0) * d) : p;
+  };
+  const Vec3<double> n = (b - a).cross(c - a);
+  const double best = std::max({bound(a.dot(n) * n), bound(on_segment(a, b)),
+                                bound(on_segment(b, c)), bound(on_segment(c, a))});
+  const double largest = std::max({a.lpNorm<1>(), b.lpNorm<1>(), c.lpNorm<1>()}) +
+                         4 * unit_roundoff<double> * o.lpNorm<1>();
+  return std::max(0.0, best - 16 * unit_roundoff<double> * largest);
+}
+
+}  // namespace detail
+
+template <Scalar S>
+struct Shell {
+  static constexpr std::string_view name = "shell";
+  static constexpr std::string_view description =
+      "spherical shell, a piece of a hollow ball, fitted to triangles (Krishnan 1998)";
+  using scalar = S;
+  template <class Other>
+  using over = Shell<Other>;
+
+  Vec3<S> centre;
+  Vec3<S> axis;
+  S inner, outer;
+  S cosine;  ///< of the half angle; -2 where that is more than a right angle
+
+  static constexpr Element<S> all_around = -2;
+
+  /// Around points that have no surface between them.
+  static Shell enclosing(std::span<const Vec3<double>> points) requires(!Batched<S>) {
+    return thinnest(points, [&](const Vec3<double>& centre) {
+      double inner = std::numeric_limits<double>::infinity();
+      for (const auto& p : points) inner = std::min(inner, (p - centre).norm());
+      return inner;
+    });
+  }
+
+  /// Around a surface, which is nearer to the centre than its corners.
+  static Shell enclosing(std::span<const Vec3<double>> points,
+                         std::span<const Triangle> triangles) requires(!Batched<S>) {
+    return thinnest(points, [&](const Vec3<double>& centre) {
+      double inner = std::numeric_limits<double>::infinity();
+      for (const auto& t : triangles) inner = std::min(inner, detail::distance_below(centre, t));
+      return inner;
+    });
+  }
+
+ private:
+  /// Of a hollow ball about the ball's own centre and shells about centres on both sides of the
+  /// surface at 1 to 16 radii of its ball, and about the centre of the sphere that fits the points
+  /// best, the one of least volume.
+  template <class Inner>
+  static Shell thinnest(std::span<const Vec3<double>> points, const Inner& inner) {
+    const Ball ball = enclosing_ball(points);
+    const double radius = std::sqrt(std::max(0.0, ball.squared_radius));
+    Shell best = about(ball.centre, ball.centre, points, inner);
+    const auto consider = [&](const Vec3<double>& centre) {
+      if (!centre.allFinite()) return;
+      const Shell shell = about(centre, ball.centre, points, inner);
+      if (volume(shell) < volume(best)) best = shell;
+    };
+    if (!(radius > 0) || !std::isfinite(radius)) return best;
+    const auto sphere = fitted_sphere(ball.centre, radius, points);
+    if (sphere && (*sphere - ball.centre).norm() < 16 * radius) consider(*sphere);
+    const Vec3<double> normal = thin_direction(ball.centre, radius, points);
+    for (const double distance : {1.5, 3.0, 6.0, 12.0})
+      for (const double side : {-1.0, 1.0})
+        consider(ball.centre + side * distance * radius * normal);
+    return best;
+  }
+
+  /// The smallest shell about a centre, towards `middle`. Lengths are computed in float64 with
+  /// fewer than 8 roundings, cosines with fewer than 16; the axis as it is rounded counts.
+  template <class Inner>
+  static Shell about(const Vec3<double>& near, const Vec3<double>& middle,
+                     std::span<const Vec3<double>> points, const Inner& inner) {
+    constexpr double u = unit_roundoff<double>;
+    const double tiny = std::ldexp(1.0, std::numeric_limits<double>::min_exponent / 2);
+    Shell shell;
+    shell.centre = rounded<S>(near);
+    const Vec3<double> centre = shell.centre.template cast<double>();
+    const Vec3<double> towards = (middle - centre).stableNormalized();
+    shell.axis = rounded<S>(towards.norm() > 0.5 ? towards : Vec3<double>::UnitX());
+    const Vec3<double> axis = shell.axis.template cast<double>();
+    double farthest = 0, cosine = 1;
+    for (const auto& p : points) {
+      const Vec3<double> y = p - centre;
+      const double length = y.norm();
+      farthest = std::max(farthest, length);
+      cosine = std::min(cosine, length > 0 ? y.dot(axis) / (length * axis.norm()) : -1);
+    }
+    cosine -= 32 * u;
+    shell.outer = rounded_up<S>(farthest * (1 + 16 * u) + tiny);
+    shell.inner = rounded_down<S>(std::max(0.0, inner(centre) * (1 - 16 * u) - tiny));
+    // More than a right angle is not convex; near it, a posed one would not be.
+    shell.cosine = cosine > 0.01 ? rounded_down<S>(cosine) : all_around;
+    return shell;
+  }
+
+  /// Up to a factor 2 pi / 3.
+  static double volume(const Shell& shell) {
+    const double outer = shell.outer, inner = shell.inner;
+    // Tests cannot see what is thinner than their margin.
+    const double thickness = outer - inner + 64 * unit_roundoff<S> * outer;
+    const double cap = shell.cosine > 0 ? 1 - double(shell.cosine) : 2;
+    return cap * thickness * (outer * outer + outer * inner + inner * inner);
+  }
+
+  /// The centre c that minimises sum (|p - c|^2 - r^2)^2 over c and r: linear in c and r^2 - |c|^2.
+  static std::optional<Vec3<double>> fitted_sphere(const Vec3<double>& middle, double radius,
+                                                   std::span<const Vec3<double>> points) {
+    if (points.size() < 4) return std::nullopt;
+    Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
+    for (const auto& p : points) {
+      const Vec3<double> x = (p - middle) / radius;
+      const Eigen::Vector4d row(2 * x[0], 2 * x[1], 2 * x[2], 1);
+      normal += row * row.transpose();
+      right += row * x.squaredNorm();
+    }
+    const Eigen::Vector4d solution = normal.ldlt().solve(right);
+    if (!solution.allFinite()) return std::nullopt;
+    return Vec3<double>(middle + radius * solution.template head<3>());
+  }
+
+  static Vec3<double> thin_direction(const Vec3<double>& middle, double radius,
+                                     std::span<const Vec3<double>> points) {
+    std::vector<Vec3<double>> scaled;
+    scaled.reserve(points.size());
+    for (const auto& p : points) scaled.push_back((p - middle) / radius);
+    return principal_axes(scaled).row(2).transpose();
+  }
+};
+
+/// A ball around both: it need not be tight, since what is fitted to the triangles mostly is.
+template <class S>
+Shell<S> merge(const Shell<S>& a, const Shell<S>& b) {
+  const Vec3<double> from = a.centre.template cast<double>(), to = b.centre.template cast<double>();
+  const double ra = a.outer, rb = b.outer, distance = (to - from).norm();
+  const double along =
+      distance > 0 ? std::clamp((distance + rb - ra) / (2 * distance), 0.0, 1.0) : 0;
+  Shell<S> both;
+  both.centre = rounded<S>(from + along * (to - from));
+  both.axis = Vec3<S>::UnitX();
+  const Vec3<double> centre = both.centre.template cast<double>();
+  const double radius = std::max((centre - from).norm() + ra, (centre - to).norm() + rb);
+  both.outer = rounded_up<S>(radius * (1 + 16 * unit_roundoff<double>)+std::ldexp(
+                                          1.0, std::numeric_limits<double>::min_exponent / 2));
+  both.inner = 0, both.cosine = Shell<S>::all_around;
+  return both;
+}
+
+/// With s the stretch and D = |R'R - I| < s^2 - 1, a point centre + y arrives at the posed centre
+/// plus y' = Ry + g, |g| <= slack (see Placement), so that
+///   |y'| <= s |y| + slack, |y'| >= sqrt(1 - D) |y| - slack >= (3 - 2s) |y| - slack,
+/// since (1 - D)(1 + D)^2 >= 1 makes sqrt(1 - D) >= 1 / s^2. For the axis as it is posed,
+///   y'.axis' >= y.axis - D |y| |axis| - tilt s |y| |axis| - slack |axis'|
+///            >= (cosine - 4.3 (s - 1) - 2.2 tilt - 2.3 slack / |y'|) |y'| |axis'|
+/// for s < 1.01 (else slack is infinite), since |axis'| <= (s + tilt) |axis|; and |y'| is at least
+/// the new inner radius.
+template <class S>
+Shell<S> posed(const Shell<S>& shell, const Placement<Element<S>>& placement) {
+  using std::max;
+  constexpr Element<S> e = unit_roundoff<S>;
+  const S slack(placement.slack), excess(placement.stretch - 1);
+  Shell<S> result;
+  result.centre = placement.moved(shell.centre);
+  result.axis = placement.directed(shell.axis);
+  result.outer = placement.grown(shell.outer) * S(1 + 4 * e);
+  const S inner = shell.inner * (S(1 - 4 * e) - S(2) * excess) - slack * S(1 + 4 * e);
+  result.inner = select(inner > S(0), inner, S(0));
+  const S cosine = shell.cosine - (S(5) * excess + S(3) * S(placement.tilt) + S(8 * e) +
+                                   S(3) * slack / result.inner);
+  // Where the inner radius is 0 this is no number or minus infinity.
+  result.cosine = select(cosine > S(0), cosine, S(Shell<S>::all_around));
+  return result;
+}
+
+namespace detail {
+
+/// One shell seen along a direction of which the cosine and sine of its angle with the axis are
+/// given: cosines of the angles from there to the nearest and to the farthest direction of the
+/// shell.
+///
+/// Given values off by 24e (16e for the axis' length, 8e for the rest) the sums are off by 28e.
+/// Where f passes t on the wrong side of the comparison, the cosines differ by 24e at most, and so
+/// cos(f - t) from 1 by 24e. In all that is less than 64e.
+template <class S>
+struct ShellAngles {
+  S nearest, farthest;
+
+  ShellAngles(const Shell<S>& shell, const S& sine_of_shell, const S& cosine, const S& sine) {
+    using std::max, std::min;
+    const S both = cosine * shell.cosine, rest = sine * sine_of_shell;
+    const Mask<S> all = shell.cosine < S(0);
+    nearest = select(all || cosine >= shell.cosine, S(1), min(S(1), both + rest));
+    farthest = select(all || cosine <= -shell.cosine, S(-1), max(S(-1), both - rest));
+  }
+};
+
+}  // namespace detail
+
+/// At most the distance between the two shells; 0 where they may meet. The largest of what these
+/// say, each enough by itself:
+/// - the points of one shell are at distances from the other's centre that miss what the other
+///   spans: from a point p at distance d from the centre, at angle f from the axis, a shell of half
+///   angle t is no nearer than |r, c| = sqrt(r^2 + d^2 + 2 r d c) with c = cos min(pi, f + t) and
+///   r = -d c clamped to the radii, and no farther than the larger |r, c| of both radii with
+///   c = cos max(0, f - t), f being measured from p through the centre;
+/// - along a unit vector n a shell ends at n.centre + c (outer or, where c < 0, inner), with
+///   c = cos max(0, f - t): for n the two axes and the line between the middles.
+///
+/// Margins: let L = outer_a + outer_b + |t_0| + |t_1| + |t_2|, t between the centres. Cosines are
+/// off by 64e (see ShellAngles), so support values by 64e (outer_a + outer_b) and n.t by 8e |t|;
+/// squares of distances by 2 r d 64e <= 32e L^2 and by a dozen roundings of terms below L^2. Both
+/// are covered by 96e.
+template <class S>
+S gap(const Shell<S>& a, const Shell<S>& b) {
+  using std::abs, std::max, std::min, std::sqrt;
+  using T = Element<S>;
+  constexpr T e = unit_roundoff<S>;
+  const Vec3<S> t = b.centre - a.centre;
+  const S scale = ((abs(t[0]) + abs(t[1])) + abs(t[2])) + (a.outer + b.outer);
+  const S margin = scale * S(96 * e), square_margin = scale * margin;
+  // Squares below this may have lost digits to underflow.
+  const S smallest(64 * std::numeric_limits<T>::min());
+  constexpr T infinity = std::numeric_limits<T>::infinity();
+  const S squared_distance = squared_norm<S>(t), distance = sqrt(squared_distance);
+  const S sine_a = sqrt(max(S(0), (S(1) - a.cosine) * (S(1) + a.cosine))),
+          sine_b = sqrt(max(S(0), (S(1) - b.cosine) * (S(1) + b.cosine)));
+
+  const auto cosine_and_sine = [](const Vec3<S>& axis, const Vec3<S>& n, const S& length) {
+    const Vec3<S> cross(axis[1] * n[2] - axis[2] * n[1], axis[2] * n[0] - axis[0] * n[2],
+                        axis[0] * n[1] - axis[1] * n[0]);
+    return std::array<S, 2>{dot<S>(axis, n) / length, sqrt(squared_norm<S>(cross)) / length};
+  };
+  S apart(0);
+  const auto consider = [&](const S& x) { apart = select(x > apart, x, apart); };
+
+  // How far `shell` is from a centre at `distance`, the way from there to here having that cosine.
+  const auto from_centre = [&](const Shell<S>& shell, const S& own_sine, const S& cosine,
+                               const S& sine, const Shell<S>& other) {
+    const detail::ShellAngles<S> angles(shell, own_sine, cosine, sine);
+    const auto square = [&](const S& r, const S& c) {
+      return (r * r + distance * distance) + S(2) * r * distance * c;
+    };
+    const S r = min(max(-distance * angles.farthest, shell.inner), shell.outer);
+    const S least = square(r, angles.farthest) - square_margin;
+    consider(sqrt(max(S(0), least)) * S(1 - 4 * e) - other.outer);
+    const S most = max(square(shell.inner, angles.nearest), square(shell.outer, angles.nearest));
+    consider(other.inner - sqrt(max(S(0), most) + square_margin) * S(1 + 4 * e));
+  };
+  const auto to_a = cosine_and_sine(a.axis, t, -distance);
+  const auto to_b = cosine_and_sine(b.axis, t, distance);
+  from_centre(a, sine_a, to_a[0], abs(to_a[1]), b);
+  from_centre(b, sine_b, to_b[0], abs(to_b[1]), a);
+
+  // Along n, towards b where `sign` is 1.
+  const auto along = [&](const Vec3<S>& n) {
+    const S squared = squared_norm<S>(n), length = sqrt(squared);
+    const auto in_a = cosine_and_sine(a.axis, n, length), in_b = cosine_and_sine(b.axis, n, length);
+    const S between = dot<S>(t, n) / length;
+    const auto extent = [](const Shell<S>& shell, const S& own_sine, const S& cosine,
+                           const S& sine) {
+      const S c = detail::ShellAngles<S>(shell, own_sine, cosine, sine).nearest;
+      return c * select(c >= S(0), shell.outer, shell.inner);
+    };
+    const S safe = select(squared > smallest, margin, S(infinity));
+    consider((between - safe) -
+             (extent(a, sine_a, in_a[0], in_a[1]) + extent(b, sine_b, -in_b[0], in_b[1])));
+    consider((-between - safe) -
+             (extent(a, sine_a, -in_a[0], in_a[1]) + extent(b, sine_b, in_b[0], in_b[1])));
+  };
+  along(a.axis);
+  along(b.axis);
+  const auto middle = [](const Shell<S>& shell) -> Vec3<S> {
+    return shell.axis * select(shell.cosine > S(0), (shell.inner + shell.outer) / S(2), S(0));
+  };
+  along(Vec3<S>(t + (middle(b) - middle(a))));
+  // Where squares under- or overflow nothing is known.
+  const Mask<S> known =
+      scale * scale < S(std::numeric_limits<T>::max() / 16) && squared_distance > smallest;
+  return select(known, apart * S(1 - 4 * e), S(0));
+}
+
+template <class S>
+Mask<S> disjoint(const Shell<S>& a, const Shell<S>& b) {
+  return gap(a, b) > S(0);
+}
+
+/// True where it is not finite.
+template <class S>
+bool contains(const Shell<S>& shell, const Vec3<long double>& point) {
+  const Vec3<long double> y = point - shell.centre.template cast<long double>();
+  const long double length = y.norm();
+  if (length > static_cast<long double>(shell.outer)) return false;
+  if (length < static_cast<long double>(shell.inner)) return false;
+  const Vec3<long double> axis = shell.axis.template cast<long double>();
+  return !(shell.cosine > 0 &&
+           y.dot(axis) < static_cast<long double>(shell.cosine) * length * axis.norm());
+}
+
+/// Half of what it is across.
+template <class S>
+S size(const Shell<S>& shell) {
+  using std::max, std::sqrt;
+  const S c = max(S(0), shell.cosine), sine = sqrt(max(S(0), (S(1) - c) * (S(1) + c)));
+  return select(shell.cosine > S(0),
+                max(shell.outer * sine, (shell.outer - shell.inner * c) / S(2)), shell.outer);
+}
+
+/// The farthest that its centre and any point of the volume is from the origin of its frame.
+template <class S>
+S reach(const Shell<S>& shell) {
+  return shell.centre.norm() + shell.outer;
+}
+
+}  // namespace bvlab
