@@ -63,7 +63,8 @@ struct Placement {
     tilt = rounded_up<T>((turned + 8 * e) * room);
     const double tiny = std::ldexp(1.0, std::numeric_limits<T>::min_exponent / 2 + 2);
     slack = rounded_up<T>((8 * u * (reach + pose.translation.norm()) +
-                           10 * e * (reach + offset.norm()) + turned * reach + tiny) *
+                           10 * e * (reach + offset.norm()) + (turned > 0 ? turned * reach : 0) +
+                           tiny) *
                           room);
     if (!(defect <= 0.01) || !(defect_of(nearest) <= sound_defect))
       slack = std::numeric_limits<T>::infinity();
