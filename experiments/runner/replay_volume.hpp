@@ -20,7 +20,7 @@ namespace bvlab {
 
 /// As many lanes as a register holds, where registers hold four or more.
 template <class T>
-using NativeBatch = Batch<T, std::max<int>(static_cast<int>(stdx::native_simd<T>::size()), 4)>;
+using NativeBatch = Batch<T, std::max(native_width<T>, 4)>;
 
 using Clock = std::chrono::steady_clock;
 inline double seconds_since(Clock::time_point start) {

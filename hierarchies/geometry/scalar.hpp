@@ -17,9 +17,14 @@ namespace bvlab {
 
 namespace stdx = std::experimental;
 
-/// W values of type T in vector registers.
+/// W values of type T in vector registers. Keep to one register (`native_width`): GCC 12 at -O3
+/// takes comparisons of sixteen doubles, which fill two, for true where they are not.
 template <class T, int W>
 using Batch = stdx::simd<T, stdx::simd_abi::deduce_t<T, W>>;
+
+/// As many as one vector register holds.
+template <class T>
+constexpr int native_width = static_cast<int>(stdx::native_simd<T>::size());
 
 template <class S>
 concept Batched = stdx::is_simd_v<S>;
