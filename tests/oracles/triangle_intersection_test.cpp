@@ -128,5 +128,70 @@ TEST(TriangleIntersection, FarFromTheOrigin) {
     expect_right_on(1000, [&] { return source.moved(source.touching(), offset); });
 }
 
+/// Grids that pass for zeros in the second stage (up to 2^29 steps a side), or just not.
+TEST(TriangleIntersection, GridsOfManySteps) {
+  TriangleSource source(9);
+  for (const int digits : {4, 12, 15, 16, 24, 28, 29, 30, 31, 40, 50})
+    for (const double offset : {0.0, 0x1p20, -0x1p45})
+      expect_right_on(300, [&] {
+        TrianglePair pair = TriangleSource::corners([&]() -> Vec3<double> {
+          return source.point().unaryExpr(
+              [&](double x) { return std::nearbyint(std::ldexp(x, digits)); });
+        });
+        // A corner in the other's plane, or all of them, by whole steps.
+        const auto& [a, b, c] = pair[0];
+        const int most = source.integer(0, 2);
+        for (int i = 0; i <= most; ++i)
+          pair[1][i] = a + source.integer(-1, 1) * (b - a) + source.integer(-1, 1) * (c - a);
+        return TriangleSource::mapped(
+            pair, [&](const auto& p) -> Vec3<double> { return (p.array() + offset).matrix(); });
+      });
+}
+
+/// What the second stage is certain of is so, eight at a time and one by one; and it leaves little
+/// open where it is meant to decide.
+TEST(TriangleRefinement, IsRightWhereItIsCertain) {
+  using S = Batch<double, 8>;
+  for (const TriangleSet& set : triangle_sets) {
+    TriangleSource source(10);
+    int open = 0;
+    constexpr int rounds = 200;
+    for (int round = 0; round < rounds; ++round) {
+      TrianglePair pairs[8];
+      Corners<S> a, b;
+      for (std::size_t lane = 0; lane < 8; ++lane) {
+        pairs[lane] = set.next(source);
+        for (int i = 0; i < 3; ++i)
+          for (int k = 0; k < 3; ++k)
+            a[i][k][lane] = pairs[lane][0][i][k], b[i][k][lane] = pairs[lane][1][i][k];
+      }
+      const auto verdict = certainly_refined<S>(a, b);
+      for (std::size_t lane = 0; lane < 8; ++lane) {
+        const auto& [s, t] = pairs[lane];
+        const bool truth = oracle::intersect(s, t);
+        ASSERT_FALSE(verdict.apart[lane] && truth) << set.name << shown(pairs[lane]);
+        ASSERT_FALSE(verdict.meeting[lane] && !truth) << set.name << shown(pairs[lane]);
+        const auto alone = certainly_refined<double>(detail::corners_of(s), detail::corners_of(t));
+        ASSERT_EQ(alone.apart, verdict.apart[lane]) << set.name << shown(pairs[lane]);
+        ASSERT_EQ(alone.meeting, verdict.meeting[lane]) << set.name << shown(pairs[lane]);
+        open += !verdict.apart[lane] && !verdict.meeting[lane];
+      }
+    }
+    if (!set.name.starts_with("without area")) {
+      EXPECT_LT(open, 8 * rounds / 8) << set.name;
+    }
+  }
+}
+
+/// The way without a fused multiply-add is exact, too.
+TEST(TriangleRefinement, WhatAProductLoses) {
+  TriangleSource source(11);
+  for (int round = 0; round < 10000; ++round) {
+    const double a = std::ldexp(source.uniform(), source.integer(-300, 300));
+    const double b = std::ldexp(source.uniform(), source.integer(-300, 300));
+    ASSERT_EQ(filter::lost_in_product_by_parts<double>(a, b, a * b), std::fma(a, b, -(a * b)));
+  }
+}
+
 }  // namespace
 }  // namespace bvlab

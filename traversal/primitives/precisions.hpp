@@ -12,7 +12,7 @@ namespace bvlab {
 struct Exact {
   static constexpr std::string_view name = "exact";
   static constexpr std::string_view description =
-      "float64 filter, integers where it cannot decide: never wrong";
+      "float64 filter, more digits where it cannot decide, integers for the rest: never wrong";
   using Number = double;
   static constexpr bool has_fallback = true;
 };

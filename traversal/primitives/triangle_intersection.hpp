@@ -2,6 +2,9 @@
 /// Whether two closed triangles share a point, exactly, for any finite corners: zero-area
 /// triangles (segments and points), coplanar ones and touching included.
 ///
+/// Three stages: a float64 filter (triangle_filter.hpp), twice the digits for what it leaves open
+/// of a batch (triangle_refinement.hpp), and integers for what is left then (predicates.hpp).
+///
 /// Plane sides first, then at most two orientations of mixed corners [guigue2003fast], each sign
 /// exact. Flat pairs (coplanar or of zero area) are decided in a projection by exact separating
 /// lines.
@@ -16,8 +19,10 @@
 
 #include "hierarchies/geometry/predicates.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
+#include "traversal/primitives/gathered_corners.hpp"
 #include "traversal/primitives/precisions.hpp"
 #include "traversal/primitives/triangle_filter.hpp"
+#include "traversal/primitives/triangle_refinement.hpp"
 
 namespace bvlab {
 
@@ -216,15 +221,43 @@ inline bool exactly_intersect(const Triangle& a, const Triangle& b) {
   return orientation(*q, *t, *s, *p) <= 0 && orientation(*p, *s, *r, *w) <= 0;
 }
 
-/// One corner after the other, one pair a lane, rounded to the element of S.
-template <Batched S>
-Corners<S> gathered(const Triangle* const* triangles) {
-  Corners<S> corners;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      corners[i][j] =
-          S([&](auto lane) { return static_cast<Element<S>>((*triangles[lane])[i][j]); });
-  return corners;
+/// What the first stage left open of a batch: where to find it, and how it stands in the answer.
+struct OpenPairs64 {
+  const Triangle *a[64], *b[64];
+  std::uint8_t place[64];
+  int count = 0;
+};
+
+/// Whether registers are wide enough for the second stage to be cheaper than integers.
+constexpr bool refines_in_batches = stdx::native_simd<double>::size() >= 8;
+
+/// Second stage, and integers for the rest: bit i is set where the pair with place i shares a
+/// point.
+inline std::uint64_t refined_hits(const OpenPairs64& open) {
+  constexpr int width = 8;
+  using S = Batch<double, width>;
+  std::uint64_t hits = 0;
+  for (int first = 0; first < open.count; first += width) {
+    const int used = std::min(width, open.count - first);
+    std::uint64_t left = (1u << used) - 1;
+    // One pair alone is decided faster by itself, and all are where registers hold few.
+    if (refines_in_batches && used > 1) {
+      const Triangle *a[width], *b[width];
+      for (int lane = 0; lane < width; ++lane) {
+        a[lane] = open.a[first + std::min(lane, used - 1)];
+        b[lane] = open.b[first + std::min(lane, used - 1)];
+      }
+      const auto verdict = certainly_refined<S>(gathered<S>(a), gathered<S>(b));
+      for (std::uint64_t meeting = bits(verdict.meeting) & left; meeting; meeting &= meeting - 1)
+        hits |= std::uint64_t{1} << open.place[first + std::countr_zero(meeting)];
+      left &= ~(bits(verdict.meeting) | bits(verdict.apart));
+    }
+    for (; left; left &= left - 1) {
+      const int i = first + std::countr_zero(left);
+      if (exactly_intersect(*open.a[i], *open.b[i])) hits |= std::uint64_t{1} << open.place[i];
+    }
+  }
+  return hits;
 }
 
 }  // namespace detail
@@ -251,7 +284,7 @@ bool intersect(const Triangle& a, const Triangle& b) {
 
 /// Pairs decided at once in one vector register.
 template <class Precision>
-constexpr int batch_width = 64 / sizeof(typename Precision::Number);
+constexpr int batch_width = static_cast<int>(stdx::native_simd<typename Precision::Number>::size());
 
 /// The same for `count` (at most 64) pairs (*a[i], *b[i]): bit i of the answer is pair i's.
 template <class Precision = Exact>
@@ -261,6 +294,7 @@ std::uint64_t intersect_batch(const Triangle* const* a, const Triangle* const* b
   using S = Batch<Number, width>;
   constexpr auto corners = std::is_same_v<Number, double> ? CornersAre::given : CornersAre::rounded;
   std::uint64_t hits = 0;
+  detail::OpenPairs64 open;
   for (int first = 0; first < count; first += width) {
     const Triangle *a_lanes[width], *b_lanes[width];
     const int used = std::min(width, count - first);
@@ -270,16 +304,22 @@ std::uint64_t intersect_batch(const Triangle* const* a, const Triangle* const* b
     }
     const auto verdict =
         certainly<S, corners>(detail::gathered<S>(a_lanes), detail::gathered<S>(b_lanes));
-    const std::uint64_t lanes = used == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << used) - 1;
-    std::uint64_t answer = ~bits(verdict.apart) & lanes;
-    if constexpr (Precision::has_fallback)
-      for (std::uint64_t open = answer & ~bits(verdict.meeting); open != 0; open &= open - 1) {
-        const int lane = std::countr_zero(open);
-        if (!detail::exactly_intersect(*a_lanes[lane], *b_lanes[lane]))
-          answer &= ~(std::uint64_t{1} << lane);
+    const std::uint64_t lanes = (std::uint64_t{1} << used) - 1;
+    const std::uint64_t met = bits(verdict.meeting) & lanes;
+    std::uint64_t left = ~(bits(verdict.apart) | met) & lanes;
+    hits |= met << first;
+    if constexpr (Precision::has_fallback) {
+      for (; left; left &= left - 1) {
+        const int lane = std::countr_zero(left);
+        open.a[open.count] = a_lanes[lane], open.b[open.count] = b_lanes[lane];
+        open.place[open.count++] = static_cast<std::uint8_t>(first + lane);
       }
-    hits |= answer << first;
+    } else {
+      hits |= left << first;
+    }
   }
+  if constexpr (Precision::has_fallback)
+    if (open.count > 0) hits |= detail::refined_hits(open);
   return hits;
 }
 
