@@ -10,6 +10,8 @@
 
 #include "experiments/scenes/triangle_sets.hpp"
 #include "tests/oracles/triangle_oracle.hpp"
+#include "traversal/primitives/gathered_corners.hpp"
+#include "traversal/primitives/triangle_distance_bound.hpp"
 
 namespace bvlab {
 namespace {
@@ -41,12 +43,28 @@ double grain(const TrianglePair& pair) {
   return 16 * unit_roundoff<double> * largest + std::numeric_limits<double>::denorm_min();
 }
 
-int meeting = 0, apart = 0;
+int meeting = 0, apart = 0, bounded = 0;
+
+/// The bound is never above the truth, the same for one pair and for many; `bounded` counts where
+/// it is hardly below it.
+void expect_bounded(const TrianglePair& pair, long double truth) {
+  using S = Batch<double, native_width<double>>;
+  const Triangle *a[native_width<double>], *b[native_width<double>];
+  std::fill(std::begin(a), std::end(a), &pair[0]);
+  std::fill(std::begin(b), std::end(b), &pair[1]);
+  const double bound = distance_bound<S>(detail::gathered<S>(a), detail::gathered<S>(b))[0];
+  ASSERT_EQ(bound, distance_bound<double>(detail::corners_of(pair[0]), detail::corners_of(pair[1])))
+      << shown(pair);
+  ASSERT_GE(bound, 0) << shown(pair);
+  ASSERT_LE(bound, truth) << shown(pair);
+  bounded += truth > 0 && bound > 0.99L * truth;
+}
 
 void expect_right(const TrianglePair& pair) {
   const auto& [a, b] = pair;
   const long double truth = oracle::distance(a, b);
   const TriangleDistance found = distance(a, b);
+  expect_bounded(pair, truth);
   ASSERT_EQ(found.distance == 0, truth == 0) << shown(pair);
   ++(truth == 0 ? meeting : apart);
   const long double allowed =
@@ -64,7 +82,7 @@ void expect_right(const TrianglePair& pair) {
 
 template <class F>
 void expect_right_on(int pairs, const F& make) {
-  meeting = apart = 0;
+  meeting = apart = bounded = 0;
   for (int i = 0; i < pairs && !testing::Test::HasFatalFailure(); ++i) expect_right(make());
   EXPECT_GT(apart, pairs / 100);
 }
@@ -75,6 +93,9 @@ TEST_P(DistanceSets, AgreeWithRationalNumbers) {
   TriangleSource source(11);
   expect_right_on(800, [&] { return GetParam().next(source); });
   EXPECT_GT(meeting, 0);
+  if (GetParam().name == "random") {
+    EXPECT_EQ(bounded, apart);
+  }
 }
 
 /// The same with the second moved away, little or far.

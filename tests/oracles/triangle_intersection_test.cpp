@@ -148,25 +148,26 @@ TEST(TriangleIntersection, GridsOfManySteps) {
       });
 }
 
-/// What the second stage is certain of is so, eight at a time and one by one; and it leaves little
-/// open where it is meant to decide.
+/// What the second stage is certain of is so, a register at a time and one by one; and it leaves
+/// little open where it is meant to decide.
 TEST(TriangleRefinement, IsRightWhereItIsCertain) {
-  using S = Batch<double, 8>;
+  constexpr std::size_t width = native_width<double>;
+  using S = Batch<double, width>;
   for (const TriangleSet& set : triangle_sets) {
     TriangleSource source(10);
     int open = 0;
     constexpr int rounds = 200;
     for (int round = 0; round < rounds; ++round) {
-      TrianglePair pairs[8];
+      TrianglePair pairs[width];
       Corners<S> a, b;
-      for (std::size_t lane = 0; lane < 8; ++lane) {
+      for (std::size_t lane = 0; lane < width; ++lane) {
         pairs[lane] = set.next(source);
         for (int i = 0; i < 3; ++i)
           for (int k = 0; k < 3; ++k)
             a[i][k][lane] = pairs[lane][0][i][k], b[i][k][lane] = pairs[lane][1][i][k];
       }
       const auto verdict = certainly_refined<S>(a, b);
-      for (std::size_t lane = 0; lane < 8; ++lane) {
+      for (std::size_t lane = 0; lane < width; ++lane) {
         const auto& [s, t] = pairs[lane];
         const bool truth = oracle::intersect(s, t);
         ASSERT_FALSE(verdict.apart[lane] && truth) << set.name << shown(pairs[lane]);
@@ -178,7 +179,7 @@ TEST(TriangleRefinement, IsRightWhereItIsCertain) {
       }
     }
     if (!set.name.starts_with("without area")) {
-      EXPECT_LT(open, 8 * rounds / 8) << set.name;
+      EXPECT_LT(open, rounds * static_cast<int>(width) / 8) << set.name;
     }
   }
 }

@@ -229,7 +229,7 @@ struct OpenPairs64 {
 };
 
 /// Whether registers are wide enough for the second stage to be cheaper than integers.
-constexpr bool refines_in_batches = stdx::native_simd<double>::size() >= 8;
+constexpr bool refines_in_batches = native_width<double> >= 8;
 
 /// Second stage, and integers for the rest: bit i is set where the pair with place i shares a
 /// point.
@@ -284,7 +284,7 @@ bool intersect(const Triangle& a, const Triangle& b) {
 
 /// Pairs decided at once in one vector register.
 template <class Precision>
-constexpr int batch_width = static_cast<int>(stdx::native_simd<typename Precision::Number>::size());
+constexpr int batch_width = native_width<typename Precision::Number>;
 
 /// The same for `count` (at most 64) pairs (*a[i], *b[i]): bit i of the answer is pair i's.
 template <class Precision = Exact>

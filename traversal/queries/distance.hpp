@@ -6,12 +6,16 @@
 /// the true distance D, up to the rounding of one triangle distance (see triangle_distance.hpp).
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <span>
 #include <string_view>
 
 #include "hierarchies/bounding_volume.hpp"
+#include "traversal/primitives/gathered_corners.hpp"
 #include "traversal/primitives/triangle_distance.hpp"
+#include "traversal/primitives/triangle_distance_bound.hpp"
 #include "traversal/queries/candidate.hpp"
 
 namespace bvlab {
@@ -21,7 +25,7 @@ class Distance {
   static constexpr std::string_view name = "distance";
   static constexpr std::string_view description =
       "how far apart the two surfaces are; within --relative-error above the truth";
-  static constexpr std::size_t patience = 0;
+  static constexpr std::size_t patience = 7;
   /// The traversal looks for a small upper bound before it starts.
   static constexpr bool wants_bound = true;
 
@@ -35,14 +39,8 @@ class Distance {
 
   Outcome primitives(std::span<const Candidate> pending) {
     Outcome outcome;
-    for (std::size_t i = 0; i < pending.size() && !outcome.enough; ++i) {
-      const double d = bvlab::distance(*pending[i].triangle_a, *pending[i].triangle_b).distance;
-      if (!(d < distance_)) continue;
-      distance_ = d;
-      // The factor pays for the two roundings, so that no pair is left alone too early.
-      limit_ = d / (1 + relative_error_) * (1 + 4 * unit_roundoff<double>);
-      outcome = {.witness = i, .enough = d == 0};
-    }
+    for (std::size_t first = 0; first < pending.size() && !outcome.enough; first += at_once)
+      look_at(pending, first, std::min(at_once, pending.size() - first), outcome);
     return outcome;
   }
 
@@ -50,6 +48,42 @@ class Distance {
   double distance() const { return distance_; }
 
  private:
+  static constexpr std::size_t at_once = native_width<double>;
+
+  /// Bounds for all, then distances in the order of bounds, until the least bound is no longer
+  /// below what is looked for.
+  void look_at(std::span<const Candidate> pending, std::size_t first, std::size_t count,
+               Outcome& outcome) {
+    std::array<double, at_once> lower{};
+    if (limit_ < std::numeric_limits<double>::infinity()) lower = bounds(&pending[first], count);
+    while (!outcome.enough) {
+      const std::size_t i = static_cast<std::size_t>(
+          std::min_element(lower.begin(), lower.begin() + count) - lower.begin());
+      if (!(lower[i] < limit_)) return;
+      lower[i] = std::numeric_limits<double>::infinity();
+      const auto& candidate = pending[first + i];
+      const double d = bvlab::distance(*candidate.triangle_a, *candidate.triangle_b).distance;
+      if (!(d < distance_)) continue;
+      distance_ = d;
+      // The factor pays for the two roundings, so that no pair is left alone too early.
+      limit_ = d / (1 + relative_error_) * (1 + 4 * unit_roundoff<double>);
+      outcome = {.witness = first + i, .enough = d == 0};
+    }
+  }
+
+  static std::array<double, at_once> bounds(const Candidate* candidates, std::size_t count) {
+    using S = Batch<double, at_once>;
+    const Triangle *a[at_once], *b[at_once];
+    for (std::size_t lane = 0; lane < at_once; ++lane) {
+      const Candidate& candidate = candidates[std::min(lane, count - 1)];
+      a[lane] = candidate.triangle_a, b[lane] = candidate.triangle_b;
+    }
+    std::array<double, at_once> lower;
+    distance_bound<S>(detail::gathered<S>(a), detail::gathered<S>(b))
+        .copy_to(lower.data(), stdx::element_aligned);
+    return lower;
+  }
+
   double relative_error_;
   double distance_ = std::numeric_limits<double>::infinity();
   double limit_ = std::numeric_limits<double>::infinity();
