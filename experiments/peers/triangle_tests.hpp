@@ -1,21 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How other libraries decide whether two triangles share a point: each in a loop of its own, so
-/// that nothing but its test is timed.
+/// THE list of other triangle tests: how other libraries, and the published algorithms in plain
+/// float64, decide whether two triangles share a point. Each has a loop of its own, so that nothing
+/// but its test (and making its objects of the corners) is timed.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
-namespace bvlab::peers {
+namespace bvlab {
 
-/// How many of the pairs touch. CGAL's filtered exact predicates; triangles without area are
-/// outside its preconditions. The time includes making its objects.
-std::size_t count_touching_cgal(std::span<const std::array<Triangle, 2>> pairs);
+struct TriangleTestPeer {
+  using Pairs = std::span<const std::array<Triangle, 2>>;
 
-/// FCL's test of two triangles, as its mesh traversal calls it: separating axes in float64 (PQP's).
-std::size_t count_touching_fcl(std::span<const std::array<Triangle, 2>> pairs);
+  std::string_view name, description;
+  /// Fills one verdict for each pair: 1 where they touch.
+  void (*decide)(Pairs pairs, std::uint8_t* verdicts);
+  bool takes_zero_area = true;  ///< else it may abort on triangles without area
+};
 
-}  // namespace bvlab::peers
+std::span<const TriangleTestPeer> triangle_test_peers();
+
+/// Null where there is none of that name.
+const TriangleTestPeer* triangle_test_peer(std::string_view name);
+
+namespace peers {
+
+void decide_cgal(TriangleTestPeer::Pairs pairs, std::uint8_t* verdicts);
+void decide_guigue_devillers(TriangleTestPeer::Pairs pairs, std::uint8_t* verdicts);
+void decide_fcl(TriangleTestPeer::Pairs pairs, std::uint8_t* verdicts);
+void decide_moller(TriangleTestPeer::Pairs pairs, std::uint8_t* verdicts);
+void decide_bullet(TriangleTestPeer::Pairs pairs, std::uint8_t* verdicts);
+void decide_ode(TriangleTestPeer::Pairs pairs, std::uint8_t* verdicts);
+
+}  // namespace peers
+
+}  // namespace bvlab

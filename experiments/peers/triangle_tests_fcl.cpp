@@ -5,12 +5,11 @@
 
 namespace bvlab::peers {
 
-std::size_t count_touching_fcl(std::span<const std::array<Triangle, 2>> pairs) {
-  std::size_t touching = 0;
+/// As FCL's mesh traversal calls it.
+void decide_fcl(TriangleTestPeer::Pairs pairs, std::uint8_t* verdicts) {
   for (const auto& [a, b] : pairs)
-    touching +=
+    *verdicts++ =
         fcl::detail::Intersect<double>::intersect_Triangle(a[0], a[1], a[2], b[0], b[1], b[2]);
-  return touching;
 }
 
 }  // namespace bvlab::peers

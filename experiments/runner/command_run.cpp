@@ -7,9 +7,11 @@
 #include <memory>
 
 #include "experiments/files/unusable.hpp"
+#include "experiments/files/whole_file.hpp"
 #include "experiments/runner/commands.hpp"
 #include "experiments/runner/experiment.hpp"
 #include "experiments/runner/record.hpp"
+#include "experiments/runner/study.hpp"
 
 namespace bvlab {
 namespace {
@@ -47,12 +49,22 @@ void add_run(CLI::App& app) {
   command->add_option("--record", *record,
                       "folder of the record (default: a new one, experiments/record/<date>.<n>)");
   command->callback([definition, record] {
-    const Definition read = read_definition(*definition);
-    check(read);
-    const std::filesystem::path folder =
-        record->empty() ? fresh_record("experiments/record") : std::filesystem::path(*record);
-    open_record(folder, read.text, "bvlab run " + *definition + " --record " + folder.string());
-    run_experiment(read, folder, ProgressBar{});
+    const std::string text = read_whole(*definition);
+    const auto open = [&] {
+      const std::filesystem::path folder =
+          record->empty() ? fresh_record("experiments/record") : std::filesystem::path(*record);
+      open_record(folder, text, "bvlab run " + *definition + " --record " + folder.string());
+      return folder;
+    };
+    std::filesystem::path folder;
+    if (const auto study = study_from(text, *definition)) {
+      check(*study);
+      run_study(*study, folder = open(), ProgressBar{});
+    } else {
+      const Definition read = parse_definition(text, *definition);
+      check(read);
+      run_experiment(read, folder = open(), ProgressBar{});
+    }
     std::puts(folder.c_str());
   });
 }

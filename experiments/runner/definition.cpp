@@ -41,14 +41,63 @@ struct AddingDefault {
   }
 };
 
+/// Keys with dots make tables in tables, as deep as the file likes: reading them, and giving them
+/// back, takes stack for each.
+void check_depth(const std::string& text, const std::string& name) {
+  constexpr std::ptrdiff_t deepest = 1000;
+  std::istringstream lines(text);
+  std::size_t number = 0;
+  for (std::string line; ++number, std::getline(lines, line);)
+    if (std::count(line.begin(), line.end(), '.') > deepest)
+      throw Unusable(name, "line " + std::to_string(number) + ": more than " +
+                               std::to_string(deepest) + " dots");
+}
+
+/// Behind the string that starts at `i`, or where it has to end at the latest.
+std::size_t end_of_string(std::string_view text, std::size_t i) {
+  const char quote = text[i];
+  const std::string three(3, quote);
+  const bool long_one = text.substr(i).starts_with(three);
+  for (i += long_one ? 3 : 1; i < text.size(); ++i) {
+    if (text[i] == '\n' && !long_one) return i;
+    if (text[i] == '\\' && quote == '"' && !text.substr(i).starts_with("\\\n")) {
+      ++i;
+    } else if (text[i] == quote && !long_one) {
+      return i + 1;
+    } else if (text.substr(i).starts_with(three)) {
+      // Quotes just before the end are part of the string.
+      for (i += 3; text.substr(i, 1) == three.substr(0, 1);) ++i;
+      return i;
+    }
+  }
+  return text.size();
+}
+
+/// Letters beyond ASCII belong into strings and comments. (Elsewhere toml++ 3.3 asks whether they
+/// are blanks, and on the answer for most of them runs into what it declares unreachable.)
+void check_characters(std::string_view text, const std::string& name) {
+  std::size_t line = 1;
+  for (std::size_t i = text.starts_with("\xef\xbb\xbf") ? 3 : 0; i < text.size();) {
+    std::size_t end = i + 1;
+    if (text[i] == '#')
+      end = std::min(text.find('\n', i), text.size());
+    else if (text[i] == '"' || text[i] == '\'')
+      end = end_of_string(text, i);
+    else if (static_cast<unsigned char>(text[i]) >= 128)
+      throw Unusable(name, "line " + std::to_string(line) +
+                               ": a letter that is not ASCII outside of strings and comments");
+    line += static_cast<std::size_t>(std::count(&text[i], text.data() + end, '\n'));
+    i = end;
+  }
+}
+
 /// Reads one definition; every complaint names the file and the line.
 class Reader {
  public:
   explicit Reader(const std::string& name) : name_(name) {}
 
   Definition read(const std::string& text) {
-    check_depth(text);
-    check_characters(text);
+    check_text(text, name_);
     toml::table table;
     try {
       table = toml::parse(text, name_);
@@ -84,56 +133,6 @@ class Reader {
  private:
   [[noreturn]] void fail(const toml::source_region& where, const std::string& what) const {
     throw Unusable(name_, "line " + std::to_string(where.begin.line) + ": " + what);
-  }
-
-  /// Keys with dots make tables in tables, as deep as the file likes: reading them, and giving them
-  /// back, takes stack for each.
-  void check_depth(const std::string& text) const {
-    constexpr std::ptrdiff_t deepest = 1000;
-    std::istringstream lines(text);
-    std::size_t number = 0;
-    for (std::string line; ++number, std::getline(lines, line);)
-      if (std::count(line.begin(), line.end(), '.') > deepest)
-        throw Unusable(name_, "line " + std::to_string(number) + ": more than " +
-                                  std::to_string(deepest) + " dots");
-  }
-
-  /// Letters beyond ASCII belong into strings and comments. (Elsewhere toml++ 3.3 asks whether they
-  /// are blanks, and on the answer for most of them runs into what it declares unreachable.)
-  void check_characters(std::string_view text) const {
-    std::size_t line = 1;
-    for (std::size_t i = text.starts_with("\xef\xbb\xbf") ? 3 : 0; i < text.size();) {
-      std::size_t end = i + 1;
-      if (text[i] == '#')
-        end = std::min(text.find('\n', i), text.size());
-      else if (text[i] == '"' || text[i] == '\'')
-        end = end_of_string(text, i);
-      else if (static_cast<unsigned char>(text[i]) >= 128)
-        throw Unusable(name_, "line " + std::to_string(line) +
-                                  ": a letter that is not ASCII outside of strings and comments");
-      line += static_cast<std::size_t>(std::count(&text[i], text.data() + end, '\n'));
-      i = end;
-    }
-  }
-
-  /// Behind the string that starts at `i`, or where it has to end at the latest.
-  static std::size_t end_of_string(std::string_view text, std::size_t i) {
-    const char quote = text[i];
-    const std::string three(3, quote);
-    const bool long_one = text.substr(i).starts_with(three);
-    for (i += long_one ? 3 : 1; i < text.size(); ++i) {
-      if (text[i] == '\n' && !long_one) return i;
-      if (text[i] == '\\' && quote == '"' && !text.substr(i).starts_with("\\\n")) {
-        ++i;
-      } else if (text[i] == quote && !long_one) {
-        return i + 1;
-      } else if (text.substr(i).starts_with(three)) {
-        // Quotes just before the end are part of the string.
-        for (i += 3; text.substr(i, 1) == three.substr(0, 1);) ++i;
-        return i;
-      }
-    }
-    return text.size();
   }
 
   void check_size(const std::vector<Definition::Axis>& axes) const {
@@ -304,6 +303,11 @@ const Settings& default_parameters() {
     return settings;
   }();
   return defaults;
+}
+
+void check_text(const std::string& text, const std::string& name) {
+  check_depth(text, name);
+  check_characters(text, name);
 }
 
 Definition parse_definition(const std::string& text, const std::string& name) {

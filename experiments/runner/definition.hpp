@@ -72,6 +72,10 @@ const Settings& default_parameters();
 /// memory runs out.
 inline constexpr std::size_t most_cells = 100000;
 
+/// Refuses with Unusable what the parser of TOML does not bear: too many dots, letters beyond ASCII
+/// outside of strings.
+void check_text(const std::string& text, const std::string& name);
+
 /// Throws Unusable naming the file and the line or the key.
 Definition read_definition(const std::string& path);
 Definition parse_definition(const std::string& text, const std::string& name);

@@ -99,8 +99,8 @@ class TriangleSource {
 
   /// A corner of the second on the first's surface, up to rounding: in a face, on an edge, on a
   /// corner.
-  TrianglePair touching() {
-    TrianglePair pair = random();
+  TrianglePair touching() { return touching_at(random()); }
+  TrianglePair touching_at(TrianglePair pair) {
     double s = 0.5 + 0.5 * uniform(), t = (1 - s) * (0.5 + 0.5 * uniform());
     if (integer(0, 2) == 0) t = 0;
     if (integer(0, 4) == 0) s = 0;
@@ -172,6 +172,7 @@ inline constexpr TriangleSet triangle_sets[] = {
     {"without area", [](TriangleSource& s) { return s.without_area(); }},
     {"without area, rotated", [](TriangleSource& s) { return s.rotated(s.without_area()); }},
     {"far from the origin", [](TriangleSource& s) { return s.moved(s.touching(), 1e6); }},
+    {"far and touching", [](TriangleSource& s) { return s.touching_at(s.moved(s.random(), 1e6)); }},
 };
 
 }  // namespace bvlab

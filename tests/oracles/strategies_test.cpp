@@ -7,7 +7,7 @@
 
 #include "hierarchies/volumes.hpp"
 #include "tests/oracles/settings.hpp"
-#include "tests/oracles/triangle_oracle.hpp"
+#include "experiments/peers/triangle_oracle.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"

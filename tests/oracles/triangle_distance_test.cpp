@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "experiments/scenes/triangle_sets.hpp"
-#include "tests/oracles/triangle_oracle.hpp"
+#include "experiments/peers/triangle_oracle.hpp"
 #include "traversal/primitives/gathered_corners.hpp"
 #include "traversal/primitives/triangle_distance_bound.hpp"
 

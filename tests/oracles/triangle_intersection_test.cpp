@@ -10,7 +10,7 @@
 #include <string>
 
 #include "experiments/scenes/triangle_sets.hpp"
-#include "tests/oracles/triangle_oracle.hpp"
+#include "experiments/peers/triangle_oracle.hpp"
 
 namespace bvlab {
 namespace {

@@ -61,9 +61,12 @@ class DistanceBound {
   }
 
   S lower() const {
-    using std::sqrt;
-    using stdx::sqrt;
-    return sqrt(max(square_ - skipped_, S(0))) * S(1 - 8 * u);
+    const S square = max(square_ - skipped_, S(0));
+    constexpr double below = 1 - 8 * u;
+    if constexpr (Batched<S>)
+      return S([&](auto lane) { return std::sqrt(square[lane]) * below; });
+    else
+      return std::sqrt(square) * below;
   }
 
  private:

@@ -10,6 +10,9 @@ namespace bvlab::oracle {
 /// Whether the closed triangles share a point; either may be a segment or a point.
 bool intersect(const Triangle& a, const Triangle& b);
 
+/// Whether the corners lie in one line.
+bool without_area(const Triangle& t);
+
 /// Their distance, right to about 1e-16 of itself.
 long double distance(const Triangle& a, const Triangle& b);
 

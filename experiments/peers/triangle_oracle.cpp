@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/oracles/triangle_oracle.hpp"
+#include "experiments/peers/triangle_oracle.hpp"
 
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Simple_cartesian.h>
@@ -57,6 +57,10 @@ Rational corners_to_hull(const Triangle& corners, const Triangle& t) {
 }
 
 }  // namespace
+
+bool without_area(const Triangle& t) {
+  return CGAL::collinear(point(t[0]), point(t[1]), point(t[2]));
+}
 
 bool intersect(const Triangle& a, const Triangle& b) {
   return with_hull(
