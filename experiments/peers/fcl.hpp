@@ -6,9 +6,12 @@
 
 namespace bvlab {
 
-ReplayResult replay_fcl_obb(std::span<const TriangleMesh>, const Trace&, std::string_view query,
-                            const ReplayOptions&);
-ReplayResult replay_fcl_obbrss(std::span<const TriangleMesh>, const Trace&, std::string_view query,
-                               const ReplayOptions&);
+enum class FclModel { obb, obbrss, kios, rss, aabb, kdop16, kdop18, kdop24 };
+
+/// Volume tests and triangle tests of obb, obbrss and kios are FCL's own count, where they are
+/// asked for; otherwise its public functions are called and nothing is counted.
+template <FclModel model>
+ReplayResult replay_fcl(std::span<const TriangleMesh>, const Trace&, std::string_view query,
+                        const ReplayOptions&);
 
 }  // namespace bvlab

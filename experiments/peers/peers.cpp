@@ -1,16 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/peers/peers.hpp"
 
+#include "experiments/peers/bullet.hpp"
 #include "experiments/peers/cgal.hpp"
+#include "experiments/peers/embree.hpp"
 #include "experiments/peers/fcl.hpp"
+#include "experiments/peers/ode.hpp"
 
 namespace bvlab {
 namespace {
 
+constexpr std::string_view all_three = "touching contacts distance", yes_or_no = "touching",
+                           meeting = "touching contacts";
+
+// The libraries are Debian's, compiled for plain x86-64 (-O2); what they have in headers is
+// compiled as we are. Settings are the libraries' own, but for what a description names.
 constexpr Peer list[] = {
-    {"fcl-obb", "FCL: oriented boxes, recursive", replay_fcl_obb, true},
-    {"fcl-obbrss", "FCL: oriented boxes and swept rectangles, recursive", replay_fcl_obbrss, true},
-    {"cgal", "CGAL: Rigid_triangle_mesh_collision_detection", replay_cgal, false},
+    {"fcl-obb", "FCL 0.7: oriented boxes, recursive", meeting, replay_fcl<FclModel::obb>},
+    {"fcl-obbrss",
+     "FCL 0.7: oriented boxes and swept rectangles, recursive; distances without error", all_three,
+     replay_fcl<FclModel::obbrss>},
+    {"fcl-kios",
+     "FCL 0.7: spheres intersected with oriented boxes, recursive; distances without error",
+     all_three, replay_fcl<FclModel::kios>},
+    {"fcl-rss",
+     "FCL 0.7: swept rectangles, recursive; distances without error; copies both meshes at every "
+     "question that is not a distance",
+     all_three, replay_fcl<FclModel::rss>},
+    {"fcl-aabb", "FCL 0.7: aligned boxes; copies both meshes at every question", meeting,
+     replay_fcl<FclModel::aabb>},
+    {"fcl-kdop16", "FCL 0.7: 16-DOPs; copies both meshes at every question", meeting,
+     replay_fcl<FclModel::kdop16>},
+    {"fcl-kdop18", "FCL 0.7: 18-DOPs; copies both meshes at every question", meeting,
+     replay_fcl<FclModel::kdop18>},
+    {"fcl-kdop24", "FCL 0.7: 24-DOPs; copies both meshes at every question", meeting,
+     replay_fcl<FclModel::kdop24>},
+    {"bullet", "Bullet 3.24: GImpact, float32, margins 0; looks for all contacts", yes_or_no,
+     replay_bullet},
+    {"ode", "ODE 0.16.2: trimesh (OPCODE), boxes in float32; one contact, not refined", yes_or_no,
+     replay_ode},
+    {"embree",
+     "Embree 3.13.5: rtcCollide, one thread, with our exact test of triangles; the scene of a body "
+     "that moved is refitted",
+     meeting, replay_embree},
+    {"cgal", "CGAL 5.5: Rigid_triangle_mesh_collision_detection", yes_or_no, replay_cgal},
 };
 
 }  // namespace

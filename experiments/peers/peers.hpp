@@ -14,10 +14,16 @@ namespace bvlab {
 struct Peer {
   std::string_view name;
   std::string_view description;
-  /// `query` is "touching" or, where `contacts` says so, "contacts". Counts stay zero.
+  /// The queries it answers, by name, with blanks between.
+  std::string_view queries;
+  /// `query` is one of those. Counts stay zero where the library does not tell them.
   ReplayResult (*replay)(std::span<const TriangleMesh> meshes, const Trace& trace,
                          std::string_view query, const ReplayOptions& options);
-  bool contacts;
+
+  bool answers(std::string_view query) const {
+    const std::string padded = " " + std::string(queries) + " ";
+    return padded.find(" " + std::string(query) + " ") != std::string::npos;
+  }
 };
 
 std::span<const Peer> peers();

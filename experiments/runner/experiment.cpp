@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "experiments/files/unusable.hpp"
+#include "experiments/peers/disagreements.hpp"
 #include "experiments/peers/peers.hpp"
 #include "experiments/runner/record.hpp"
 #include "experiments/runner/replay.hpp"
@@ -117,30 +118,26 @@ void check(const Cell& cell) {
     if constexpr (requires { scene.check(); }) scene.check();
   });
   if (cell["peer"].empty()) return;
+  if (!peer(cell["peer"]))
+    throw Unusable("no peer '" + cell["peer"] + "'; there are " + peer_names());
+}
+
+/// Not every peer answers every query: such cells are left out.
+bool has_answer(const Cell& cell) {
   const Peer* const other = peer(cell["peer"]);
-  if (!other) throw Unusable("no peer '" + cell["peer"] + "'; there are " + peer_names());
-  if (cell["query"] != "touching" && !(cell["query"] == "contacts" && other->contacts))
-    throw Unusable("peer " + cell["peer"] + " does not answer " + cell["query"]);
+  return !other || other->answers(cell["query"]);
+}
+
+std::vector<Cell> cells_with_answers(const Definition& definition) {
+  auto cells = cells_of(definition);
+  std::erase_if(cells, [](const Cell& cell) { return !has_answer(cell); });
+  return cells;
 }
 
 ReplayResult answered(const Prepared& ready, const Cell& cell, const ReplayOptions& options) {
   if (const Peer* const other = peer(cell["peer"]))
     return other->replay(ready.meshes, ready.trace, cell["query"], options);
   return replay(ready.meshes, ready.trace, variant_of(cell), options);
-}
-
-std::size_t differing(const ReplayResult& result, const ReplayResult& reference) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < reference.touching.size(); ++i)
-    count += result.touching[i] != reference.touching[i];
-  for (std::size_t i = 0; i < reference.distances.size(); ++i)
-    count +=
-        std::abs(result.distances[i] - reference.distances[i]) > 1e-12 * reference.distances[i];
-  std::vector<std::array<std::uint32_t, 5>> difference;
-  std::set_symmetric_difference(result.contacts.begin(), result.contacts.end(),
-                                reference.contacts.begin(), reference.contacts.end(),
-                                std::back_inserter(difference));
-  return count + difference.size();
 }
 
 /// Calls `work(i)` for i < count on all cores.
@@ -174,11 +171,15 @@ class Experiment {
  public:
   Experiment(const Definition& definition, const std::filesystem::path& record)
       : definition_(definition),
-        cells_(cells_of(definition)),
+        cells_(cells_with_answers(definition)),
         rows_(record / (definition.name + ".csv"),
               columns({"repetition", "time_ns", "first_ns", "build_ns", "pairs", "hits",
                        "differing", "n_u", "n_v", "n_p", "front"})),
-        frames_(record / (definition.name + ".frames.csv"), frame_columns()) {
+        frames_(record / (definition.name + ".frames.csv"),
+                axis_columns({"frame", "n_u", "n_v", "n_p", "front", "hits"})),
+        disagreements_(record / (definition.name + ".disagreements.csv"),
+                       axis_columns({"frame", "object_i", "object_j", "triangle_i", "triangle_j",
+                                     "theirs", "ours", "exact"})) {
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       auto& group = by_trace_[trace_key(cells_[i]) + cells_[i]["query"]];
       if (group.empty()) order_.push_back(&group);
@@ -213,10 +214,16 @@ class Experiment {
   }
 
   /// Only what varies: a series is long.
-  Row frame_columns() const {
+  Row axis_columns(std::initializer_list<const char*> measured) const {
     Row row;
     for (const auto& axis : definition_.axes) row.push_back(axis.name);
-    for (const char* name : {"frame", "n_u", "n_v", "n_p", "front", "hits"}) row.push_back(name);
+    row.insert(row.end(), measured.begin(), measured.end());
+    return row;
+  }
+
+  Row axis_row(const Cell& cell) const {
+    Row row;
+    for (const auto& axis : definition_.axes) row.push_back(cell[axis.name]);
     return row;
   }
 
@@ -251,13 +258,17 @@ class Experiment {
         counted[i] = answered(ready, *cells[i], options);
       }
     });
+    const double slack = distance_slack(ready.meshes, ready.trace);
     std::vector<std::size_t> differences;
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      differences.push_back(differing(counted[i], counted.back()));
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const bool ours = (*cells[i])["peer"].empty();
+      differences.push_back(differing(counted[i], counted.back(), ours ? 0 : slack));
+      if (!ours && differences.back() > 0)
+        list_disagreements(ready, *cells[i], counted[i], counted.back(), slack);
+    }
     time(ready, cells, counted, differences);
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      Row key;
-      for (const auto& axis : definition_.axes) key.push_back((*cells[i])[axis.name]);
+      const Row key = axis_row(*cells[i]);
       // A run that was killed between the two files has left this part here and not there.
       frames_.forget(key);
       for (std::size_t frame = 0;
@@ -271,7 +282,22 @@ class Experiment {
       }
     }
     if (definition_.has_series) frames_.save();
+    if (!disagreements_.rows().empty()) disagreements_.save();
     rows_.save();
+  }
+
+  void list_disagreements(const Prepared& ready, const Cell& cell, const ReplayResult& theirs,
+                          const ReplayResult& ours, double slack) {
+    constexpr std::size_t most = 10;
+    const Row key = axis_row(cell);
+    disagreements_.forget(key);
+    for (auto& each : disagreements(ready.meshes, ready.trace, theirs, ours, slack, most)) {
+      Row row = key;
+      for (const auto number : {each.frame, each.i, each.j}) row.push_back(std::to_string(number));
+      for (auto* text : {&each.triangle_i, &each.triangle_j, &each.theirs, &each.ours, &each.exact})
+        row.push_back(std::move(*text));
+      disagreements_.add(std::move(row));
+    }
   }
 
   void time(const Prepared& ready, const std::vector<const Cell*>& cells,
@@ -287,8 +313,9 @@ class Experiment {
         const ReplayResult& count = counted[i];
         Row row = key_row(*cells[i]);
         const bool ours = (*cells[i])["peer"].empty();
+        // Of peers, those that count.
         const auto counts = [&](std::uint64_t n) {
-          return ours ? std::to_string(n) : std::string();
+          return ours || n > 0 ? std::to_string(n) : std::string();
         };
         for (auto& field :
              {std::to_string(repetition), nanoseconds(timed.seconds),
@@ -305,7 +332,7 @@ class Experiment {
   const Definition& definition_;
   std::vector<Cell> cells_;
   std::size_t keys_ = 0;
-  Table rows_, frames_;
+  Table rows_, frames_, disagreements_;
   std::map<std::string, std::vector<std::size_t>> by_trace_;
   std::vector<const std::vector<std::size_t>*> order_;
   std::mt19937_64 random_{20260101};
@@ -315,7 +342,15 @@ class Experiment {
 
 void check(const Definition& definition) {
   try {
-    for (const auto& cell : cells_of(definition)) check(cell);
+    std::map<std::string, bool> peers_asked;
+    for (const auto& cell : cells_of(definition)) {
+      check(cell);
+      if (!cell["peer"].empty()) peers_asked[cell["peer"]] |= has_answer(cell);
+    }
+    for (const auto& [name, asked] : peers_asked)
+      if (!asked)
+        throw Unusable("peer " + name + " is asked nothing it answers: it answers " +
+                       std::string(peer(name)->queries));
   } catch (const Unusable& fault) {
     throw Unusable(definition.file, fault.what());
   }
