@@ -73,7 +73,7 @@ struct StudyKind {
 
 namespace studies {
 
-extern const StudyKind triangles;
+extern const StudyKind triangles, stability;
 
 }  // namespace studies
 
