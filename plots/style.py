@@ -17,6 +17,15 @@ STYLES = {
     "fcl-obb": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
     "fcl-obbrss": dict(color="#bc9fd1", marker="v", linestyle="-.", hatch="oo"),
     "cgal": dict(color="#3c8d40", marker="P", linestyle=":", hatch="++"),
+    # Precisions, and tests of two triangles.
+    "exact": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
+    "float64": dict(color="#2b7bba", marker="s", linestyle="--", hatch="///"),
+    "float32": dict(color="#7fc4dd", marker="^", linestyle="-.", hatch="..."),
+    "guigue-devillers": dict(color="#d95f0e", marker="X", linestyle="--", hatch="xx"),
+    "moller": dict(color="#a6761d", marker="*", linestyle=":", hatch="**"),
+    "bullet": dict(color="#b0413e", marker="<", linestyle="-.", hatch="--"),
+    "ode": dict(color="#6f9a37", marker=">", linestyle=":", hatch="||"),
+    "fcl": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
 }
 
 plt.rcParams.update({
