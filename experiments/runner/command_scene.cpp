@@ -23,12 +23,19 @@ struct Arguments {
   std::string out, meshes;
 };
 
-std::vector<NamedMesh> meshes_of(const Arguments& arguments) {
+template <class S>
+std::string default_meshes() {
+  if constexpr (requires { S::meshes; }) return std::string(S::meshes);
+  return "bunny";
+}
+
+std::vector<NamedMesh> meshes_of(const Arguments& arguments, const std::string& otherwise) {
   std::vector<NamedMesh> meshes;
   for (const auto& file : arguments.files)
     meshes.push_back({std::filesystem::path(file).stem().string(), read_mesh(file)});
-  for (const auto& name : arguments.names) meshes.push_back(named_mesh(name, arguments.polygons));
-  if (meshes.empty()) meshes.push_back(named_mesh("bunny", arguments.polygons));
+  for (const auto& name : arguments.names)
+    for (auto& mesh : named_meshes(name, arguments.polygons)) meshes.push_back(std::move(mesh));
+  if (meshes.empty()) meshes = named_meshes(otherwise, arguments.polygons);
   return meshes;
 }
 
@@ -50,7 +57,7 @@ void run(const S& scene, const Arguments& arguments) {
   std::vector<std::string> names;
   std::vector<TriangleMesh> meshes;
   std::vector<Extent> extents;
-  for (auto& [name, mesh] : meshes_of(arguments)) {
+  for (auto& [name, mesh] : meshes_of(arguments, default_meshes<S>())) {
     extents.push_back(extent_of(mesh));
     names.push_back(std::move(name));
     meshes.push_back(std::move(mesh));
@@ -101,7 +108,8 @@ void add(CLI::App& parent) {
   command->add_option("--mesh", arguments->files, "mesh file; object i is mesh i mod their number");
   command->add_option(
       "--shape", arguments->names,
-      "the same, a mesh by its name: bunny (where none is given), " + formula_mesh_names());
+      "the same, a mesh as NAME[:POLYGONS[:SCALE]]; names are bunny, " + formula_mesh_names() +
+          "; NAME-hull is its convex hull (where none is given: " + default_meshes<S>() + ")");
   command->add_option("--polygons", arguments->polygons, "triangles of each mesh given by name")
       ->check(whole_number())
       ->capture_default_str();

@@ -16,7 +16,6 @@
 #include "experiments/runner/replay.hpp"
 #include "experiments/runner/touches_any.hpp"
 #include "experiments/scenes/named_mesh.hpp"
-#include "experiments/scenes/read_mesh.hpp"
 #include "experiments/scenes/scenes.hpp"
 
 namespace bvlab {
@@ -80,11 +79,9 @@ struct Prepared {
 
 std::vector<TriangleMesh> meshes_of(const Cell& cell) {
   std::vector<TriangleMesh> meshes;
-  const std::string& mesh = cell["mesh"];
-  if (mesh.find('/') != std::string::npos || mesh.find('.') != std::string::npos)
-    meshes.push_back(read_mesh(mesh));
-  else
-    meshes.push_back(named_mesh(mesh, number<std::size_t>("polygons", cell["polygons"])).mesh);
+  for (auto& [name, mesh] :
+       named_meshes(cell["mesh"], number<std::size_t>("polygons", cell["polygons"])))
+    meshes.push_back(std::move(mesh));
   return meshes;
 }
 
@@ -128,9 +125,22 @@ bool has_answer(const Cell& cell) {
   return !other || other->answers(cell["query"]);
 }
 
+/// A peer has a volume, a strategy and so on of its own: what a cell says of ours is cleared, and
+/// cells that then say the same are one.
 std::vector<Cell> cells_with_answers(const Definition& definition) {
-  auto cells = cells_of(definition);
-  std::erase_if(cells, [](const Cell& cell) { return !has_answer(cell); });
+  std::vector<Cell> cells;
+  std::set<Settings> of_peers;
+  for (Cell& cell : cells_of(definition)) {
+    if (!has_answer(cell)) continue;
+    if (!cell["peer"].empty()) {
+      for (auto& [name, value] : cell.parameters)
+        if (is_of_variant(name) && name != "peer" && name != "query") value.clear();
+      Settings all = cell.labels;
+      all.insert(all.end(), cell.parameters.begin(), cell.parameters.end());
+      if (!of_peers.insert(std::move(all)).second) continue;
+    }
+    cells.push_back(std::move(cell));
+  }
   return cells;
 }
 

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
+
+#include "experiments/files/unusable.hpp"
 
 namespace bvlab {
 namespace {
@@ -49,6 +52,23 @@ Extent extent_of(const TriangleMesh& mesh) {
       extent.radius = std::max(extent.radius, distance(mesh.vertices[v], extent.centre));
   if (std::isfinite(smallest)) extent.leaf_radius = smallest;
   return extent;
+}
+
+double resolved(const Length& length, std::span<const Extent> meshes, const char* option) {
+  double unit = 1;
+  if (length.unit == Length::Unit::leaf) {
+    unit = std::numeric_limits<double>::infinity();
+    for (const Extent& mesh : meshes)
+      if (mesh.leaf_radius > 0) unit = std::min(unit, mesh.leaf_radius);
+    if (!std::isfinite(unit))
+      throw Unusable(std::string(option) +
+                     ": every triangle of the meshes is a point, so that "
+                     "there is no smallest radius");
+  } else if (length.unit == Length::Unit::body) {
+    unit = 0;
+    for (const Extent& mesh : meshes) unit = std::max(unit, mesh.radius);
+  }
+  return length.value * unit;
 }
 
 }  // namespace bvlab

@@ -2,6 +2,9 @@
 /// What a scene has to know of a mesh to move it: where its middle is and how large it is.
 #pragma once
 
+#include <span>
+
+#include "experiments/scenes/length.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
 namespace bvlab {
@@ -18,5 +21,9 @@ struct Extent {
 
 /// In time linear in the mesh. The mesh has at least one triangle.
 Extent extent_of(const TriangleMesh& mesh);
+
+/// A length in units of the mesh. Throws Unusable, naming the option, where it is in radii of
+/// leaves and there are none.
+double resolved(const Length& length, std::span<const Extent> meshes, const char* option);
 
 }  // namespace bvlab

@@ -147,16 +147,18 @@ TriangleMesh closed_tube(std::size_t around, std::size_t across, Surface&& surfa
   return mesh;
 }
 
-TriangleMesh torus(std::size_t polygons) {
-  constexpr double ring = 0.7, tube = 0.3;
+TriangleMesh round_ring(std::size_t polygons, double ring, double tube) {
   const auto [around, across] = nearest_grid(polygons, ring / tube, 3);
-  return closed_tube(around, across, [](double u, double v) -> Point {
+  return closed_tube(around, across, [&](double u, double v) -> Point {
     const auto [cu, su] = cosine_sine(u);
     const auto [cv, sv] = cosine_sine(v);
     const double r = ring + tube * cv;
     return {r * cu, r * su, tube * sv};
   });
 }
+
+TriangleMesh torus(std::size_t polygons) { return round_ring(polygons, 0.7, 0.3); }
+TriangleMesh ring(std::size_t polygons) { return round_ring(polygons, 0.85, 0.15); }
 
 /// A tube round the trefoil that winds twice about the axis and three times through the hole of a
 /// torus. The torus's normal and its product with the tangent span the tube's cross-section: they
@@ -273,6 +275,7 @@ TriangleMesh box(std::size_t polygons) {
 constexpr FormulaMesh list[] = {
     {"icosphere", "a sphere of 20 n^2 nearly equal triangles; convex", icosphere},
     {"torus", "a ring with a round tube; concave, one hole", torus},
+    {"ring", "the same, thinner, its hole 0.7 in radius; concave", ring},
     {"knot", "a tube tied into a trefoil knot; concave, one hole", knot},
     {"bumpy-sphere", "a sphere of 20 n^2 triangles with dents and bumps; concave", bumpy_sphere},
     {"box", "the unit cube with gridded sides; convex, coplanar triangles", box},

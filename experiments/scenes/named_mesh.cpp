@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/scenes/named_mesh.hpp"
 
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/convex_hull_3.h>
+
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
+#include <sstream>
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
@@ -19,6 +26,64 @@ bool is_formula(const std::string& name) {
                      [&](const FormulaMesh& entry) { return entry.name == name; });
 }
 
+constexpr std::string_view hull_suffix = "-hull";
+
+TriangleMesh hull_of(const TriangleMesh& mesh) {
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  std::vector<Kernel::Point_3> points;
+  for (const auto& [i, j, k] : mesh.triangles)
+    for (const auto v : {i, j, k})
+      points.emplace_back(mesh.vertices[v][0], mesh.vertices[v][1], mesh.vertices[v][2]);
+  CGAL::Surface_mesh<Kernel::Point_3> hull;
+  CGAL::convex_hull_3(points.begin(), points.end(), hull);
+  TriangleMesh result;
+  for (const auto v : hull.vertices()) {
+    const auto& p = hull.point(v);
+    result.vertices.emplace_back(p.x(), p.y(), p.z());
+  }
+  for (const auto f : hull.faces()) {
+    auto& triangle = result.triangles.emplace_back();
+    std::size_t corner = 0;
+    for (const auto v : hull.vertices_around_face(hull.halfedge(f)))
+      triangle[corner++] = static_cast<std::uint32_t>(v.idx());
+  }
+  return result;
+}
+
+template <class T>
+T number(std::string_view text, const std::string& whole) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw Unusable("mesh '" + whole + "': '" + std::string(text) + "' is not a number of its kind");
+  return value;
+}
+
+/// Cut at every `separator`.
+std::vector<std::string> parts_of(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+NamedMesh from_text(const std::string& text, std::size_t polygons) {
+  const auto parts = parts_of(text, ':');
+  if (parts.empty()) throw Unusable("mesh: a name is needed");
+  if (text.find('/') != text.npos || parts[0].find('.') != text.npos)
+    return {std::filesystem::path(text).stem().string(), read_mesh(text)};
+  if (parts.size() > 3) throw Unusable("mesh '" + text + "': must be NAME[:POLYGONS[:SCALE]]");
+  if (parts.size() > 1) polygons = number<std::size_t>(parts[1], text);
+  NamedMesh result = named_mesh(parts[0], polygons);
+  if (parts.size() > 2) {
+    const double scale = number<double>(parts[2], text);
+    if (!(scale > 0) || !std::isfinite(scale))
+      throw Unusable("mesh '" + text + "': the scale must be above 0");
+    for (auto& vertex : result.mesh.vertices) vertex *= scale;
+  }
+  return result;
+}
+
 std::string source_of(const std::string& name) { return name == "bunny" ? "bunny00" : name; }
 
 }  // namespace
@@ -27,6 +92,11 @@ std::filesystem::path mesh_directory() { return BVLAB_MESH_DIRECTORY; }
 
 NamedMesh named_mesh(const std::string& name, std::size_t polygons,
                      const std::filesystem::path& directory) {
+  if (name.ends_with(hull_suffix)) {
+    const auto [whole, mesh] =
+        named_mesh(name.substr(0, name.size() - hull_suffix.size()), polygons, directory);
+    return {whole + std::string(hull_suffix), hull_of(mesh)};
+  }
   if (is_formula(name)) return {name, formula_mesh(name, polygons)};
   if (polygons < 4 || polygons > most_polygons)
     throw Unusable(std::to_string(polygons) + " polygons: must be 4 to " +
@@ -45,6 +115,13 @@ NamedMesh named_mesh(const std::string& name, std::size_t polygons,
                    ", and the files of " + directory.string());
   std::fprintf(stderr, "bvlab: no %s: a %s stands in for the bunny\n", source.c_str(), stand_in);
   return {stand_in, formula_mesh(stand_in, polygons)};
+}
+
+std::vector<NamedMesh> named_meshes(const std::string& list, std::size_t polygons) {
+  std::vector<NamedMesh> meshes;
+  for (const auto& text : parts_of(list, ',')) meshes.push_back(from_text(text, polygons));
+  if (meshes.empty()) throw Unusable("mesh: a name is needed");
+  return meshes;
 }
 
 }  // namespace bvlab

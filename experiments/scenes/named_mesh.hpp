@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Meshes by name: those made by formula, and those that the set-up has unpacked from Debian's
 /// libcgal-demo, simplified. `bunny` is there in any case: where its file is not, a bumpy sphere
-/// stands in for it.
+/// stands in for it. `<name>-hull` is the convex hull of any of them.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
@@ -25,5 +26,10 @@ std::filesystem::path mesh_directory();
 /// time. Throws Unusable with the names there are. Says on standard error when a stand-in is used.
 NamedMesh named_mesh(const std::string& name, std::size_t polygons,
                      const std::filesystem::path& directory = mesh_directory());
+
+/// Several meshes from one text: each a file (it holds a '/' or a '.'), `NAME`, `NAME:POLYGONS` or
+/// `NAME:POLYGONS:SCALE`, with commas between; `polygons` where none are given. Vertices are
+/// multiplied by the scale.
+std::vector<NamedMesh> named_meshes(const std::string& list, std::size_t polygons);
 
 }  // namespace bvlab

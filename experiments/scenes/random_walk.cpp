@@ -40,24 +40,6 @@ struct Place {
   Quaternion attitude = {1, 0, 0, 0};
 };
 
-/// A length in units of the mesh.
-double resolved(const Length& length, std::span<const Extent> meshes, const char* option) {
-  double unit = 1;
-  if (length.unit == Length::Unit::leaf) {
-    unit = std::numeric_limits<double>::infinity();
-    for (const Extent& mesh : meshes)
-      if (mesh.leaf_radius > 0) unit = std::min(unit, mesh.leaf_radius);
-    if (!std::isfinite(unit))
-      throw Unusable(std::string(option) +
-                     ": every triangle of the meshes is a point, so that "
-                     "there is no smallest radius");
-  } else if (length.unit == Length::Unit::body) {
-    unit = 0;
-    for (const Extent& mesh : meshes) unit = std::max(unit, mesh.radius);
-  }
-  return length.value * unit;
-}
-
 void need(bool fulfilled, const std::string& what) {
   if (!fulfilled) throw Unusable(what);
 }

@@ -3,10 +3,11 @@
 #pragma once
 
 #include "experiments/scenes/random_walk.hpp"
+#include "experiments/scenes/tori.hpp"
 #include "hierarchies/geometry/type_list.hpp"
 
 namespace bvlab {
 
-using Scenes = TypeList<RandomWalk>;
+using Scenes = TypeList<RandomWalk, Tori>;
 
 }  // namespace bvlab

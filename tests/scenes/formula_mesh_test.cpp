@@ -54,7 +54,7 @@ TEST(FormulaMesh, ClosedOrientedOutwardAndOfItsGenus) {
       SCOPED_TRACE(std::string(entry.name) + " " + std::to_string(polygons));
       const TriangleMesh mesh = formula_mesh(entry.name, polygons);
       expect_closed_and_oriented(mesh);
-      const bool has_hole = entry.name == "torus" || entry.name == "knot";
+      const bool has_hole = entry.name == "torus" || entry.name == "ring" || entry.name == "knot";
       EXPECT_EQ(euler_characteristic(mesh), has_hole ? 0 : 2);
       EXPECT_GT(signed_volume(mesh), 0);
       double reach = 0;
@@ -116,8 +116,9 @@ TEST(FormulaMesh, FaultsAreNamed) {
     formula_mesh("teapot", 500);
     FAIL();
   } catch (const Unusable& error) {
-    EXPECT_STREQ(error.what(),
-                 "no mesh 'teapot'; there are icosphere, torus, knot, bumpy-sphere, box, star");
+    EXPECT_STREQ(
+        error.what(),
+        "no mesh 'teapot'; there are icosphere, torus, ring, knot, bumpy-sphere, box, star");
   }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <Eigen/Geometry>
 #include <filesystem>
 
 #include "experiments/files/unusable.hpp"
@@ -57,6 +58,29 @@ TEST(NamedMesh, IsKeptAndReadAgain) {
   EXPECT_THROW(named_mesh("dino", 500, directory), Unusable);
   EXPECT_THROW(named_mesh("bunny", 0, directory), Unusable);
   std::filesystem::remove_all(directory);
+}
+
+TEST(NamedMesh, SeveralStandInOneText) {
+  const auto meshes = named_meshes("torus,box:12:2.5,star-hull:60", 100);
+  ASSERT_EQ(meshes.size(), 3u);
+  EXPECT_EQ(meshes[0].name, "torus");
+  EXPECT_EQ(meshes[0].mesh.triangles, formula_mesh("torus", 100).triangles);
+  EXPECT_EQ(meshes[1].mesh.triangles.size(), 12u);
+  for (const auto& corner : meshes[1].mesh.vertices) EXPECT_EQ(corner.cwiseAbs().maxCoeff(), 1.25);
+  EXPECT_EQ(meshes[2].name, "star-hull");
+  for (const char* wrong : {"", "box:x", "box:12:0", "box:12:nan", "box:12:1:1", "teapot-hull"})
+    EXPECT_THROW(named_meshes(wrong, 100), Unusable) << wrong;
+}
+
+TEST(NamedMesh, AHullIsConvexAndHoldsTheMesh) {
+  const TriangleMesh whole = named_mesh("knot", 400).mesh, hull = named_mesh("knot-hull", 400).mesh;
+  EXPECT_EQ(hull.triangles.size(), 2 * hull.vertices.size() - 4);
+  for (const auto& [i, j, k] : hull.triangles) {
+    const Vec3<double> corner = hull.vertices[i];
+    const Vec3<double> outward =
+        (hull.vertices[j] - corner).cross(hull.vertices[k] - corner).normalized();
+    for (const auto& v : whole.vertices) EXPECT_LE(outward.dot(v - corner), 1e-12);
+  }
 }
 
 }  // namespace
