@@ -15,6 +15,6 @@
 
 namespace bvlab {
 
-using Strategies = TypeList<Recursive, SeparationList, Deferred>;
+using Strategies = TypeList<Recursive, RecursiveBoth, SeparationList, Deferred>;
 
 }  // namespace bvlab

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The loop: pairs of nodes are tested W at a time; a pair that the query excludes is an end, a
 /// pair of leaves hands its primitives to the query, any other is replaced by two pairs, the larger
-/// node being descended.
+/// node being descended, or by the four pairs of all children.
 ///
 /// Started from the two roots it is the recursive algorithm, depth first up to W - 1 pairs; started
 /// from a front it visits the front's entries in order and keeps the front up to date. Volume,
@@ -61,10 +61,13 @@ struct Workspace {
 
 /// For `traverse` where no front is kept.
 struct NoFront {
-  static constexpr bool kept = false;
+  static constexpr bool kept = false, descends_both = false;
+};
+struct NoFrontBoth : NoFront {
+  static constexpr bool descends_both = true;
 };
 struct KeptFront {
-  static constexpr bool kept = true;
+  static constexpr bool kept = true, descends_both = false;
   Front& front;
 };
 
@@ -178,7 +181,7 @@ class Traversal {
   template <bool kFromFront>
   bool look_at(int count, std::size_t first_slot) {
     counter_.tested(static_cast<std::uint64_t>(count));
-    open_.reserve(2 * W);
+    open_.reserve(4 * W);
     const std::uint64_t excluded = test(count);
     if constexpr (Keeping::kept && !kFromFront)
       for (std::uint64_t rest = excluded; rest; rest &= rest - 1) {
@@ -206,7 +209,8 @@ class Traversal {
   static constexpr std::uint64_t all(int count) { return (std::uint64_t{2} << (count - 1)) - 1; }
 
   std::uint64_t test(int count) {
-    if constexpr (W == 1) {
+    // A pair by itself is not worth a batch.
+    if (count == 1) {
       return bits(query_.excludes(a_.volumes()[nodes_a_[0]], b_.volumes()[nodes_b_[0]]));
     } else {
       for (int i = count; i < W; ++i) nodes_a_[i] = nodes_a_[0], nodes_b_[i] = nodes_b_[0];
@@ -221,7 +225,14 @@ class Traversal {
   }
 
   void descend(const NodePair& pair, const Node& a, const Node& b) {
-    if (descends_b(a, b)) {
+    if (Keeping::descends_both && !a.count && !b.count) {
+      a_.require(a.first, counter_);
+      b_.require(b.first, counter_);
+      open_.push({a.first + 1, b.first + 1});
+      open_.push({a.first + 1, b.first});
+      open_.push({a.first, b.first + 1});
+      open_.push({a.first, b.first});
+    } else if (descends_b(a, b)) {
       b_.require(b.first, counter_);
       open_.push({pair.a, b.first + 1});
       open_.push({pair.a, b.first});
@@ -263,10 +274,9 @@ class Traversal {
 
 /// Runs the query over two bodies from their roots. B is the scalar or batch that volumes are
 /// tested in. Says whether everything was seen: false where the query stopped it.
-template <class B, class V, class Query, class Counter>
+template <class B, class Roots = NoFront, class V, class Query, class Counter>
 bool traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
-  return detail::Traversal<B, V, Query, Counter, NoFront>(a, b, query, counter, {}, workspace)
-      .run();
+  return detail::Traversal<B, V, Query, Counter, Roots>(a, b, query, counter, {}, workspace).run();
 }
 
 /// The same from a front, which is kept up to date: it never shrinks, and stays a partition also

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "experiments/peers/triangle_oracle.hpp"
 #include "hierarchies/volumes.hpp"
 #include "tests/oracles/settings.hpp"
-#include "experiments/peers/triangle_oracle.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
@@ -25,7 +25,8 @@ ReplayResult answer(const Played& scene, const char* strategy, const char* query
   return replay(scene.meshes, scene.trace, variant, {});
 }
 
-constexpr const char* all_strategies[] = {"recursive", "separation-list", "deferred", "deferred:4"};
+constexpr const char* all_strategies[] = {"recursive", "recursive-both", "separation-list",
+                                          "deferred", "deferred:4"};
 
 /// Every strategy of every volume against recursive spheres; `volumes` says which.
 template <class Wanted>

@@ -21,4 +21,20 @@ struct Recursive {
   std::size_t front_size() const { return 0; }
 };
 
+/// The same, but a pair of inner nodes is replaced by the four pairs of their children. With
+/// batches that is what one wants: half as many steps that wait for each other, and where most
+/// pairs that overlap have children that do, up to a third fewer tests ((4n - 1) / 3 for n ends).
+struct RecursiveBoth {
+  static constexpr std::string_view name = "recursive-both";
+  static constexpr std::string_view description =
+      "from the roots in every run, both nodes of a pair descended at once";
+
+  template <class B, class V, class Query, class Counter>
+  void run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
+    traverse<B, NoFrontBoth>(a, b, query, counter, workspace);
+  }
+
+  std::size_t front_size() const { return 0; }
+};
+
 }  // namespace bvlab
