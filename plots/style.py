@@ -17,6 +17,13 @@ STYLES = {
     "fcl-obb": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
     "fcl-obbrss": dict(color="#bc9fd1", marker="v", linestyle="-.", hatch="oo"),
     "cgal": dict(color="#3c8d40", marker="P", linestyle=":", hatch="++"),
+    "fcl-kios": dict(color="#54336b", marker="d", linestyle=":", hatch="//"),
+    # Convex bodies by closest features.
+    "gjk": dict(color="#8f8f8f", marker="p", linestyle=":", hatch="xx"),
+    "fcl-gjk": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
+    "libccd-gjk": dict(color="#a6761d", marker="*", linestyle=":", hatch="**"),
+    "gjk-coherent": dict(color="#00796b", marker="h", linestyle="-.", hatch="..."),
+    "v-clip": dict(color="#c2185b", marker="8", linestyle="--", hatch="++"),
     # Precisions, and tests of two triangles.
     "exact": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
     "float64": dict(color="#2b7bba", marker="s", linestyle="--", hatch="///"),
