@@ -3,20 +3,23 @@
 /// joined with itself by vector comparisons; O(n) to sort and O(n + k) to join where boxes are
 /// alike.
 ///
-/// With coherence, blocks stay together while their boxes move, and what is done follows what
-/// moved:
+/// With coherence, what is done follows what moved:
 ///   nothing moved      the boxes are compared with the last frame's, and the list stands;
-///   moved a little     *listed*: each leaf keeps a margin around it, and the pairs of leaves whose
-///                      margins meet are kept in a list (BibTeX: verlet1967computer), each with the pairs
-///                      of boxes found in it as bits and with the *slack* by which every one of its
-///                      comparisons was decided: until the two leaves together have moved that far,
-///                      none can come out otherwise and nothing is compared. What is compared
-///                      changes bits; bits that change are the pairs that began and ended, and only
-///                      those touch the list of pairs;
+///   moved steadily     *followed*: every box gets a reach, where it will be for some frames if it
+///                      goes on as it just did, and the pairs of boxes whose reaches meet are
+///                      candidates (BibTeX: verlet1967computer; the reach is one-sided, along the
+///                      motion of each face, so it grows the box a quarter of what a margin would).
+///                      Until a box leaves its reach, no pair but a candidate can overlap, so a
+///                      frame costs one look at every box and two or three cycles a candidate. For
+///                      how many frames a reach is made is chosen so that those and making the next
+///                      candidates cost least together;
+///   a few moved        the same, but only their candidates are compared, and the list is changed
+///   in
+///                      place: the cost follows the number of boxes that moved, and of changes. A
+///                      box that leaves its reach gets a wider one, one that jumps or is new
+///                      another slot;
 ///   moved far          *refitted*: the tree's bounds are computed again and joined as from
-///   scratch; jumped             a box that jumps leaves its leaf for a new one; when too many do,
-///   or leaves
-///                      have spread so far that the joins cost more than sorting: from scratch.
+///   scratch; jumped             from scratch.
 /// Every choice is made from counts, never from clocks, so the same frames give the same list.
 #pragma once
 
@@ -27,7 +30,7 @@
 
 #include "broadphase/settings.hpp"
 #include "broadphase/structures/block_tree.hpp"
-#include "broadphase/structures/kept_pairs.hpp"
+#include "broadphase/structures/candidate_pairs.hpp"
 #include "broadphase/structures/pair_difference.hpp"
 #include "broadphase/structures/spatial_order.hpp"
 
@@ -39,7 +42,7 @@ class Blocks {
   using Scalar = T;
   static constexpr std::string_view name = "blocks";
   static constexpr std::string_view description =
-      "our own: blocks of sixteen neighbours, joined by vector comparisons and kept while they "
+      "our own: blocks of sixteen neighbours joined by vector comparisons, then followed as they "
       "move";
 
   explicit Blocks(const MethodSettings& settings) : settings_(settings) {}
@@ -58,40 +61,15 @@ class Blocks {
   std::string_view reason() const { return reason_; }
 
   std::size_t bytes() const {
-    return tree_.bytes() + pairs_.bytes() + entries_.capacity() * sizeof(Entry) +
-           leaves_.capacity() * sizeof(Leaf) + previous_.capacity() * sizeof(Box<T>) +
-           slots_.capacity() * sizeof(std::uint32_t);
+    return tree_.bytes() + order_.bytes() + candidates_.bytes() +
+           sizeof(Pair) * (pairs_.capacity() + began_.capacity() + ended_.capacity() +
+                           before_.capacity() + after_.capacity()) +
+           (reaches_.capacity() + spare_.capacity()) * sizeof(Row<T>) +
+           previous_.capacity() * sizeof(Box<T>) + 4 * slots_.capacity();
   }
 
  private:
-  enum class State { empty, loose, listed };
-
-  /// Two leaves whose reaches meet, and which of their boxes overlap: bit l of rows[r] for box r of
-  /// a and box l of b. A leaf is paired with itself, too.
-  struct Entry {
-    std::uint32_t a, b;
-    double expiry;  ///< compared again once travel of a plus travel of b gets here
-    Segment segment;
-    std::array<std::uint16_t, block_width> rows;
-  };
-
-  /// What is known of a leaf besides its boxes.
-  struct Leaf {
-    Box<T> bounds;      ///< of its boxes as they stand
-    Box<T> old_reach;   ///< what its reach was at the end of the last frame, if it changed
-    double travel = 0;  ///< not less than what its boxes have moved since the list was made
-    bool moved = false;
-    bool must_compare = false;  ///< boxes left or came
-    bool reach_changed = false;
-  };
-
-  /// How the boxes moved since the last frame.
-  struct Motion {
-    std::size_t leaves = 0;  ///< that moved, without those in which a box jumped
-    double sum = 0;          ///< of the largest movement in each of them
-    std::size_t jumped = 0;  ///< boxes that moved further than half a leaf
-    double mean() const { return leaves ? sum / static_cast<double>(leaves) : 0; }
-  };
+  enum class State { empty, loose, followed };
 
   // ---- from scratch -------------------------------------------------------------------------
 
@@ -102,7 +80,6 @@ class Blocks {
     fresh_visits_ = visits_;
     state_ = State::loose;
     previous_known_ = false;
-    emptied_.clear();
     reason_ = "from scratch: no earlier frame to use, or boxes jumped";
   }
 
@@ -119,11 +96,9 @@ class Blocks {
   /// Joins the tree with itself into the list of pairs; reaches are the leaves' bounds.
   void write_all_pairs() {
     const bool compare = settings_.changes == Changes::reported;
-    if (compare) {
-      before_.clear();
-      before_.append(pairs_.view());
-    }
-    PairList& list = pairs_.rewritten();
+    if (compare) keep_before();
+    PairList& list = pairs_;
+    list.clear();
     const bool alone = settings_.threads <= 1 || tree_.leaves() < leaves_worth_sharing;
     visits_ = 0;
     tree_.join([&](std::uint32_t a, std::uint32_t b) {
@@ -192,47 +167,37 @@ class Blocks {
 
   // ---- the next frame -----------------------------------------------------------------------
 
+  /// How a sample of the boxes moved since the last frame, beside how large they are.
+  struct Motion {
+    double extent[3] = {}, step[3] = {};  ///< sums, without those that jumped
+    std::size_t seen = 0, jumped = 0, moved = 0;
+  };
+
   /// Brings the answer of the last frame up to this one; false where from scratch is better.
   bool advance(Boxes<T> boxes) {
     if (state_ == State::empty || count_ == 0 || boxes.empty()) return false;
-    if (boxes.size() != count_ &&
-        (state_ == State::loose || 8 * distance(boxes.size(), count_) > count_))
+    const bool resized = boxes.size() != count_;
+    if (resized &&
+        (state_ == State::loose || 8 * distance(boxes.size(), count_) > boxes.size() + 64))
       return false;
-    if (boxes.size() == count_ && same_as_previous(boxes)) {
+    if (!resized && same_as_previous(boxes)) {
       reason_ = "kept: nothing moved";
       return true;
     }
-    if (state_ == State::loose && most_jumped(boxes)) return false;
-    const Motion motion = move(boxes);
-    if (!motion.leaves && !motion.jumped && boxes.size() == count_) {
+    if (state_ == State::followed && (resized || few_moved_ || age_ < horizon_))
+      return follow(boxes);
+    const Motion motion = sample(boxes);
+    if (2 * motion.jumped > motion.seen) return false;
+    if (motion.moved == 0 && state_ == State::loose && unmoved(boxes)) {
       remember(boxes);
       reason_ = "kept: nothing moved";
       return true;
     }
-    // Every box that jumps costs about as much as sorting a hundred; where few are, anything is
-    // cheap.
-    if (100 * motion.jumped > boxes.size() + 3200) return false;
-    const double step = motion.mean();
-    if (state_ == State::listed) {
-      margin_ = margin_for(step);
-      if (list_pays(step) && update_list(boxes, step)) return true;
-      // Leaves that boxes have left or come to are half changed: no tree to refit.
-      if (boxes.size() != count_ || !emptied_.empty()) return false;
-      state_ = State::loose;
-      return refit(boxes);
-    }
-    if (list_pays(step)) {
-      margin_ = margin_for(step);
-      make_list(boxes, settings_.changes);
-      reason_ = "listed: boxes move little, pairs of leaves are kept";
-      return true;
-    }
-    return refit(boxes);
-  }
-  /// A margin of a few frames' motion must be small beside a leaf; and where a list was given up,
-  /// since too little of it could be skipped, boxes must have slowed down a good deal.
-  bool list_pays(double step) const {
-    return step < 0.05 * leaf_size_ && step < 0.5 * step_given_up_;
+    const int horizon = best_horizon(motion);
+    if (horizon == 0) return refit(boxes);
+    find_candidates(boxes, horizon);
+    reason_ = "followed: new candidates for the frames to come";
+    return true;
   }
 
   /// Whether the boxes are bit for bit those of the last frame, as far as that is known.
@@ -244,175 +209,55 @@ class Blocks {
         return false;
     return true;
   }
+  static constexpr std::size_t stretch = 64;  ///< boxes compared before looking at the outcome
+  static bool same(const Box<T>* a, const Box<T>* b, std::size_t count) {
+    return std::memcmp(a, b, count * sizeof(Box<T>)) == 0;
+  }
   void remember(Boxes<T> boxes) {
     previous_.assign(boxes.begin(), boxes.end());
     previous_known_ = true;
   }
   static std::size_t distance(std::size_t a, std::size_t b) { return a < b ? b - a : a - b; }
-  T margin_for(double step) const {
-    return static_cast<T>(std::clamp(8 * step, 0.02 * leaf_size_, 0.25 * leaf_size_));
+
+  /// The last frame's box in this slot.
+  Row<T> last_row(std::uint32_t slot) const {
+    if (state_ == State::followed) return candidates_.rows()[slot];
+    return row_of(tree_.leaf(slot / block_width).box(static_cast<int>(slot % block_width)));
+  }
+  bool jumped(const Row<T>& now, const Row<T>& was) const {
+    return !(static_cast<double>(largest_change(now, was)) <= leaf_size_ / 2);
   }
 
-  /// Whether, of a sample of the leaves, most boxes moved further than half a leaf.
-  bool most_jumped(Boxes<T> boxes) const {
-    const std::uint32_t stride = std::max<std::uint32_t>(1, tree_.leaves() / 16);
-    int jumped = 0, seen = 0;
-    for (std::uint32_t k = 0; k < tree_.leaves(); k += stride)
-      for (int lane = 0; lane < block_width; ++lane) {
-        const std::uint32_t id = tree_.ids(k)[lane];
-        if (id == no_box || id >= boxes.size()) continue;
-        ++seen;
-        jumped += largest_change(tree_.leaf(k).box(lane), boxes[id]) > leaf_size_ / 2;
-      }
-    return 2 * jumped > seen;
-  }
-  static double largest_change(const Box<T>& a, const Box<T>& b) {
-    T most = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      most = std::max({most, std::abs(a.lo[axis] - b.lo[axis]), std::abs(a.hi[axis] - b.hi[axis])});
-    return static_cast<double>(most);
-  }
-
-  /// Copies the boxes that moved into their leaves.
-  Motion move(Boxes<T> boxes) {
-    leaves_.resize(tree_.leaves());
-    jumpers_.clear();
-    for (Leaf& leaf : leaves_) leaf.moved = leaf.must_compare = leaf.reach_changed = false;
+  Motion sample(Boxes<T> boxes) const {
     Motion motion;
-    if (previous_known_ && boxes.size() == count_ && state_ == State::listed)
-      move_those_that_differ(boxes, motion);
-    else
-      move_leaf_by_leaf(boxes, motion);
+    const std::uint32_t stride = std::max<std::uint32_t>(1, tree_.leaves() / 64);
+    for (std::uint32_t k = 0; k < tree_.leaves(); k += stride)
+      for (std::uint32_t slot = k * block_width; slot < (k + 1) * block_width; ++slot) {
+        const std::uint32_t id = tree_.ids(0)[slot];
+        if (id == no_box || id >= boxes.size()) continue;
+        const Row<T> now = row_of(boxes[id]), was = last_row(slot);
+        ++motion.seen;
+        motion.moved += !bvlab::same(now, was);
+        if (jumped(now, was)) {
+          ++motion.jumped;
+          continue;
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+          motion.extent[axis] += static_cast<double>(now.hi[axis] - now.lo[axis]);
+          const double low = static_cast<double>(was.lo[axis] - now.lo[axis]),
+                       high = static_cast<double>(now.hi[axis] - was.hi[axis]);
+          motion.step[axis] +=
+              steady_ ? std::max(low, 0.0) + std::max(high, 0.0) : std::abs(low) + std::abs(high);
+        }
+      }
     return motion;
   }
-
-  /// Looks at every leaf: best where most moved.
-  void move_leaf_by_leaf(Boxes<T> boxes, Motion& motion) {
-    Block<T> now;
-    for (std::uint32_t k = 0; k < tree_.leaves(); ++k) {
-      std::uint32_t* ids = tree_.ids(k);
-      if (boxes.size() <
-          count_)  // boxes that are gone leave their lanes empty, once their pairs have ended
-        for (int lane = 0; lane < block_width; ++lane)
-          if (ids[lane] != no_box && ids[lane] >= boxes.size()) leave(k, lane, Leaver::gone);
-      gather_staying(now, k, boxes);
-      Block<T>& block = tree_.leaf(k);
-      const T change = settle_jumps(k, block, now, motion);
-      if (change == 0 && !leaves_[k].must_compare) continue;
-      block = now;
-      note_motion(k, change, motion);
-    }
-    const bool few = 4 * motion.leaves < tree_.leaves();
-    previous_known_ = false;
-    if (few && state_ == State::listed) remember(boxes);
-  }
-  void gather_staying(Block<T>& now, std::uint32_t k, Boxes<T> boxes) {
-    if (boxes.size() >= count_) return gather(now, tree_.ids(k), boxes);
-    std::uint32_t ids[block_width];
-    for (int lane = 0; lane < block_width; ++lane)
-      ids[lane] = tree_.ids(k)[lane] < boxes.size() ? tree_.ids(k)[lane] : no_box;
-    gather(now, ids, boxes);
-  }
-  /// The largest change of a coordinate among boxes that did not jump. In a listed tree those that
-  /// did leave the leaf.
-  T settle_jumps(std::uint32_t k, const Block<T>& was, Block<T>& now, Motion& motion) {
-    alignas(64) T change[block_width] = {};
-    for (int axis = 0; axis < 3; ++axis)
-      for (int lane = 0; lane < block_width; ++lane) {
-        const T lo = std::abs(now.lo[axis][lane] - was.lo[axis][lane]),
-                hi = std::abs(now.hi[axis][lane] - was.hi[axis][lane]);
-        change[lane] =
-            lo > change[lane] ? lo : change[lane];  // NaN, of an empty lane, is not larger
-        change[lane] = hi > change[lane] ? hi : change[lane];
-      }
-    T folded[block_width];
-    std::copy_n(change, block_width, folded);
-    for (int half = block_width / 2; half > 0; half /= 2)
-      for (int lane = 0; lane < half; ++lane)
-        folded[lane] = std::max(folded[lane], folded[lane + half]);
-    T most = folded[0];
-    const T limit = static_cast<T>(leaf_size_ / 2);
-    if (most <= limit) return most;
-    most = 0;
-    for (int lane = 0; lane < block_width; ++lane) {
-      if (change[lane] <= limit) {
-        most = std::max(most, change[lane]);
-        continue;
-      }
-      if (tree_.ids(k)[lane] == no_box || now.lo[0][lane] == std::numeric_limits<T>::infinity())
-        continue;
-      ++motion.jumped;
-      if (state_ == State::listed) {
-        leave(k, lane, Leaver::moves_on);
-        now.put(lane, nowhere<T>());
-      }
-      leaves_[k].must_compare = true;
-    }
-    return most;
-  }
-
-  void note_motion(std::uint32_t k, T change, Motion& motion) {
-    Leaf& leaf = leaves_[k];
-    leaf.moved = true;
-    // A difference of two T is off by a factor of 1 + u at most, a sum of doubles by 1 + u(double).
-    leaf.travel = (leaf.travel +
-                   static_cast<double>(change) * (1 + 2 * static_cast<double>(unit_roundoff<T>))) *
-                  (1 + 4 * unit_roundoff<double>);
-    if (leaf.must_compare) return;
-    ++motion.leaves;
-    motion.sum += static_cast<double>(change);
-  }
-
-  /// Looks at the boxes in the order of the frame, beside a copy of the last frame: best where few
-  /// moved.
-  void move_those_that_differ(Boxes<T> boxes, Motion& motion) {
-    for (std::size_t first = 0; first < boxes.size(); first += stretch) {
-      const std::size_t last = std::min(first + stretch, boxes.size());
-      if (same(boxes.data() + first, previous_.data() + first, last - first)) continue;
-      for (std::size_t id = first; id < last; ++id) {
-        if (boxes[id] == previous_[id]) continue;
-        move_one(static_cast<std::uint32_t>(id), boxes[id], motion);
-        previous_[id] = boxes[id];
-      }
-    }
-    for (const std::uint32_t k : moved_leaves_)
-      note_motion(k, largest_[k], motion), largest_[k] = 0;
-    moved_leaves_.clear();
-    if (4 * motion.leaves > tree_.leaves()) previous_known_ = false;
-  }
-  static constexpr std::size_t stretch = 64;  ///< boxes compared before looking at the outcome
-  static bool same(const Box<T>* a, const Box<T>* b, std::size_t count) {
-    const T *x = a->lo, *y = b->lo;
-    bool differ = false;
-    for (std::size_t k = 0; k < 6 * count; ++k) differ |= x[k] != y[k];
-    return !differ;
-  }
-  void move_one(std::uint32_t id, const Box<T>& box, Motion& motion) {
-    const std::uint32_t slot = slots_[id], k = slot / block_width;
-    const int lane = static_cast<int>(slot % block_width);
-    Leaf& leaf = leaves_[k];
-    largest_.resize(leaves_.size(), 0);
-    if (!leaf.moved) {
-      leaf.moved = true;
-      moved_leaves_.push_back(k);
-    }
-    const double change = largest_change(previous_[id], box);
-    if (change > leaf_size_ / 2) {
-      ++motion.jumped;
-      leave(k, lane, Leaver::moves_on);
-      tree_.leaf(k).put(lane, nowhere<T>());
-      return;
-    }
-    tree_.leaf(k).put(lane, box);
-    largest_[k] = std::max(largest_[k], static_cast<T>(change));
-  }
-
-  enum class Leaver { moves_on, gone };
-  void leave(std::uint32_t k, int lane, Leaver why) {
-    leaves_[k].must_compare = true;
-    if (state_ != State::listed) return;
-    emptied_.push_back(k * block_width + static_cast<std::uint32_t>(lane));
-    if (why == Leaver::moves_on) jumpers_.push_back(tree_.ids(k)[lane]);
+  bool unmoved(Boxes<T> boxes) const {
+    for (std::uint32_t slot = 0; slot < tree_.slots(); ++slot)
+      if (const std::uint32_t id = tree_.ids(0)[slot];
+          id != no_box && !bvlab::same(row_of(boxes[id]), last_row(slot)))
+        return false;
+    return true;
   }
 
   // ---- refitted -----------------------------------------------------------------------------
@@ -420,247 +265,327 @@ class Blocks {
   /// Joins the tree again with the leaves' bounds as they are; false once boxes have spread so far
   /// that this costs more than a new order would.
   bool refit(Boxes<T> boxes) {
-    if (boxes.size() != count_) return false;
-    for (std::uint32_t k = 0; k < tree_.leaves(); ++k) tree_.set_reach(k, bounds(tree_.leaf(k)));
+    if (state_ == State::followed && tree_.slots() > boxes.size() + boxes.size() / 16 + 32)
+      return false;
+    for (std::uint32_t k = 0; k < tree_.leaves(); ++k) {
+      gather(tree_.leaf(k), tree_.ids(k), boxes);
+      tree_.set_reach(k, bounds(tree_.leaf(k)));
+    }
     tree_.refit_above();
+    state_ = State::loose;
     previous_known_ = false;
     if (visits_ > fresh_visits_ + boxes.size() / 5) return false;
     write_all_pairs();
-    reason_ = "refitted: boxes move too far for a list";
+    reason_ = "refitted: boxes move too far to be followed";
     return true;
   }
 
-  // ---- listed -------------------------------------------------------------------------------
+  // ---- followed -----------------------------------------------------------------------------
 
-  /// From a tree whose leaves hold this frame: margins, the list of leaf pairs, and all pairs.
-  void make_list(Boxes<T> boxes, Changes changes) {
-    leaves_.assign(tree_.leaves(), Leaf{});
-    entries_.clear();
+  /// For how many frames reaches are best made; 0 where starting over costs less. In units of a
+  /// nanosecond or so, as measured once; what counts is their ratios.
+  int best_horizon(const Motion& motion) const {
+    const double n = static_cast<double>(count_), k = static_cast<double>(pairs_.size());
+    const double join = join_cost * static_cast<double>(fresh_visits_);
+    double best = 0.9 * (sort_cost * n + join + pair_cost * k);
+    int horizon = 0;
+    for (int frames = 1; frames <= longest_; frames *= 2) {
+      double growth = 1;
+      for (int axis = 0; axis < 3; ++axis)
+        if (motion.extent[axis] > 0)
+          growth *= 1 + (frames + 0.5) * motion.step[axis] / motion.extent[axis];
+      const double candidates = growth * k;
+      const double cost =
+          look_cost * n + test_cost * candidates +
+          (list_cost * n + (1 + growth) / 2 * join + candidate_cost * candidates) / frames;
+      if (cost < best) best = cost, horizon = frames;
+    }
+    return horizon;
+  }
+  static constexpr double sort_cost = 12, join_cost = 36, pair_cost = 1.3;  // from scratch
+  static constexpr double look_cost = 4.5, test_cost = 1.8;                 // a frame, followed
+  static constexpr double list_cost = 10, candidate_cost = 3;               // new candidates
+
+  /// Where a box will be for `frames` more frames, moving as it just did; where boxes have turned
+  /// out not to, a margin all around. Nothing depends on its being right.
+  Row<T> reach_of(const Row<T>& now, const Row<T>& was, int frames) const {
+    if (jumped(now, was)) return now;
+    const Four<T> zero{}, low = now.lo - was.lo, high = now.hi - was.hi;
+    const Four<T> far = most<T>(absolute<T>(low), absolute<T>(high));
+    Row<T> reach;
+    if (steady_) {
+      const T ahead = static_cast<T>(frames);
+      // A quarter of a step for what rounding adds up to.
+      reach = {now.lo + least<T>(low * ahead, zero) - far / 4,
+               now.hi + most<T>(high * ahead, zero) + far / 4};
+    } else {
+      const T widest = std::max({far[0], far[1], far[2]}) * static_cast<T>(frames);
+      reach = {now.lo - widest, now.hi + widest};
+    }
+    constexpr T limit = std::numeric_limits<T>::max();
+    return {most<T>(reach.lo, zero - limit), least<T>(reach.hi, zero + limit)};
+  }
+
+  /// Reaches, the candidates, and all pairs.
+  void find_candidates(Boxes<T> boxes, int horizon) {
+    const bool compare = settings_.changes == Changes::reported;
+    if (compare) keep_before();
+    sort_if_due(boxes);
+    auto& rows = candidates_.rows();
+    const std::uint32_t slots = tree_.slots();
+    if (state_ == State::loose) {
+      rows.resize(slots);
+      for (std::uint32_t slot = 0; slot < slots; ++slot) rows[slot] = last_row(slot);
+    }
     slots_.resize(boxes.size());
-    for (std::uint32_t k = 0; k < tree_.leaves(); ++k) {
-      leaves_[k].bounds = bounds(tree_.leaf(k));
-      tree_.set_reach(k, with_margin(leaves_[k].bounds));
-      for (int lane = 0; lane < block_width; ++lane)
-        if (const std::uint32_t id = tree_.ids(k)[lane]; id != no_box)
-          slots_[id] = k * block_width + static_cast<std::uint32_t>(lane);
+    reaches_.resize(slots);
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+      const std::uint32_t id = tree_.ids(0)[slot];
+      Box<T> reach = nowhere<T>();
+      if (id == no_box) {
+        rows[slot] = nowhere_row<T>();
+      } else {
+        const Row<T> now = row_of(boxes[id]);
+        const Row<T> expected = reach_of(now, rows[slot], horizon);
+        reaches_[slot].lo = expected.lo, reaches_[slot].hi = expected.hi;
+        reach = box_of(expected);
+        rows[slot].lo = now.lo, rows[slot].hi = now.hi;
+        slots_[id] = slot;
+      }
+      tree_.leaf(slot / block_width).put(static_cast<int>(slot % block_width), reach);
     }
+    for (std::uint32_t k = 0; k < tree_.leaves(); ++k) tree_.set_reach(k, bounds(tree_.leaf(k)));
     tree_.refit_above();
-    tree_.join([&](std::uint32_t a, std::uint32_t b) { add_entry(a, b); });
-    work_ = 0;
-    for (Entry& entry : entries_) compare(entry, [&](Lanes, int, Lanes) {});
-    if (changes == Changes::reported) {
-      before_.clear();
-      before_.append(pairs_.view());
+    candidates_.clear();
+    list_visits_ = 0;
+    tree_.join([&](std::uint32_t a, std::uint32_t b) {
+      ++list_visits_;
+      add_candidates(a, b);
+    });
+    if (sorted_) list_visits_when_sorted_ = list_visits_, sorted_ = false;
+    candidates_at_first_ = candidates_.size();
+    state_ = State::followed;
+    horizon_ = horizon, age_ = 0;
+    few_moved_ = false;
+    previous_known_ = false;
+    write_candidates(compare ? Keep::places : Keep::nothing);
+    if (compare) difference_(before_.view(), pairs_.view(), began_, ended_);
+  }
+  /// A new order, once the old one costs a third more or holds slots that are empty.
+  void sort_if_due(Boxes<T> boxes) {
+    if (state_ == State::loose) {
+      sorted_ = true;
+      return;
     }
-    write_listed_pairs();
-    if (changes == Changes::reported) difference_(before_.view(), pairs_.view(), began_, ended_);
-    entries_at_first_ = entries_.size();
-    leaves_at_first_ = tree_.leaves();
-    excess_ = 0;
-    state_ = State::listed;
-    full_work_ = work_;
-    remember(boxes);
+    const bool holey = tree_.slots() >= boxes.size() + block_width;
+    if (!holey && 3 * list_visits_ < 4 * list_visits_when_sorted_) return;
+    const auto order = order_(boxes);
+    auto& rows = candidates_.rows();
+    spare_.resize((order.size() + block_width - 1) / block_width * block_width);
+    for (std::size_t k = 0; k < order.size(); ++k) spare_[k] = rows[slots_[order[k].id]];
+    std::swap(rows, spare_);
+    tree_.build(order, boxes);
+    measure_leaves();
+    sorted_ = true;
   }
-  void add_entry(std::uint32_t a, std::uint32_t b) {
-    Entry& entry = entries_.emplace_back();
-    entry = {a, b, -std::numeric_limits<double>::infinity(), {}, {}};
-  }
-  Box<T> with_margin(Box<T> box) const {
-    for (int axis = 0; axis < 3; ++axis) box.lo[axis] -= margin_, box.hi[axis] += margin_;
-    return box;
+  void add_candidates(std::uint32_t a, std::uint32_t b) {
+    const Block<T>& left = tree_.leaf(a);
+    const Loaded<T> right(tree_.leaf(b));
+    const std::uint32_t* ids = tree_.ids(a);
+    PairList& list = candidates_.list();
+    Pair* out = list.room_for(block_width * block_width + block_width);
+    Lanes rows = a == b ? all_lanes : overlapping_lanes<Closed>(left, tree_.reach(b));
+    for (; rows; rows &= rows - 1) {
+      const int row = std::countr_zero(rows);
+      Lanes lanes = right.template overlapping<Closed>(left.box(row));
+      if (a == b) lanes &= all_lanes << (row + 1);
+      out = write_pairs_by_id(out, a * block_width + static_cast<std::uint32_t>(row), ids[row],
+                              b * block_width, tree_.ids(b), lanes & all_lanes);
+    }
+    list.end_at(out);
   }
 
-  /// Compares the boxes of two leaves again; calls changed(began, row, ended) for rows that did.
-  template <class Changed>
-  void compare(Entry& entry, Changed&& changed) {
-    Slack<T> slack;
-    const Block<T>& left = tree_.leaf(entry.a);
-    const Loaded<T> right(tree_.leaf(entry.b));
-    std::array<std::uint16_t, block_width> rows{};
-    ++work_;
-    if (entry.a == entry.b) {
-      for (int row = 0; row < block_width - 1; ++row) {
-        const Lanes after = all_lanes & (all_lanes << (row + 1));
-        rows[row] = static_cast<std::uint16_t>(
-            right.template overlapping<Contact>(left.box(row), after, slack) & after);
-      }
-      work_ += block_width;
-    } else {
-      // Rows that do not reach the other leaf's bounds have at least that much slack.
-      Lanes near = Loaded<T>(left).template reaching<Closed>(leaves_[entry.b].bounds, slack);
-      work_ += static_cast<std::size_t>(std::popcount(near));
-      for (; near; near &= near - 1) {
-        const int row = std::countr_zero(near);
-        rows[row] = static_cast<std::uint16_t>(
-            right.template overlapping<Contact>(left.box(row), all_lanes, slack));
-      }
-    }
-    if (rows != entry.rows) {
-      for (int four = 0; four < block_width; four += 4) {
-        std::uint64_t differ = four_rows(rows, four) ^ four_rows(entry.rows, four);
-        while (differ) {
-          const int row = std::countr_zero(differ) / 16;
-          const Lanes lanes = static_cast<Lanes>(differ >> (16 * row)) & all_lanes;
-          changed(lanes & rows[four + row], four + row, lanes & entry.rows[four + row]);
-          differ &= ~(std::uint64_t{all_lanes} << (16 * row));
-        }
-      }
-      entry.rows = rows;
-    }
-    // Three roundings on the way to the sum, and the slack itself is a rounded difference of T.
-    const double travel = leaves_[entry.a].travel + leaves_[entry.b].travel;
-    entry.expiry = (travel + static_cast<double>(slack.least()) *
-                                 (1 - 2 * static_cast<double>(unit_roundoff<T>))) *
-                   (1 - 8 * unit_roundoff<double>);
+  using Keep = typename CandidatePairs<T, Contact>::Keep;
+  void write_candidates(Keep keep) {
+    pairs_.clear();
+    candidates_.compare_all(tree_.ids(0), pairs_, keep, began_, ended_);
   }
 
-  static std::uint64_t four_rows(const std::array<std::uint16_t, block_width>& rows, int first) {
-    std::uint64_t four;
-    std::memcpy(&four, rows.data() + first, sizeof four);
-    return four;
-  }
-
-  /// Writes the pairs of every entry, each entry's as one segment.
-  void write_listed_pairs() {
-    PairList& list = pairs_.rewritten();
-    for (Entry& entry : entries_) {
-      const std::size_t first = list.size();
-      Pair* out = list.room_for(block_width * block_width + block_width);
-      const std::uint32_t* left = tree_.ids(entry.a);
-      const std::uint32_t* right = tree_.ids(entry.b);
-      for (int row = 0; row < block_width; ++row)
-        if (entry.rows[row]) out = write_pairs(out, left[row], right, entry.rows[row]);
-      list.end_at(out);
-      entry.segment = {static_cast<std::uint32_t>(first),
-                       static_cast<std::uint32_t>(list.size() - first)};
-    }
-  }
-
-  /// Brings the list up to this frame; false where so many leaves have left their margins that the
-  /// list has lost its use.
-  bool update_list(Boxes<T> boxes, double step) {
-    if (boxes.size() > count_ || !jumpers_.empty()) seat_newcomers(boxes);
-    const std::size_t escaped = widen_reaches();
-    if (3 * escaped > tree_.leaves() + 64) return false;
-    if (escaped) enter_new_neighbours();
-    work_ = 0;
-    const bool rewrite = compare_expired();
-    for (const std::uint32_t slot : emptied_)
-      tree_.ids(slot / block_width)[slot % block_width] = no_box;
-    emptied_.clear();
-    if (rewrite) write_listed_pairs();
-    if (settings_.changes == Changes::reported) {
-      if (!jumpers_.empty()) cancel_out();
-    } else {
-      began_.clear();
-      ended_.clear();
-    }
-    reason_ = "listed: boxes move little, pairs of leaves are kept";
-    give_up_if_useless(step, rewrite);
-    if (state_ == State::listed) renew_if_due(boxes);
-    return true;
-  }
-
-  /// Boxes that jumped or are new get leaves of their own, among themselves in spatial order.
-  void seat_newcomers(Boxes<T> boxes) {
+  /// One frame in which boxes mostly stayed within their reaches; false where too many did not.
+  bool follow(Boxes<T> boxes) {
+    moved_.clear(), escaped_.clear(), newcomers_.clear(), emptied_.clear();
+    moved_count_ = 0;
+    for (std::size_t id = boxes.size(); id < count_; ++id) vacate(slots_[id]);
+    const std::size_t staying = std::min(boxes.size(), count_);
+    if (previous_known_)
+      look_by_index(boxes, staying);
+    else
+      look_by_slot(boxes, staying);
     for (std::size_t id = count_; id < boxes.size(); ++id)
-      jumpers_.push_back(static_cast<std::uint32_t>(id));
-    std::erase_if(jumpers_, [&](std::uint32_t id) { return id >= boxes.size(); });
-    newcomers_.clear();
-    for (const std::uint32_t id : jumpers_) newcomers_.push_back(boxes[id]);
-    const auto order = newcomers_order_(newcomers_);
-    const std::uint32_t first = tree_.leaves();
-    tree_.resize_leaves(first +
+      newcomers_.push_back(static_cast<std::uint32_t>(id));
+    // Each of these costs about as much as starting over does for thirty boxes, or a hundred.
+    if (32 * escaped_.size() + 100 * newcomers_.size() > boxes.size() + 3200) {
+      if (age_ < horizon_ && newcomers_.size() < escaped_.size()) distrust();
+      return false;
+    }
+    widen_escaped();
+    if (!newcomers_.empty()) seat_newcomers(boxes);
+    few_moved_ = few(moved_count_);
+    moved_.insert(moved_.end(), emptied_.begin(), emptied_.end());
+    compare();
+    for (const std::uint32_t slot : emptied_) tree_.ids(0)[slot] = no_box;
+    if (settings_.changes == Changes::reported && !emptied_.empty()) cancel_out();
+    if (few_moved_ != previous_known_ || boxes.size() != count_) {
+      previous_known_ = false;
+      if (few_moved_) remember(boxes);
+    }
+    ++age_;
+    reason_ = few_moved_ ? "followed: few moved, only theirs are compared"
+                         : "followed: candidates are compared";
+    if (too_many_candidates(boxes)) age_ = horizon_, few_moved_ = false;
+    return true;
+  }
+  bool few(std::size_t moved) const { return 4 * moved < tree_.slots(); }
+  bool too_many_candidates(Boxes<T> boxes) const {
+    return candidates_.size() > 2 * candidates_at_first_ + boxes.size() ||
+           tree_.slots() > boxes.size() + boxes.size() / 8 + 64;
+  }
+  /// Boxes left the reaches made for them: they turn too often for that, or speed up.
+  void distrust() {
+    if (steady_)
+      steady_ = false;
+    else
+      longest_ = std::max(1, longest_ / 2);
+  }
+
+  /// In the order of the frame, beside a copy of the last one: best where few moved.
+  void look_by_index(Boxes<T> boxes, std::size_t staying) {
+    for (std::size_t first = 0; first < staying; first += stretch) {
+      const std::size_t last = std::min(first + stretch, staying);
+      if (same(boxes.data() + first, previous_.data() + first, last - first)) continue;
+      for (std::size_t id = first; id < last; ++id) {
+        if (boxes[id] == previous_[id]) continue;
+        previous_[id] = boxes[id];
+        const std::uint32_t slot = slots_[id];
+        Row<T>& row = candidates_.rows()[slot];
+        const Row<T> was = row;
+        row = row_of(boxes[id]);
+        moved_.push_back(slot);
+        if (!inside(row, reaches_[slot])) leave_reach(slot, was);
+      }
+    }
+    moved_count_ = moved_.size();
+  }
+  /// In the order of slots: best where most moved.
+  void look_by_slot(Boxes<T> boxes, std::size_t staying) {
+    const std::uint32_t slots = tree_.slots();
+    const std::uint32_t* ids = tree_.ids(0);
+    Row<T>* const rows = candidates_.rows().data();
+    const Row<T>* const reaches = reaches_.data();
+    const std::size_t had = moved_.size();  // boxes that are gone
+    moved_.resize(had + slots);
+    std::uint32_t* moved = moved_.data() + had;
+    // A frame that the cache holds is fetched in order, a longer one as it is needed.
+    const bool far = boxes.size_bytes() > (1u << 20);
+    if (!far)
+      for (std::size_t byte = 0; byte < boxes.size_bytes(); byte += 64)
+        __builtin_prefetch(reinterpret_cast<const char*>(boxes.data()) + byte, 0, 2);
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+      if (far && slot + ahead < slots && ids[slot + ahead] < staying)
+        __builtin_prefetch(&boxes[ids[slot + ahead]]);
+      if (ids[slot] >= staying) continue;
+      const Row<T> was = rows[slot], now = row_of(boxes[ids[slot]]);
+      // Both halves by themselves: copied whole, they would go through memory.
+      rows[slot].lo = now.lo, rows[slot].hi = now.hi;
+      *moved = slot;
+      moved += !bvlab::same(now, was);
+      if (!inside(now, reaches[slot])) [[unlikely]] {
+        const Row<T> left = was;  // its address is taken: `was` itself can stay in registers
+        leave_reach(slot, left);
+      }
+    }
+    moved_count_ = static_cast<std::size_t>(moved - moved_.data());
+    moved_.resize(moved_count_);
+  }
+  static constexpr std::uint32_t ahead = 16;  ///< slots whose boxes are on their way from memory
+
+  void leave_reach(std::uint32_t slot, const Row<T>& was) {
+    if (!jumped(candidates_.rows()[slot], was)) {
+      escaped_.push_back({slot, was});
+      return;
+    }
+    newcomers_.push_back(tree_.ids(0)[slot]);
+    vacate(slot);
+  }
+  /// Its pairs end with this frame; candidates of the slot stay and are never found again.
+  void vacate(std::uint32_t slot) {
+    candidates_.rows()[slot] = nowhere_row<T>();
+    tree_.leaf(slot / block_width).put(static_cast<int>(slot % block_width), nowhere<T>());
+    emptied_.push_back(slot);
+  }
+
+  void widen_escaped() {
+    for (const auto& [slot, was] : escaped_) {
+      const Row<T> now = candidates_.rows()[slot], ahead = reach_of(now, was, horizon_);
+      Row<T>& reach = reaches_[slot];
+      const Box<T> old = box_of(reach);
+      reach = {least<T>(least<T>(reach.lo, ahead.lo), now.lo),
+               most<T>(most<T>(reach.hi, ahead.hi), now.hi)};
+      enter(slot, old);
+    }
+  }
+  /// Candidates are all pairs whose reaches meet: adds those that the new reach of this slot meets
+  /// and the old one did not.
+  void enter(std::uint32_t slot, const Box<T>& old) {
+    const Box<T> reach = box_of(reaches_[slot]);
+    const std::uint32_t* ids = tree_.ids(0);
+    tree_.widen(slot, reach);
+    tree_.find(reach, [&](std::uint32_t k) {
+      const Loaded<T> block(tree_.leaf(k));
+      Lanes lanes =
+          block.template overlapping<Closed>(reach) & ~block.template overlapping<Closed>(old);
+      for (; lanes; lanes &= lanes - 1) {
+        const std::uint32_t other = k * block_width + std::countr_zero(lanes);
+        if (other != slot) candidates_.add(slot, ids[slot], other, ids[other]);
+      }
+    });
+  }
+
+  /// Boxes that jumped or are new get slots of their own, among themselves in spatial order.
+  void seat_newcomers(Boxes<T> boxes) {
+    std::erase_if(newcomers_, [&](std::uint32_t id) { return id >= boxes.size(); });
+    new_boxes_.clear();
+    for (const std::uint32_t id : newcomers_) new_boxes_.push_back(boxes[id]);
+    const auto order = newcomers_order_(new_boxes_);
+    const std::uint32_t first = tree_.slots();
+    tree_.resize_leaves(tree_.leaves() +
                         static_cast<std::uint32_t>((order.size() + block_width - 1) / block_width));
-    leaves_.resize(tree_.leaves());
-    slots_.resize(boxes.size());
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      const std::uint32_t slot = first * block_width + static_cast<std::uint32_t>(k);
-      const std::uint32_t id = jumpers_[order[k].id];
-      tree_.ids(first)[k] = id;
-      slots_[id] = slot;
-    }
-    for (std::uint32_t k = first; k < tree_.leaves(); ++k) {
-      gather(tree_.leaf(k), tree_.ids(k), boxes);
-      leaves_[k].moved = leaves_[k].must_compare = true;
-      tree_.set_reach(k, nowhere<T>());
-      add_entry(k, k);
-    }
-  }
-
-  /// Gives every leaf that left its reach a new one; how many did.
-  std::size_t widen_reaches() {
-    escaped_.clear();
-    for (std::uint32_t k = 0; k < tree_.leaves(); ++k) {
-      Leaf& leaf = leaves_[k];
-      if (!leaf.moved) continue;
-      leaf.bounds = bounds(tree_.leaf(k));
-      const Box<T> reach = tree_.reach(k);
-      if (inside(leaf.bounds, reach)) continue;
-      leaf.old_reach = reach;
-      leaf.reach_changed = true;
-      tree_.set_reach(k, with_margin(leaf.bounds));
-      escaped_.push_back(k);
-    }
-    return escaped_.size();
-  }
-  static bool inside(const Box<T>& a, const Box<T>& b) {
-    return a.lo[0] >= b.lo[0] && a.lo[1] >= b.lo[1] && a.lo[2] >= b.lo[2] && a.hi[0] <= b.hi[0] &&
-           a.hi[1] <= b.hi[1] && a.hi[2] <= b.hi[2];
-  }
-  /// Two leaves have an entry if and only if their reaches meet; adds those that this frame's
-  /// reaches ask for. Entries whose leaves have parted go when they are next looked at.
-  void enter_new_neighbours() {
     tree_.refit_above();
-    for (const std::uint32_t a : escaped_)
-      tree_.find(tree_.reach(a), [&](std::uint32_t b) {
-        if (a == b || (leaves_[b].reach_changed && b < a)) return;
-        const Box<T> b_was = leaves_[b].reach_changed ? leaves_[b].old_reach : tree_.reach(b);
-        if (!overlap<Closed>(leaves_[a].old_reach, b_was)) add_entry(a, b);
-      });
-  }
-
-  /// Compares every entry whose slack is used up; whether the list of pairs has to be written anew,
-  /// since that is cheaper than to change it in so many places.
-  bool compare_expired() {
-    // Past this many changes the list is written anew, and they need not be known one by one.
-    const std::size_t many = pairs_.size() / 16 + 64;
-    const std::size_t recorded =
-        settings_.changes == Changes::reported ? std::numeric_limits<std::size_t>::max() : many;
-    std::size_t changed = 0, kept = 0;
-    ended_segments_.clear();
-    for (std::size_t e = 0; e < entries_.size(); ++e) {
-      Entry& entry = entries_[e];
-      const Leaf &a = leaves_[entry.a], &b = leaves_[entry.b];
-      const bool look = a.must_compare | b.must_compare | (a.travel + b.travel >= entry.expiry);
-      const bool parted = (a.reach_changed | b.reach_changed) && entry.a != entry.b &&
-                          !overlap<Closed>(tree_.reach(entry.a), tree_.reach(entry.b));
-      if (look | parted) {
-        const std::uint32_t* left = tree_.ids(entry.a);
-        const std::uint32_t* right = tree_.ids(entry.b);
-        compare(entry, [&](Lanes began, int row, Lanes ended) {
-          changed += static_cast<std::size_t>(std::popcount(began) + std::popcount(ended));
-          if (changed > recorded) return;
-          if (began)
-            began_.end_at(write_pairs(began_.room_for(block_width), left[row], right, began));
-          if (!ended) return;
-          ended_.end_at(write_pairs(ended_.room_for(block_width), left[row], right, ended));
-          ended_segments_.resize(ended_.size(), entry.segment);
-        });
-      }
-      if (!parted) {
-        if (kept != e) entries_[kept] = entry;
-        ++kept;
-      }
+    slots_.resize(boxes.size());
+    auto& rows = candidates_.rows();
+    rows.resize(tree_.slots(), nowhere_row<T>());
+    reaches_.resize(tree_.slots());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const std::uint32_t id = newcomers_[order[k].id];
+      const std::uint32_t slot = first + static_cast<std::uint32_t>(k);
+      tree_.ids(0)[slot] = id;
+      slots_[id] = slot;
+      rows[slot] = reaches_[slot] = row_of(boxes[id]);
+      enter(slot, nowhere<T>());
+      moved_.push_back(slot);
     }
-    entries_.resize(kept);
-    if (changed > many || pairs_.displaced() > pairs_.size() / 6 + 64) return true;
-    for (std::size_t k = 0; k < ended_.size(); ++k) pairs_.remove(ended_[k], ended_segments_[k]);
-    for (const Pair& pair : began_.view()) pairs_.add(pair);
-    return false;
+    moved_count_ += order.size();
   }
 
-  /// A pair that ended in one leaf and began in another, where its box went, did neither.
+  void compare() {
+    if (few_moved_ && candidates_.places_known())
+      return candidates_.compare_some(moved_, tree_.ids(0), pairs_, began_, ended_);
+    write_candidates(settings_.changes == Changes::reported ? Keep::changes
+                     : few_moved_                           ? Keep::places
+                                                            : Keep::nothing);
+  }
+
+  /// A pair that ended in one slot and began in another, where its box went, did neither.
   void cancel_out() {
     before_.clear();
     before_.append(ended_.view());
@@ -668,34 +593,9 @@ class Blocks {
     after_.append(began_.view());
     difference_(before_.view(), after_.view(), began_, ended_);
   }
-
-  /// Leaves spread as their boxes drift apart. Once that has cost as much as sorting and listing
-  /// anew, do so; the pairs stay what they are.
-  void renew_if_due(Boxes<T> boxes) {
-    const double grown = 1 - static_cast<double>(entries_at_first_) /
-                                 static_cast<double>(std::max(entries_.size(), entries_at_first_));
-    excess_ += grown * static_cast<double>(work_);
-    if (excess_ < 4 * static_cast<double>(boxes.size()) &&
-        tree_.leaves() < 2 * leaves_at_first_ + 8)
-      return;
-    tree_.build(order_(boxes), boxes);
-    measure_leaves();
-    make_list(boxes, Changes::unreported);
-  }
-
-  /// A list of which most has to be compared every frame costs more than joining the tree again,
-  /// unless changes have to be reported. Judged over four frames.
-  void give_up_if_useless(double step, bool rewritten) {
-    // Writing the list anew takes a good half of what comparing everything does.
-    used_ +=
-        static_cast<double>(work_) / static_cast<double>(full_work_ + 1) + (rewritten ? 0.6 : 0);
-    if (++judged_ < 4) return;
-    if (used_ > 1.1 * judged_ && settings_.changes == Changes::unreported) {
-      step_given_up_ = step;
-      state_ = State::loose;
-      previous_known_ = false;
-    }
-    used_ = 0, judged_ = 0;
+  void keep_before() {
+    before_.clear();
+    before_.append(pairs_.view());
   }
 
   MethodSettings settings_;
@@ -703,32 +603,32 @@ class Blocks {
   std::size_t count_ = 0;  ///< boxes of the last frame
   std::string_view reason_;
   SpatialOrder<T> order_, newcomers_order_;
-  BlockTree<T> tree_;
-  KeptPairs pairs_;
+  BlockTree<T> tree_;  ///< loose: of the boxes; followed: of their reaches
+  PairList pairs_;
   double leaf_size_ = 0;  ///< mean extent of a leaf after sorting
   std::size_t visits_ = 0, fresh_visits_ = 0;
 
-  std::vector<Entry> entries_;
-  std::vector<Leaf> leaves_;
-  T margin_ = 0;
-  std::size_t entries_at_first_ = 0, work_ = 0;
-  std::uint32_t leaves_at_first_ = 0;
-  double excess_ = 0;
-  std::size_t full_work_ = 0;
-  double used_ = 0;
-  int judged_ = 0;
-  double step_given_up_ = std::numeric_limits<double>::infinity();
-  std::vector<std::uint32_t> escaped_;
+  CandidatePairs<T, Contact> candidates_;
+  std::vector<Row<T>> reaches_, spare_;
+  std::vector<std::uint32_t> slots_;  ///< of each box
+  std::size_t candidates_at_first_ = 0, list_visits_ = 0, list_visits_when_sorted_ = 0;
+  bool sorted_ = false;
+  bool steady_ = true;  ///< boxes have gone on as they did
+  int longest_ = 64, horizon_ = 0, age_ = 0;
 
-  std::vector<std::uint32_t> slots_;  ///< of each box: leaf times sixteen plus lane
-  std::vector<Box<T>> previous_, newcomers_;
+  struct Escaped {
+    std::uint32_t slot;
+    Row<T> was;
+  };
+  std::vector<Escaped> escaped_;
+  std::vector<std::uint32_t> moved_, newcomers_, emptied_;
+  std::size_t moved_count_ = 0;
+  bool few_moved_ = false;
+  std::vector<Box<T>> previous_, new_boxes_;
   bool previous_known_ = false;
-  std::vector<std::uint32_t> jumpers_, emptied_, moved_leaves_;
-  std::vector<T> largest_;
 
   PairList began_, ended_, before_, after_;
   std::vector<PairList> shares_;
-  std::vector<Segment> ended_segments_;
   PairDifference difference_;
 };
 

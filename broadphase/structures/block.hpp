@@ -56,24 +56,11 @@ Box<T> enclosing(const Box<T>& a, const Box<T>& b) {
   return both;
 }
 
-/// By how much, at the least, coordinates must change before any comparison made so far comes out
-/// otherwise; one running minimum per lane.
-template <class T>
-class Slack {
- public:
-  Slack() { std::fill_n(lane_, block_width, std::numeric_limits<T>::infinity()); }
-  void note(int lane, T depth) { lane_[lane] = std::min(lane_[lane], std::abs(depth)); }
-  T least() const { return *std::min_element(lane_, lane_ + block_width); }
-
- private:
-  T lane_[block_width];
-};
-
 /// A block held ready to be compared with many boxes.
 ///
 /// Two boxes overlap where the least of the six differences hi - lo of one and the other is not
 /// negative (positive, half-open). IEEE differences have the sign of the exact ones, so this
-/// decides just as comparisons do, and its magnitude is the slack.
+/// decides just as comparisons do.
 template <class T>
 class Loaded {
  public:
@@ -84,27 +71,6 @@ class Loaded {
   Lanes overlapping(const Box<T>& box) const {
     Lanes lanes = 0;
     for (int k = 0; k < block_width; k += width) lanes |= lanes_where<Contact>(depth(box, k)) << k;
-    return lanes;
-  }
-
-  /// The same, and takes note of the slack of the lanes in `among`.
-  template <class Contact>
-  Lanes overlapping(const Box<T>& box, Lanes among, Slack<T>& slack) const {
-    Lanes lanes = 0;
-    for (int k = 0; k < block_width; k += width) {
-      const V d = depth(box, k);
-      lanes |= lanes_where<Contact>(d) << k;
-      for (int lane = 0; lane < width; ++lane)
-        if (among >> (k + lane) & 1) slack.note(k + lane, d[lane]);
-    }
-    return lanes;
-  }
-
-  /// The lanes whose boxes overlap `box`, and takes note of the slack of the others.
-  template <class Contact>
-  Lanes reaching(const Box<T>& box, Slack<T>& slack) const {
-    const Lanes lanes = overlapping<Contact>(box);
-    overlapping<Contact>(box, all_lanes & ~lanes, slack);
     return lanes;
   }
 
@@ -129,25 +95,7 @@ class Loaded {
   const Block<T>& block_;
 };
 #ifdef __AVX512F__
-template <>
-class Slack<float> {
- public:
-  void note(__mmask16 lanes, __m512 depth) {
-    lane_ = _mm512_mask_min_ps(lane_, lanes, lane_,
-                               _mm512_castsi512_ps(_mm512_and_si512(
-                                   _mm512_castps_si512(depth), _mm512_set1_epi32(0x7fffffff))));
-  }
-  float least() const {
-    alignas(64) float lane[block_width];
-    _mm512_store_ps(lane, lane_);
-    return *std::min_element(lane, lane + block_width);
-  }
-
- private:
-  __m512 lane_ = _mm512_set1_ps(std::numeric_limits<float>::infinity());
-};
-/// The same in six registers. Where no slack is asked for: six comparisons, each masked by the
-/// ones before.
+/// The same in six registers: six comparisons, each masked by the ones before.
 template <>
 class Loaded<float> {
  public:
@@ -167,31 +115,8 @@ class Loaded<float> {
     n = _mm512_mask_cmp_ps_mask(n, hi_[2], _mm512_set1_ps(box.lo[2]), ge);
     return static_cast<Lanes>(m & n);
   }
-  template <class Contact>
-  Lanes overlapping(const Box<float>& box, Lanes among, Slack<float>& slack) const {
-    constexpr int reaches = std::is_same_v<Contact, Closed> ? _CMP_GE_OQ : _CMP_GT_OQ;
-    const __m512 least = depth(box);
-    slack.note(static_cast<__mmask16>(among), least);
-    return _mm512_cmp_ps_mask(least, _mm512_setzero_ps(), reaches);
-  }
-  template <class Contact>
-  Lanes reaching(const Box<float>& box, Slack<float>& slack) const {
-    constexpr int reaches = std::is_same_v<Contact, Closed> ? _CMP_GE_OQ : _CMP_GT_OQ;
-    const __m512 least = depth(box);
-    const __mmask16 lanes = _mm512_cmp_ps_mask(least, _mm512_setzero_ps(), reaches);
-    slack.note(static_cast<__mmask16>(~lanes), least);
-    return lanes;
-  }
 
  private:
-  __m512 depth(const Box<float>& box) const {
-    __m512 depth[3];
-    for (int axis = 0; axis < 3; ++axis)
-      depth[axis] = _mm512_maskz_min_ps(0xffff, _mm512_set1_ps(box.hi[axis]) - lo_[axis],
-                                        hi_[axis] - _mm512_set1_ps(box.lo[axis]));
-    return _mm512_maskz_min_ps(0xffff, depth[0], _mm512_maskz_min_ps(0xffff, depth[1], depth[2]));
-  }
-
   __m512 lo_[3], hi_[3];
 };
 #endif
@@ -320,6 +245,37 @@ inline Pair* write_pairs(Pair* out, std::uint32_t id, const std::uint32_t* ids, 
   return out + found;
 #else
   for (; lanes; lanes &= lanes - 1) *out++ = ordered(id, ids[std::countr_zero(lanes)]);
+  return out;
+#endif
+}
+
+/// Writes a pair of slots for every lane of `lanes`: lane l stands for slot `first` + l, whose box
+/// is ids[l]; the slot of the smaller id first. Room as for `write_pairs`.
+inline Pair* write_pairs_by_id(Pair* out, std::uint32_t slot, std::uint32_t id, std::uint32_t first,
+                               const std::uint32_t* ids, Lanes lanes) {
+#ifdef __AVX512F__
+  const auto held = static_cast<__mmask16>(lanes);
+  const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  const __m512i others = _mm512_maskz_compress_epi32(
+      held, _mm512_add_epi32(lane, _mm512_set1_epi32(static_cast<int>(first))));
+  const __m512i their_ids = _mm512_maskz_compress_epi32(held, _mm512_loadu_si512(ids));
+  const __m512i mine = _mm512_set1_epi32(static_cast<int>(slot));
+  const __mmask16 smaller =
+      _mm512_cmplt_epu32_mask(their_ids, _mm512_set1_epi32(static_cast<int>(id)));
+  const __m512i one = _mm512_mask_blend_epi32(smaller, mine, others);
+  const __m512i two = _mm512_mask_blend_epi32(smaller, others, mine);
+  const __m512i low = _mm512_setr_epi32(0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+  const __m512i high =
+      _mm512_setr_epi32(8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
+  const int found = std::popcount(lanes);
+  _mm512_storeu_si512(out, _mm512_permutex2var_epi32(one, low, two));
+  if (found > 8) _mm512_storeu_si512(out + 8, _mm512_permutex2var_epi32(one, high, two));
+  return out + found;
+#else
+  for (; lanes; lanes &= lanes - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+    *out++ = ids[lane] < id ? Pair{first + lane, slot} : Pair{slot, first + lane};
+  }
   return out;
 #endif
 }

@@ -53,8 +53,20 @@ class BlockTree {
 
   /// What the tree believes leaf k to lie in: as wide as its boxes or wider.
   Box<T> reach(std::uint32_t k) const { return levels_[1][k / block_width].box(k % block_width); }
+  std::uint32_t slots() const { return static_cast<std::uint32_t>(ids_.size()); }
   void set_reach(std::uint32_t k, const Box<T>& box) {
     levels_[1][k / block_width].put(k % block_width, box);
+  }
+
+  /// Makes the box in this slot, sixteen to a leaf, and every level above as wide as `box`, which
+  /// encloses what stood there.
+  void widen(std::uint32_t slot, const Box<T>& box) {
+    std::size_t node = slot;
+    for (std::size_t level = 0; level < depth_; ++level, node /= block_width) {
+      Block<T>& block = levels_[level][node / block_width];
+      const int lane = static_cast<int>(node % block_width);
+      block.put(lane, enclosing(block.box(lane), box));
+    }
   }
 
   /// Fills the leaves with the boxes in this order; then the levels above.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Sorting by integer keys in three passes of eleven bits, O(n), stable; a pass in which all keys
+/// Sorting by integer keys in passes of at most eleven bits, O(n), stable; a pass in which all keys
 /// agree is skipped. Floating-point numbers sort as the integers that `sort_key` makes of them.
 #pragma once
 
@@ -41,13 +41,17 @@ void insertion_sort(std::span<Keyed<Key>> items) {
   }
 }
 
-/// Sorts `items` by key, using `spare` for room.
+/// Sorts `items` by the lowest `bits` of their keys, above which there is nothing, using `spare`
+/// for room.
 template <class Key>
-void radix_sort(std::vector<Keyed<Key>>& items, std::vector<Keyed<Key>>& spare) {
+void radix_sort(std::vector<Keyed<Key>>& items, std::vector<Keyed<Key>>& spare,
+                int bits = 8 * sizeof(Key)) {
   if (items.size() < 64) return insertion_sort(std::span(items));
-  constexpr int digit = 11, passes = (8 * sizeof(Key) + digit - 1) / digit;
-  constexpr Key low = (Key{1} << digit) - 1;
-  std::array<std::array<std::uint32_t, 1 << digit>, passes> counts{};
+  constexpr int widest = 11, most_passes = (8 * sizeof(Key) + widest - 1) / widest;
+  const int passes = (bits + widest - 1) / widest, digit = (bits + passes - 1) / passes;
+  const Key low = (Key{1} << digit) - 1;
+  std::array<std::array<std::uint32_t, 1 << widest>, most_passes> counts;
+  for (int pass = 0; pass < passes; ++pass) std::fill_n(counts[pass].begin(), low + 1, 0u);
   for (const auto& item : items)
     for (int pass = 0; pass < passes; ++pass) ++counts[pass][(item.key >> (digit * pass)) & low];
   spare.resize(items.size());
@@ -56,7 +60,7 @@ void radix_sort(std::vector<Keyed<Key>>& items, std::vector<Keyed<Key>>& spare) 
     auto& count = counts[pass];
     if (count[(items[0].key >> shift) & low] == items.size()) continue;
     std::uint32_t sum = 0;
-    for (auto& c : count) sum += std::exchange(c, sum);
+    for (std::size_t value = 0; value <= low; ++value) sum += std::exchange(count[value], sum);
     const Keyed<Key>* from = items.data();
     Keyed<Key>* to = spare.data();
     for (std::size_t k = 0; k < items.size(); ++k)

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "broadphase/structures/block.hpp"
@@ -26,10 +27,18 @@ class SpatialOrder {
     const Summary all = summary(boxes);
     classify(boxes, all);
     const int class_bits = std::bit_width(classes_ - 1u);
-    make_keys(boxes, Cells(all, std::min(10, (32 - class_bits) / 3)));
-    radix_sort(items_, spare_);
+    // A hundred cells to a box: few share one, and the rest are ordered again.
+    const int enough = (std::bit_width(boxes.size()) + 7 + 2) / 3;
+    const int digits = std::min({10, (32 - class_bits) / 3, enough});
+    make_keys(boxes, Cells(all, digits));
+    radix_sort(items_, spare_, std::max(1, 3 * digits + class_bits));
     refine(boxes);
     return items_;
+  }
+
+  std::size_t bytes() const {
+    return (items_.capacity() + spare_.capacity()) * sizeof(Item) +
+           kinds_.capacity() * sizeof(std::uint16_t);
   }
 
  private:
@@ -92,12 +101,18 @@ class SpatialOrder {
     return tally.sum();
   }
 
-  /// Finds the classes in use and numbers them; one where all boxes are about alike.
+  /// Finds the classes in use and numbers them; one where all boxes are about alike. Boxes smaller
+  /// than the distance to their neighbours are all of one class: their size does not widen a leaf.
   void classify(Boxes<T> boxes, const Summary& all) {
     classes_ = 1;
     if (all.most <= 8 * all.least) return;
-    std::array<std::uint32_t, exponents * shapes> used{};
-    for (const Box<T>& box : boxes) used[kind(box)] = 1;
+    const int small = exponent(spacing(all, boxes.size()));
+    kinds_.resize(boxes.size());
+    std::array<std::uint8_t, exponents * shapes> used{};
+    for (std::size_t k = 0; k < boxes.size(); ++k) {
+      kinds_[k] = static_cast<std::uint16_t>(kind(boxes[k], small));
+      used[kinds_[k]] = 1;
+    }
     // From the largest size down, three powers of two to a class.
     classes_ = 0;
     for (int top = exponents - 1; top >= 0; --top) {
@@ -114,29 +129,46 @@ class SpatialOrder {
       top = bottom;
     }
   }
+  /// The distance of neighbours, were the centres spread evenly over their bounds.
+  static double spacing(const Summary& all, std::size_t count) {
+    double log_volume = 0;
+    int spread = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double width =
+          2 * (static_cast<double>(all.hi[axis]) - static_cast<double>(all.lo[axis]));
+      if (width > 0) log_volume += std::log(width), ++spread;
+    }
+    return spread ? std::exp((log_volume - std::log(static_cast<double>(count))) / spread) : 0;
+  }
 
   static constexpr int exponents = 256;
   static constexpr int shapes = 7;
-  /// The size's power of two, and whether one axis is four times longer, or shorter, than the next.
-  static int kind(const Box<T>& box) {
-    std::array<T, 3> extent;
-    for (int axis = 0; axis < 3; ++axis) extent[axis] = box.hi[axis] - box.lo[axis];
-    const int longest = extent[0] >= extent[1] ? (extent[0] >= extent[2] ? 0 : 2)
-                                               : (extent[1] >= extent[2] ? 1 : 2);
-    const int shortest =
-        extent[0] < extent[1] ? (extent[0] < extent[2] ? 0 : 2) : (extent[1] < extent[2] ? 1 : 2);
-    const T size = extent[longest];
-    const int exponent =
-        static_cast<int>(std::bit_cast<std::uint32_t>(static_cast<float>(size)) >> 23);
+  static int exponent(double size) {
+    return static_cast<int>(std::bit_cast<std::uint32_t>(static_cast<float>(size)) >> 23);
+  }
+  /// The size's power of two, not below `small`, times `shapes`, plus for larger ones which axis is
+  /// four times longer (1, 2, 3), or shorter (4, 5, 6), than the next.
+  static int kind(const Box<T>& box, int small) {
+    const T x = box.hi[0] - box.lo[0], y = box.hi[1] - box.lo[1], z = box.hi[2] - box.lo[2];
+    const T size = std::max(x, std::max(y, z));
+    const int e = exponent(static_cast<double>(size));
+    if (e <= small) return small * shapes;
+    const T least = std::min(x, std::min(y, z));
+    const T middle = std::max(std::min(x, y), std::min(std::max(x, y), z));
     int shape = 0;
-    if (longest != shortest) {
-      const T middle = extent[3 - longest - shortest];
-      if (size > 4 * middle)
-        shape = 1 + longest;
-      else if (middle > 4 * extent[shortest])
-        shape = 4 + shortest;
-    }
-    return exponent * shapes + shape;
+    if (size > 4 * middle)
+      shape = size == x ? 1 : size == y ? 2 : 3;
+    else if (middle > 4 * least)
+      shape = least == x ? 4 : least == y ? 5 : 6;
+    return e * shapes + shape;
+  }
+  /// Cells as long as their boxes: along an axis on which boxes are longer, neighbours are further
+  /// apart, by two powers of two.
+  static std::uint32_t stretched(std::uint32_t key, int shape) {
+    static constexpr std::uint32_t x = 0x09249249u, y = x << 1, z = x << 2;
+    static constexpr std::uint32_t long_axes[shapes] = {0, x, y, z, y | z, x | z, x | y};
+    const std::uint32_t axes = long_axes[shape];
+    return (key & ~axes) | ((key & axes) >> 6);
   }
 
   static std::uint32_t spread(std::uint32_t x) {  // ten bits, two zeros between each
@@ -178,8 +210,10 @@ class SpatialOrder {
       std::uint32_t key[block_width];
       cells.keys(block, key);
       if (classes_ > 1)
-        for (std::size_t k = 0; k < count; ++k)
-          key[k] |= class_of_[kind(boxes[first + k])] << (3 * cells.digits);
+        for (std::size_t k = 0; k < count; ++k) {
+          const int kind = kinds_[first + k];
+          key[k] = stretched(key[k], kind % shapes) | class_of_[kind] << (3 * cells.digits);
+        }
       for (std::size_t k = 0; k < count; ++k)
         items_[first + k] = {key[k], static_cast<std::uint32_t>(first + k)};
     });
@@ -238,6 +272,7 @@ class SpatialOrder {
   std::vector<std::pair<std::size_t, std::size_t>> runs_;
   std::array<std::uint32_t, exponents * shapes> class_of_{};
   std::uint32_t classes_ = 1;
+  std::vector<std::uint16_t> kinds_;  ///< of each box, where there are classes
 };
 
 }  // namespace bvlab

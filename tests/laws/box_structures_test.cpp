@@ -8,8 +8,8 @@
 
 #include "broadphase/methods/blocks.hpp"
 #include "broadphase/methods/sweep.hpp"
-#include "broadphase/structures/kept_pairs.hpp"
 #include "broadphase/structures/pair_difference.hpp"
+#include "broadphase/structures/pair_slots.hpp"
 #include "tests/laws/boxes_for_test.hpp"
 
 namespace bvlab {
@@ -69,26 +69,84 @@ TEST(PairSlots, RemembersWhatItWasTold) {
   }
 }
 
-TEST(KeptPairs, HoldsWhatWasAddedAndNotRemoved) {
-  BoxMaker<float> random(2);
-  KeptPairs kept;
-  std::set<Pair> right;
-  PairList& list = kept.rewritten();
-  for (std::uint32_t k = 0; k < 200; ++k) list.push({k, k + 1}), right.insert({k, k + 1});
-  for (int step = 0; step < 5000; ++step) {
-    const std::uint32_t k = random.below(300);
-    const Pair pair{k, k + 1};
-    if (right.contains(pair)) {
-      kept.remove(pair, {0, 200});
-      right.erase(pair);
-    } else {
-      kept.add(pair);
-      right.insert(pair);
+/// Boxes that move, all of them or a few, against the definition: the list, and what it says
+/// changed.
+template <class T>
+class CandidateLists : public ::testing::Test {};
+using Scalars = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(CandidateLists, Scalars);
+
+TYPED_TEST(CandidateLists, HoldsWhatOverlaps) {
+  using T = TypeParam;
+  using Candidates = CandidatePairs<T, Closed>;
+  BoxMaker<T> random(2);
+  Frame<T> boxes = random.boxes(60, 0, 1, T(0.1), T(0.3));
+  Candidates candidates;
+  std::vector<std::uint32_t> ids(boxes.size());
+  for (std::uint32_t k = 0; k < ids.size(); ++k) ids[k] = (7 * k) % 60;  // slot to box
+  candidates.rows().resize(boxes.size());
+  for (std::uint32_t a = 0; a < 60; ++a)
+    for (std::uint32_t b = a + 1; b < 60; ++b)
+      if (b < 50) candidates.add(a, ids[a], b, ids[b]);
+  std::vector<Pair> before;
+  PairList list, began, ended;
+  for (int step = 0; step < 200; ++step) {
+    const bool few = step % 3 != 0;
+    if (step == 50)
+      for (std::uint32_t a = 0; a < 60; ++a)
+        for (std::uint32_t b = std::max(a + 1, 50u); b < 60; ++b)
+          candidates.add(a, ids[a], b, ids[b]);
+    std::vector<std::uint32_t> moved;
+    for (std::uint32_t slot = 0; slot < 60; ++slot) {
+      if (few && step != 50 && random.below(10) > 0) continue;
+      boxes[ids[slot]] = random.box(0, 1, T(0.1), T(0.3));
+      moved.push_back(slot);
     }
-    if (step % 50 == 0) {
-      ASSERT_EQ(sorted(kept.view()), std::vector<Pair>(right.begin(), right.end()));
-    }
+    for (std::uint32_t slot = 0; slot < 60; ++slot)
+      candidates.rows()[slot] = row_of(boxes[ids[slot]]);
+    began.clear(), ended.clear();
+    if (few)
+      candidates.compare_some(moved, ids.data(), list, began, ended);
+    else
+      candidates.compare_all(ids.data(), list, Candidates::Keep::changes, began, ended);
+    std::vector<Pair> right = pairs_by_definition<Closed>(boxes);
+    if (step < 50)
+      std::erase_if(right, [&](Pair p) {
+        // Slots from 50 on are not among the candidates yet; slot s holds box 7 s mod 60, so box b
+        // stands in slot 43 b mod 60.
+        return (43 * p.i) % 60 >= 50 || (43 * p.j) % 60 >= 50;
+      });
+    ASSERT_EQ(sorted(list.view()), right) << "step " << step;
+    std::vector<Pair> right_began, right_ended;
+    std::set_difference(right.begin(), right.end(), before.begin(), before.end(),
+                        std::back_inserter(right_began));
+    std::set_difference(before.begin(), before.end(), right.begin(), right.end(),
+                        std::back_inserter(right_ended));
+    ASSERT_EQ(sorted(began.view()), right_began) << "step " << step;
+    ASSERT_EQ(sorted(ended.view()), right_ended) << "step " << step;
+    before = right;
   }
+}
+
+TEST(Rows, CompareAsBoxesDo) {
+  const auto check = [](auto scalar) {
+    using T = decltype(scalar);
+    for (const auto& [name, boxes] : BoxMaker<T>(5).cases(60))
+      for (const auto& a : boxes)
+        for (const auto& b : boxes) {
+          ASSERT_EQ(overlap<Closed>(row_of(a), row_of(b)), overlap<Closed>(a, b)) << name;
+          ASSERT_EQ(overlap<HalfOpen>(row_of(a), row_of(b)), overlap<HalfOpen>(a, b)) << name;
+          bool within = true;
+          for (int axis = 0; axis < 3; ++axis)
+            within &= a.lo[axis] >= b.lo[axis] && a.hi[axis] <= b.hi[axis];
+          ASSERT_EQ(inside(row_of(a), row_of(b)), within) << name;
+        }
+  };
+  check(float{});
+  check(double{});
+  const Box<float> below{{-1, -1, -1}, {-0.0f, 0.0f, -0.0f}}, above{{0.0f, -0.0f, 0.0f}, {1, 1, 1}};
+  EXPECT_TRUE(overlap<Closed>(row_of(below), row_of(above)));
+  EXPECT_FALSE(overlap<HalfOpen>(row_of(below), row_of(above)));
 }
 
 TEST(PairDifference, IsTheDifferenceOfSets) {
