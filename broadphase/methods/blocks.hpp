@@ -186,18 +186,30 @@ class Blocks {
     }
     if (state_ == State::followed && (resized || few_moved_ || age_ < horizon_))
       return follow(boxes);
+    if (state_ == State::loose && waiting_ > 0) {
+      --waiting_;
+      return false;
+    }
     const Motion motion = sample(boxes);
-    if (2 * motion.jumped > motion.seen) return false;
+    if (2 * motion.jumped > motion.seen) return in_vain();
     if (motion.moved == 0 && state_ == State::loose && unmoved(boxes)) {
       remember(boxes);
       reason_ = "kept: nothing moved";
       return true;
     }
     const int horizon = best_horizon(motion);
-    if (horizon == 0) return refit(boxes);
+    if (horizon == 0) return refit(boxes) || in_vain();
+    wait_ = 0;
     find_candidates(boxes, horizon);
     reason_ = "followed: new candidates for the frames to come";
     return true;
+  }
+
+  /// Looking at how boxes moved costs something, too: the more often it led to nothing, the longer
+  /// it is left alone, up to seven frames.
+  bool in_vain() {
+    waiting_ = wait_ = std::min(7, 2 * wait_ + 1);
+    return false;
   }
 
   /// Whether the boxes are bit for bit those of the last frame, as far as that is known.
@@ -230,7 +242,7 @@ class Blocks {
 
   Motion sample(Boxes<T> boxes) const {
     Motion motion;
-    const std::uint32_t stride = std::max<std::uint32_t>(1, tree_.leaves() / 64);
+    const std::uint32_t stride = std::max<std::uint32_t>(1, tree_.leaves() / 32);
     for (std::uint32_t k = 0; k < tree_.leaves(); k += stride)
       for (std::uint32_t slot = k * block_width; slot < (k + 1) * block_width; ++slot) {
         const std::uint32_t id = tree_.ids(0)[slot];
@@ -262,11 +274,16 @@ class Blocks {
 
   // ---- refitted -----------------------------------------------------------------------------
 
-  /// Joins the tree again with the leaves' bounds as they are; false once boxes have spread so far
-  /// that this costs more than a new order would.
+  /// Joins the tree again with the leaves' bounds as they are; false where a new order costs less
+  /// than what boxes, spread since the last one, are going to add to the join.
   bool refit(Boxes<T> boxes) {
-    if (state_ == State::followed && tree_.slots() > boxes.size() + boxes.size() / 16 + 32)
+    const double spread = static_cast<double>(visits_) - static_cast<double>(fresh_visits_);
+    const bool holey = tree_.slots() >= boxes.size() + block_width;
+    if (holey ||
+        join_cost * (spread + spreading_) > sort_cost * static_cast<double>(boxes.size())) {
+      spreading_ *= 0.9;  // to be tried again some time
       return false;
+    }
     for (std::uint32_t k = 0; k < tree_.leaves(); ++k) {
       gather(tree_.leaf(k), tree_.ids(k), boxes);
       tree_.set_reach(k, bounds(tree_.leaf(k)));
@@ -274,8 +291,9 @@ class Blocks {
     tree_.refit_above();
     state_ = State::loose;
     previous_known_ = false;
-    if (visits_ > fresh_visits_ + boxes.size() / 5) return false;
+    const std::size_t before = visits_;
     write_all_pairs();
+    spreading_ = std::max(0.0, static_cast<double>(visits_) - static_cast<double>(before));
     reason_ = "refitted: boxes move too far to be followed";
     return true;
   }
@@ -607,6 +625,7 @@ class Blocks {
   PairList pairs_;
   double leaf_size_ = 0;  ///< mean extent of a leaf after sorting
   std::size_t visits_ = 0, fresh_visits_ = 0;
+  double spreading_ = 0;  ///< visits that the last refit added
 
   CandidatePairs<T, Contact> candidates_;
   std::vector<Row<T>> reaches_, spare_;
@@ -615,6 +634,7 @@ class Blocks {
   bool sorted_ = false;
   bool steady_ = true;  ///< boxes have gone on as they did
   int longest_ = 64, horizon_ = 0, age_ = 0;
+  int wait_ = 0, waiting_ = 0;  ///< frames to start over without asking
 
   struct Escaped {
     std::uint32_t slot;

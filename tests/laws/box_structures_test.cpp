@@ -90,6 +90,8 @@ TYPED_TEST(CandidateLists, HoldsWhatOverlaps) {
       if (b < 50) candidates.add(a, ids[a], b, ids[b]);
   std::vector<Pair> before;
   PairList list, began, ended;
+  std::fill(candidates.rows().begin(), candidates.rows().end(), nowhere_row<T>());
+  candidates.compare_all(ids.data(), list, Candidates::Keep::places, began, ended);
   for (int step = 0; step < 200; ++step) {
     const bool few = step % 3 != 0;
     if (step == 50)
