@@ -38,7 +38,7 @@ concept BroadPhaseMethod = std::constructible_from<M, const MethodSettings&> &&
 };
 
 /// A method that knows, made with `Changes::reported`, which pairs began and ended since the last
-/// frame, at a cost that follows their number. `Compared` gives the same for any method.
+/// frame.
 template <class M>
 concept ReportsChanges = BroadPhaseMethod<M> && requires(const M method) {
   { method.changes() } -> std::same_as<PairChanges>;

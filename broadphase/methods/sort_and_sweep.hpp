@@ -10,6 +10,7 @@
 #include "broadphase/structures/block.hpp"
 #include "broadphase/structures/pair_list.hpp"
 #include "broadphase/structures/sorted_ends.hpp"
+#include "hierarchies/geometry/scalar.hpp"
 
 namespace bvlab {
 

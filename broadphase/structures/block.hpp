@@ -9,10 +9,11 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "broadphase/box.hpp"
-#include "hierarchies/geometry/scalar.hpp"
+#include "broadphase/structures/four.hpp"
 
 #ifdef __AVX512F__
 #include <immintrin.h>
@@ -57,10 +58,6 @@ Box<T> enclosing(const Box<T>& a, const Box<T>& b) {
 }
 
 /// A block held ready to be compared with many boxes.
-///
-/// Two boxes overlap where the least of the six differences hi - lo of one and the other is not
-/// negative (positive, half-open). IEEE differences have the sign of the exact ones, so this
-/// decides just as comparisons do.
 template <class T>
 class Loaded {
  public:
@@ -70,26 +67,22 @@ class Loaded {
   template <class Contact>
   Lanes overlapping(const Box<T>& box) const {
     Lanes lanes = 0;
-    for (int k = 0; k < block_width; k += width) lanes |= lanes_where<Contact>(depth(box, k)) << k;
+    for (int first = 0; first < block_width; first += 4) {
+      auto four = all(0) == all(0);
+      for (int axis = 0; axis < 3; ++axis)
+        four &= Contact::reaches(all(box.hi[axis]), held(block_.lo[axis], first)) &
+                Contact::reaches(held(block_.hi[axis], first), all(box.lo[axis]));
+      lanes |= static_cast<Lanes>(signs(reinterpret_cast<Four<T>>(four))) << first;
+    }
     return lanes;
   }
 
  private:
-  using V = stdx::native_simd<T>;
-  static constexpr int width = std::min(static_cast<int>(V::size()), block_width);
-
-  V depth(const Box<T>& box, int first) const {
-    V least(std::numeric_limits<T>::infinity());
-    for (int axis = 0; axis < 3; ++axis) {
-      const V lo(block_.lo[axis] + first, stdx::vector_aligned),
-          hi(block_.hi[axis] + first, stdx::vector_aligned);
-      least = stdx::min(least, stdx::min(V(box.hi[axis]) - lo, hi - V(box.lo[axis])));
-    }
-    return least;
-  }
-  template <class Contact>
-  static Lanes lanes_where(const V& depth) {
-    return static_cast<Lanes>(bits(Contact::reaches(depth, V(T(0)))));
+  static Four<T> all(T x) { return Four<T>{x, x, x, x}; }
+  static Four<T> held(const T* numbers, int first) {
+    Four<T> four;
+    std::memcpy(&four, numbers + first, sizeof four);
+    return four;
   }
 
   const Block<T>& block_;
@@ -118,6 +111,37 @@ class Loaded<float> {
 
  private:
   __m512 lo_[3], hi_[3];
+};
+/// In twelve registers, eight lanes each.
+template <>
+class Loaded<double> {
+ public:
+  explicit Loaded(const Block<double>& block) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int half = 0; half < 2; ++half) {
+        lo_[half][axis] = _mm512_load_pd(block.lo[axis] + 8 * half);
+        hi_[half][axis] = _mm512_load_pd(block.hi[axis] + 8 * half);
+      }
+  }
+  template <class Contact>
+  Lanes overlapping(const Box<double>& box) const {
+    constexpr int le = std::is_same_v<Contact, Closed> ? _CMP_LE_OQ : _CMP_LT_OQ;
+    constexpr int ge = std::is_same_v<Contact, Closed> ? _CMP_GE_OQ : _CMP_GT_OQ;
+    Lanes lanes = 0;
+    for (int half = 0; half < 2; ++half) {
+      __mmask8 m = _mm512_cmp_pd_mask(lo_[half][0], _mm512_set1_pd(box.hi[0]), le);
+      __mmask8 n = _mm512_cmp_pd_mask(hi_[half][0], _mm512_set1_pd(box.lo[0]), ge);
+      for (int axis = 1; axis < 3; ++axis) {
+        m = _mm512_mask_cmp_pd_mask(m, lo_[half][axis], _mm512_set1_pd(box.hi[axis]), le);
+        n = _mm512_mask_cmp_pd_mask(n, hi_[half][axis], _mm512_set1_pd(box.lo[axis]), ge);
+      }
+      lanes |= static_cast<Lanes>(m & n) << (8 * half);
+    }
+    return lanes;
+  }
+
+ private:
+  __m512d lo_[2][3], hi_[2][3];
 };
 #endif
 

@@ -7,47 +7,18 @@
 /// look at their signs.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 
 #include "broadphase/structures/block.hpp"
 
-#ifdef __SSE2__
-#include <immintrin.h>
-#endif
-
 namespace bvlab {
 
-namespace detail {
-template <class T>
-struct FourOf {
-  typedef T type __attribute__((vector_size(4 * sizeof(T))));
-};
-}  // namespace detail
-
-/// Three axes; the fourth lane of a row is zero.
-template <class T>
-using Four = typename detail::FourOf<T>::type;
-
+/// Three axes; the fourth lane is zero.
 template <class T>
 struct Row {
   Four<T> lo, hi;
 };
-
-/// Bit k is set where lane k has a sign.
-template <class V>
-inline int signs(const V& v) {
-  int bits = 0;
-  for (int lane = 0; lane < 4; ++lane) bits |= (std::signbit(v[lane]) ? 1 : 0) << lane;
-  return bits;
-}
-#ifdef __SSE2__
-inline int signs(const Four<float>& v) { return _mm_movemask_ps(v); }
-#endif
-#ifdef __AVX__
-inline int signs(const Four<double>& v) { return _mm256_movemask_pd(v); }
-#endif
 
 namespace detail {
 template <class T>

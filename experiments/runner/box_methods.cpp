@@ -14,6 +14,12 @@ class Named final : public AnyMethod<typename M::Scalar> {
   std::span<const Pair> overlapping(Boxes<typename M::Scalar> boxes) override {
     return method_.overlapping(boxes);
   }
+  PairChanges changes() const override {
+    if constexpr (ReportsChanges<M>)
+      return method_.changes();
+    else
+      return {};
+  }
   std::string reason() const override {
     if constexpr (requires { method_.reason(); })
       return std::string(method_.reason());

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// `bvlab boxes`: a box trace through one broad-phase method.
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -11,12 +13,16 @@
 #include "experiments/runner/box_methods.hpp"
 #include "experiments/runner/commands.hpp"
 #include "experiments/runner/whole_number.hpp"
+#include "hierarchies/geometry/scalar.hpp"
+#include "traversal/primitives/precisions.hpp"
 
 namespace bvlab {
 namespace {
 
+constexpr float max_float = std::numeric_limits<float>::max();
+
 struct Arguments {
-  std::string trace, method = "auto", coherent = "on", out, json;
+  std::string trace, method = "auto", coherent = "on", precision = "exact", out, json;
   int threads = 1;
 };
 
@@ -38,15 +44,36 @@ void keep(std::vector<std::array<std::uint32_t, 3>>& rows, std::size_t frame,
 }
 
 template <class T>
+void refuse_faults(const Arguments& arguments, const Array<T>& trace) {
+  const std::size_t count = trace.shape[1];
+  const Boxes<T> all(reinterpret_cast<const Box<T>*>(trace.data.data()), trace.shape[0] * count);
+  if (const auto fault = first_fault(all))
+    throw Unusable(arguments.trace, "frame " + std::to_string(fault->box / count) + ", box " +
+                                        std::to_string(fault->box % count) + ": " +
+                                        std::string(fault->what));
+}
+
+/// A float that is not above (below) x, next to it or equal; the largest where x is beyond them.
+float outward_down(double x) { return std::max(rounded_down<float>(x), -max_float); }
+float outward_up(double x) { return std::min(rounded_up<float>(x), max_float); }
+
+/// The boxes in float32, each as small as encloses its own: pairs that overlap still do.
+Array<float> rounded_outward(const Array<double>& trace) {
+  Array<float> rounded;
+  rounded.shape = trace.shape;
+  rounded.data.resize(trace.data.size());
+  for (std::size_t k = 0; k < trace.data.size(); ++k)
+    rounded.data[k] = k % 6 < 3 ? outward_down(trace.data[k]) : outward_up(trace.data[k]);
+  return rounded;
+}
+
+template <class T>
 Found find(const Arguments& arguments, const Array<T>& trace) {
   const std::size_t frames = trace.shape[0], count = trace.shape[1];
   const Boxes<T> all(reinterpret_cast<const Box<T>*>(trace.data.data()), frames * count);
   if (count > 0xfffffffeu || frames > 0xffffffffu)
     throw Unusable(arguments.trace, "more boxes or frames than 32-bit indices can name");
-  if (const auto fault = first_fault(all))
-    throw Unusable(arguments.trace, "frame " + std::to_string(fault->box / count) + ", box " +
-                                        std::to_string(fault->box % count) + ": " +
-                                        std::string(fault->what));
+  refuse_faults(arguments, trace);
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -74,11 +101,19 @@ Found find(const Arguments& arguments, const Array<T>& trace) {
 void run(const Arguments& arguments) {
   make_method<float>(arguments.method,
                      MethodSettings{});  // refuses an unknown name before the file is read
+  if (!Precisions::with(arguments.precision, [](auto) {}))
+    throw Unusable("--precision",
+                   "unknown name '" + arguments.precision + "'; there are " + Precisions::names());
   require_place("--out", arguments.out);
   require_place("--json", arguments.json);
   static constexpr std::size_t shape[] = {any_length, any_length, 6};
   const auto trace = read_npy_floating(arguments.trace, shape);
-  const Found found = std::visit([&](const auto& array) { return find(arguments, array); }, trace);
+  const auto* wide = std::get_if<Array<double>>(&trace);
+  const bool narrowed = wide && arguments.precision == Float32::name;
+  if (narrowed) refuse_faults(arguments, *wide);  // of the boxes as they were given
+  const Found found =
+      narrowed ? find(arguments, rounded_outward(*wide))
+               : std::visit([&](const auto& array) { return find(arguments, array); }, trace);
   const auto& sizes = std::visit(
       [](const auto& array) -> const auto& { return array.shape; }, trace);
   const std::uint64_t boxes = sizes[1];
@@ -92,9 +127,12 @@ void run(const Arguments& arguments) {
                                    {"overlaps", found.overlaps},
                                    {"method", arguments.method},
                                    {"coherent", arguments.coherent},
-                                   {"precision", trace.index() == 0 ? "float" : "double"},
+                                   {"precision", arguments.precision},
+                                   {"scalar", wide && !narrowed ? "double" : "float"},
                                    {"threads", arguments.threads}};
   if (!found.reason.empty()) totals["reason"] = found.reason;
+  if (!found.reason.empty() && isatty(STDERR_FILENO))
+    std::fprintf(stderr, "%s: %s\n", arguments.method.c_str(), found.reason.c_str());
   if (!arguments.out.empty()) {
     const std::size_t rows[] = {found.rows.size(), 3};
     write_npy<std::uint32_t>(
@@ -121,6 +159,12 @@ void add_boxes(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--coherent", arguments->coherent, "off: every frame as if it were the first")
       ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  command
+      ->add_option("--precision", arguments->precision,
+                   "exact, float64: comparisons of coordinates are exact at either, so both give "
+                   "the pairs of the trace; float32: a float64 trace rounded outward, so no pair "
+                   "is missed, and some that all but touch are called overlapping")
       ->capture_default_str();
   command->add_option("--threads", arguments->threads)
       ->check(whole_number(1, 1024))

@@ -14,7 +14,7 @@ namespace bvlab {
 namespace {
 
 /// THE list of kinds.
-const StudyKind* const kinds[] = {&studies::triangles, &studies::stability};
+const StudyKind* const kinds[] = {&studies::boxes, &studies::stability, &studies::triangles};
 
 const StudyKind& kind_of(const StudyDefinition& definition) {
   std::string names;

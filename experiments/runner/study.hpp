@@ -73,7 +73,9 @@ struct StudyKind {
 
 namespace studies {
 
-extern const StudyKind triangles, stability;
+extern const StudyKind boxes;
+extern const StudyKind stability;
+extern const StudyKind triangles;
 
 }  // namespace studies
 
