@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A record of boxes_benchmark as figures: time against number, or against displacement.
+"""A record of boxes against number, displacement or changes as figures, and what was published beside it.
 
-usage: boxes_time.py RECORD/NAME.csv [--out FOLDER]
+usage: boxes_time.py RECORD [--out FOLDER]
 
-A table whose displacement varies becomes <name>-<set>: processor time of a frame against displacement,
-one line per method. Any other becomes <name>-<set>: time against the number of boxes with the fitted
-exponent of each method, filled markers coherent, hollow from scratch.
+Displacements vary: processor time of a frame against displacement, one panel per set; where a line leaves the
+grey one, the method's own time from scratch, it has broken even. Changes are reported: time against how many.
+Otherwise: time against the number of boxes with fitted exponents, hollow markers from scratch, and memory.
 """
 
 import argparse
@@ -18,84 +18,143 @@ import pandas as pd
 
 import style
 
-GREYS = ["#1b1b1b", "#d95f0e", "#41a5c4", "#7a5195", "#3c8d40", "#bc9fd1", "#8f8f8f", "#c43c6b"]
-MARKERS = ["o", "s", "^", "D", "P", "v", "x", "*"]
-DASHES = ["-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)), (0, (6, 2, 1, 2))]
 # In the order of their family, so that a name looks the same in every figure.
-NAMES = ["blocks", "hybrid", "hash", "sweep1", "sweep2", "sweep3", "sweep4", "cgal-1000",
-         "sort-and-sweep", "sap", "dynamic-tree", "fcl-tree", "bullet-dbvt", "grid", "lbvh", "embree"]
+LOOKS = {
+    "blocks": ("#1b1b1b", "o", "-"), "hybrid": ("#d95f0e", "s", "--"), "hash": ("#41a5c4", "^", "-."),
+    "sweep1": ("#7a5195", "D", ":"), "sweep2": ("#bc9fd1", "v", "-."), "sweep3": ("#c43c6b", "P", "--"),
+    "sweep4": ("#3c8d40", "X", "-"), "cgal-1000": ("#8f8f8f", "x", ":"), "sap": ("#d95f0e", "s", "--"),
+    "dynamic-tree": ("#7a5195", "D", ":"), "sort-and-sweep": ("#c43c6b", "P", "-."),
+    "fcl-tree": ("#41a5c4", "^", "--"), "bullet-dbvt": ("#bc9fd1", "v", ":"),
+}
 
 
 def look(name):
-    if name in style.STYLES:
-        known = style.STYLES[name]
-        return dict(color=known["color"], marker=known["marker"], linestyle=known["linestyle"])
-    place = NAMES.index(name) if name in NAMES else len(name)
-    return dict(color=GREYS[place % 8], marker=MARKERS[place % 8], linestyle=DASHES[place % 8])
+    color, marker, dashes = LOOKS[name]
+    return dict(color=color, marker=marker, linestyle=dashes)
 
 
-def read(path):
-    """Median over repetitions; variants whose pairs differ from the reference are refused."""
+def read(folder):
+    """Medians over repetitions; variants whose pairs differ from the reference are refused."""
+    path = next(Path(folder).glob("boxes-*.csv"))
     rows = pd.read_csv(path)
-    wrong = sorted(set(rows[rows.differing != 0].method))
+    wrong = sorted(set(rows[rows.differing > 0].method))
     if wrong:
         print("refused, since their pairs differ:", ", ".join(wrong))
         rows = rows[~rows.method.isin(wrong)]
-    keys = ["set", "boxes", "motion", "displacement", "method", "coherent"]
-    return rows.groupby(keys, sort=False).frame_ns.agg(
-        q1=lambda x: x.quantile(0.25), time="median", q3=lambda x: x.quantile(0.75)).reset_index()
+    keys = ["set", "boxes", "motion", "displacement", "method", "coherent", "changes"]
+    return path.stem, rows.groupby(keys, sort=False).agg(
+        time=("frame_ns", "median"), bytes=("bytes", "median"), events=("events", "median"),
+        pairs=("overlaps", "median")).reset_index()
 
 
 def exponent(group):
     """Slope of log time over log number, over the larger half of the numbers."""
     upper = group[group.boxes >= group.boxes.median()]
-    if len(upper) < 2:
-        return None
-    return np.polyfit(np.log(upper.boxes), np.log(upper.time), 1)[0]
+    return np.polyfit(np.log(upper.boxes), np.log(upper.time), 1)[0] if len(upper) > 1 else None
 
 
 def against_number(name, rows, out):
-    for set_name, of_set in rows.groupby("set", sort=False):
-        figure, axes = plt.subplots(figsize=(5.2, 3.8))
-        for (method, coherent), group in of_set.groupby(["method", "coherent"], sort=False):
-            group = group.sort_values("boxes")
-            both = of_set[of_set.method == method].coherent.nunique() > 1
-            slope = exponent(group)
-            label = method + (", kept" if both and coherent == "on" else "")
-            if slope is not None:
-                label += f"  $n^{{{slope:.2f}}}$"
-            hollow = dict(markerfacecolor="white") if both and coherent == "off" else {}
-            axes.plot(group.boxes, group.time / 1e6, label=label, markersize=4, linewidth=1.1, **look(method), **hollow)
-        axes.set(xscale="log", yscale="log", xlabel="boxes", ylabel="processor time of a frame, ms", title=set_name)
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-        print(style.save(figure, out, f"{name}-{set_name}"))
+    both = rows.coherent.nunique() > 1
+    sets = list(dict.fromkeys(rows.set))
+    for quantity, factor, label, suffix in (("time", 1e6, "ms of processor time a frame", ""),
+                                            ("bytes", 1, "bytes held a box", "-memory")):
+        panels = [(s, c) for s in sets for c in (("off", "on") if both and not suffix else ("off",))]
+        figure, axes = plt.subplots(1, len(panels), figsize=(1 + 3.3 * len(panels), 3.4), sharey=True, squeeze=False)
+        for axis, (set_name, coherent) in zip(axes[0], panels):
+            here = rows[(rows.set == set_name)]
+            for method in LOOKS:
+                group = here[(here.method == method) & ((here.coherent == coherent) | (here.method == "cgal-1000"))]
+                group = group.sort_values("boxes")
+                if group.empty:
+                    continue
+                text = method
+                if not suffix and (slope := exponent(group)) is not None:
+                    text += f"  $n^{{{slope:.2f}}}$"
+                values = group[quantity] / factor / (group.boxes if suffix else 1)
+                axis.plot(group.boxes, values, label=text, markersize=4, linewidth=1.1, **look(method))
+            kind = "" if suffix or not both else ", coherent" if coherent == "on" else ", from scratch"
+            axis.set(xscale="log", yscale="log", xlabel="boxes", title=set_name + kind)
+            axis.legend(frameon=False, fontsize=6.5, loc="upper left", labelspacing=0.25)
+        axes[0, 0].set_ylabel(label)
+        figure.tight_layout()
+        print(style.save(figure, out, name + suffix))
+
+
+def conclusions(rows):
+    """Who wins where, and what coherence saves each method, at the largest number all were run on."""
+    for set_name, here in rows.groupby("set", sort=False):
+        seed = ["hybrid", "hash", "sweep1", "sweep2", "sweep3", "sweep4"]
+        mine = here[here.method.isin(seed)]
+        for boxes in sorted(mine.boxes.unique()):
+            order = mine[(mine.boxes == boxes) & (mine.coherent == "off")].sort_values("time")
+            print(f"{set_name}, {boxes} boxes, from scratch: " +
+                  " < ".join(f"{m} {t / 1e6:.3g} ms" for m, t in zip(order.method, order.time)))
+            pairs = mine[mine.boxes == boxes].pivot(index="method", columns="coherent", values="time")
+            if "on" in pairs:
+                saved = 100 * (1 - pairs["on"] / pairs["off"]).dropna()
+                print("   saved by coherence: " + ", ".join(f"{m} {s:.0f}%" for m, s in saved.items()))
 
 
 def against_displacement(name, rows, out):
-    for set_name, of_set in rows.groupby("set", sort=False):
-        figure, axes = plt.subplots(figsize=(5.2, 3.8))
-        least = of_set[of_set.displacement > 0].displacement.min()
-        for (method, coherent), group in of_set.groupby(["method", "coherent"], sort=False):
-            group = group.sort_values("displacement")
-            where = group.displacement.where(group.displacement > 0, least / 10)
-            axes.plot(where, group.time / 1e6, label=method, markersize=4, linewidth=1.1, **look(method))
-        axes.set(xscale="log", yscale="log", xlabel="displacement a frame, fraction of box size (leftmost: none)",
-                 ylabel="processor time of a frame, ms", title=f"{set_name}, {int(of_set.boxes.iloc[0])} boxes")
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-        print(style.save(figure, out, f"{name}-{set_name}"))
+    sets = list(dict.fromkeys(rows.set))
+    figure, axes = plt.subplots(1, len(sets), figsize=(1 + 2.5 * len(sets), 3.4), squeeze=False)
+    least = rows[rows.displacement > 0].displacement.min()
+    for axis, set_name in zip(axes[0], sets):
+        here = rows[rows.set == set_name]
+        scratch = here[(here.coherent == "off") & (here.method == "blocks")].sort_values("displacement")
+        place = lambda group: group.displacement.where(group.displacement > 0, least / 10)
+        axis.plot(place(scratch), scratch.time / 1e6, color="#bbbbbb", linewidth=4, label="blocks, from scratch")
+        for method in LOOKS:
+            group = here[(here.method == method) & (here.coherent == "on")].sort_values("displacement")
+            if not group.empty:
+                axis.plot(place(group), group.time / 1e6, label=method, markersize=3.5, linewidth=1.1, **look(method))
+        axis.set(xscale="log", yscale="log", title=set_name)
+        axis.set_xticks([least / 10, 1e-4, 1e-2, 1], ["none", "$10^{-4}$", "1%", "100%"])
+        axis.minorticks_off()
+    axes[0, 0].set_ylabel("ms of processor time a frame")
+    figure.supxlabel("displacement a frame, of a box's size", fontsize=9)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="lower center", ncol=5, frameon=False, bbox_to_anchor=(0.5, -0.13))
+    figure.tight_layout()
+    print(style.save(figure, out, name))
+    print("coherent over the best of its own from scratch:")
+    wide = rows[rows.method == "blocks"].pivot(index=["set", "displacement"], columns="coherent", values="time")
+    print((wide["on"] / wide["off"]).unstack(0).round(2).to_string())
+
+
+def against_changes(name, rows, out):
+    figure, axes = plt.subplots(figsize=(4.6, 3.4))
+    looks = {"part": ("^", "one box in a hundred moves"), "drift": ("s", "all move")}
+    colours = {"adjacent": "#d95f0e", "flock": "#41a5c4", "sphere-packed": "#1b1b1b"}
+    wide = rows[rows.method == "blocks"]
+    for (set_name, motion), group in wide.groupby(["set", "motion"], sort=False):
+        on = group[group.changes == "on"].sort_values("events")
+        axes.plot(on.events.clip(lower=1), on.time / 1e3, color=colours[set_name], marker=looks[motion][0],
+                  linestyle="-" if motion == "part" else "--", markersize=4, linewidth=1.1,
+                  label=f"{set_name}, {looks[motion][1]}")
+    axes.set(xscale="log", yscale="log", xlabel="pairs that began or ended, a frame",
+             ylabel="µs of processor time a frame", title="blocks, changes reported, 10 000 boxes")
+    axes.legend(frameon=False, fontsize=7)
+    figure.tight_layout()
+    print(style.save(figure, out, name))
+    table = wide.pivot(index=["set", "motion", "displacement"], columns="changes", values=["time", "events"])
+    print((table / 1).round(0).to_string())
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("table", type=Path)
-    parser.add_argument("--out", type=Path, default=None)
+    parser.add_argument("record", type=Path)
+    parser.add_argument("--out", type=Path, help="folder for the figures (default: RECORD/figures)")
     arguments = parser.parse_args()
-    rows = read(arguments.table)
-    out = arguments.out or arguments.table.parent
-    if rows.displacement.nunique() > 2:
-        against_displacement(arguments.table.stem, rows, out)
+    name, rows = read(arguments.record)
+    out = arguments.out or arguments.record / "figures"
+    if rows.changes.nunique() > 1:
+        against_changes(name, rows, out)
+    elif rows.displacement.nunique() > 2:
+        against_displacement(name, rows, out)
     else:
-        against_number(arguments.table.stem, rows, out)
+        conclusions(rows)
+        against_number(name, rows, out)
 
 
 if __name__ == "__main__":

@@ -59,6 +59,8 @@ class Blocks {
 
   /// What the last frame was answered by.
   std::string_view reason() const { return reason_; }
+  /// Into how many classes of size and shape boxes were last sorted.
+  std::uint32_t classes() const { return order_.classes(); }
 
   std::size_t bytes() const {
     return tree_.bytes() + order_.bytes() + candidates_.bytes() +
@@ -112,29 +114,37 @@ class Blocks {
     Pair* out = list.room_for(block_width * block_width + block_width);
     list.end_at(a == b ? pairs_within(out, a) : pairs_between(out, a, b));
   }
-  /// Every thread walks the tree, which is cheap, and compares its share of the leaf pairs. Shares
-  /// follow each other, so the list is the one that a single thread would have written.
+  /// Every thread walks the tree, which is cheap, and compares its share of the leaf pairs.
   void join_in_shares(PairList& list) {
-    const auto threads = static_cast<std::size_t>(settings_.threads);
-    shares_.resize(threads);
-    const auto work = [&](std::size_t t) {
-      shares_[t].clear();
+    in_shares(list, [&](std::size_t t, std::size_t threads, PairList& share) {
       const std::size_t first = visits_ * t / threads, last = visits_ * (t + 1) / threads;
       std::size_t at = 0;
       tree_.join([&](std::uint32_t a, std::uint32_t b) {
-        if (at >= first && at < last) add_pairs(shares_[t], a, b);
+        if (at >= first && at < last) add_pairs(share, a, b);
         ++at;
       });
+    });
+  }
+  /// Calls work(t, threads, share) on every thread. Shares follow each other, so the list is the
+  /// one that a single thread would have written.
+  template <class Work>
+  void in_shares(PairList& list, Work&& work) {
+    const auto threads = static_cast<std::size_t>(settings_.threads);
+    shares_.resize(threads);
+    const auto run = [&](std::size_t t) {
+      shares_[t].clear();
+      work(t, threads, shares_[t]);
     };
     {
       std::vector<std::jthread> others;
-      for (std::size_t t = 1; t < threads; ++t) others.emplace_back(work, t);
-      work(0);
+      for (std::size_t t = 1; t < threads; ++t) others.emplace_back(run, t);
+      run(0);
     }
     for (const PairList& share : shares_) list.append(share.view());
   }
   /// Below this a thread takes longer to start than the join does.
   static constexpr std::uint32_t leaves_worth_sharing = 1000;
+  static constexpr std::size_t candidates_worth_sharing = 100000;
   Pair* pairs_within(Pair* out, std::uint32_t a) const {
     const Block<T>& block = tree_.leaf(a);
     const Loaded<T> loaded(block);
@@ -426,7 +436,14 @@ class Blocks {
   using Keep = typename CandidatePairs<T, Contact>::Keep;
   void write_candidates(Keep keep) {
     pairs_.clear();
-    candidates_.compare_all(tree_.ids(0), pairs_, keep, began_, ended_);
+    const std::size_t count = candidates_.size();
+    if (keep != Keep::nothing || settings_.threads <= 1 || count < candidates_worth_sharing)
+      return candidates_.compare_all(tree_.ids(0), pairs_, keep, began_, ended_);
+    candidates_.forget_places();
+    in_shares(pairs_, [&](std::size_t t, std::size_t threads, PairList& share) {
+      candidates_.compare_range(tree_.ids(0), share, count * t / threads,
+                                count * (t + 1) / threads);
+    });
   }
 
   /// One frame in which boxes mostly stayed within their reaches; false where too many did not.

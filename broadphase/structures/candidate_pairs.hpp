@@ -47,6 +47,7 @@ class CandidatePairs {
   }
 
   bool places_known() const { return places_known_; }
+  void forget_places() { places_known_ = false; }
 
   /// Compares all. `ids` gives each slot's box; with `Keep::changes` pairs that began and ended
   /// since the last comparison are added to these lists.

@@ -36,6 +36,7 @@ class SpatialOrder {
     return items_;
   }
 
+  std::uint32_t classes() const { return classes_; }
   std::size_t bytes() const {
     return (items_.capacity() + spare_.capacity()) * sizeof(Item) +
            kinds_.capacity() * sizeof(std::uint16_t);

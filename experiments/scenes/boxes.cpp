@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "experiments/files/unusable.hpp"
+#include "experiments/scenes/named_mesh.hpp"
+#include "hierarchies/geometry/scalar.hpp"
 
 namespace bvlab {
 namespace {
@@ -64,11 +66,29 @@ std::vector<Box<float>> adjacent(std::size_t count, Maker& make) {
   return boxes;
 }
 
+/// The boxes of a mesh's triangles: neighbours share corners, so each touches a dozen others.
+std::vector<Box<float>> triangles(std::size_t count) {
+  const TriangleMesh mesh = named_mesh("bunny", std::max<std::size_t>(count, 4)).mesh;
+  std::vector<Box<float>> boxes;
+  for (const auto& corners : mesh.triangles) {
+    Box<float> box;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [least, most] =
+          std::minmax({mesh.vertices[corners[0]][axis], mesh.vertices[corners[1]][axis],
+                       mesh.vertices[corners[2]][axis]});
+      box.lo[axis] = rounded_down<float>(least), box.hi[axis] = rounded_up<float>(most);
+    }
+    boxes.push_back(box);
+  }
+  if (boxes.size() > count) boxes.resize(count);
+  return boxes;
+}
+
 }  // namespace
 
 std::vector<std::string> box_set_names() {
   return {"random", "sphere-packed", "adjacent", "sphere-sparse", "clusters",
-          "mixed",  "elongated",     "flock",    "pile"};
+          "mixed",  "elongated",     "flock",    "pile",          "triangles"};
 }
 std::vector<std::string> box_motion_names() {
   return {"still", "drift", "rigid", "breathe", "part", "teleport"};
@@ -77,6 +97,7 @@ std::vector<std::string> box_motion_names() {
 std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count, unsigned seed) {
   Maker make(seed);
   if (name == "adjacent") return adjacent(count, make);
+  if (name == "triangles") return triangles(count);
   const float spacing = 1 / std::cbrt(static_cast<float>(std::max<std::size_t>(count, 1)));
   std::vector<Centre> centres;
   for (int k = 0; k < 20; ++k) centres.push_back(make.in_cube());

@@ -2,7 +2,8 @@
 /// Built-in sets of boxes and how they move, the same for the same seed. Sets of the seed paper:
 /// `random` (over-packed, k = O(n^2)), `sphere-packed` (the same on a sphere), `adjacent` (cubes
 /// that touch exactly), `sphere-sparse` (k = O(n)). Sets it left out: `clusters`, `mixed` (sizes
-/// over six decades), `elongated`, `flock` (velocities correlated), `pile` (most boxes at rest).
+/// over six decades), `elongated`, `flock` (velocities correlated), `pile` (most boxes at rest);
+/// and a real one: `triangles`, the boxes of a bunny's triangles.
 #pragma once
 
 #include <array>
@@ -17,7 +18,7 @@ namespace bvlab {
 std::vector<std::string> box_set_names();
 
 /// `adjacent` has as many boxes as the largest cube of cubes within `count`; the others have
-/// `count`. Throws Unusable for an unknown name.
+/// `count`, or `triangles` what its mesh has to give. Throws Unusable for an unknown name.
 std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count, unsigned seed);
 
 /// Moves a set frame by frame:

@@ -172,17 +172,23 @@ TEST(PairDifference, IsTheDifferenceOfSets) {
   }
 }
 
-/// Two threads give the list of one, pair for pair.
+/// Two threads give the list of one, pair for pair, from scratch and followed.
 TEST(Blocks, ThreadsChangeNothing) {
-  const auto boxes = BoxMaker<float>(8).boxes(30000, 0, 1, 0.005f, 0.03f);
+  auto boxes = BoxMaker<float>(8).boxes(30000, 0, 1, 0.005f, 0.06f);
   MethodSettings one, two;
   two.threads = 2;
   Blocks<float, Closed> alone(one), together(two);
-  for (int frame = 0; frame < 2; ++frame) {
+  for (int frame = 0; frame < 5; ++frame) {
     const auto a = alone.overlapping(boxes), b = together.overlapping(boxes);
-    ASSERT_GT(a.size(), 1000u);
-    ASSERT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end()));
+    ASSERT_GT(a.size(), 100000u);
+    ASSERT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end())) << "frame " << frame;
+    for (std::size_t k = 0; k < boxes.size(); ++k)
+      for (int axis = 0; axis < 3; ++axis) {
+        const float by = k % 3 == static_cast<std::size_t>(axis) ? 1e-4f : -1e-4f;
+        boxes[k].lo[axis] += by, boxes[k].hi[axis] += by;
+      }
   }
+  EXPECT_TRUE(together.reason().starts_with("followed"));
 }
 
 }  // namespace
