@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
-#include <map>
 #include <random>
+#include <set>
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/boxes_peers.hpp"
@@ -192,7 +192,7 @@ Outcome play(const Variant& variant, const Frames& frames, double limit_ns) {
       later.push_back(ns), wall.push_back(took),
           events.push_back(static_cast<double>(player.events()));
     outcome.slow |= ns > limit_ns;
-    if (ns > limit_ns && f > 0) break;
+    if (ns > limit_ns && (f > 0 || ns > 10 * limit_ns)) break;
   }
   const std::size_t now = heap_bytes();
   outcome.bytes = now > heap ? now - heap : 0;
@@ -236,23 +236,17 @@ class BoxStudy {
       if (repetition == 0)
         std::swap(*std::find(order.begin(), order.end(), settings_.reference), order[0]);
       for (const std::size_t k : order) {
-        if (slow_at_fewer(k, c)) continue;
+        if (slow_.contains(slow_key(k, c)) && k != settings_.reference) continue;
         const Outcome outcome = play(settings_.variants[k], frames,
                                      k == settings_.reference ? 1e18 : settings_.limit_ns);
-        if (outcome.slow) {
-          auto [at, fresh] = slow_.try_emplace(slow_key(k, c), c.count);
-          at->second = std::min(at->second, c.count);
-        }
+        if (outcome.slow) slow_.insert(slow_key(k, c));
         if (reference.empty()) reference = outcome.answers;
         add_row(c, k, repetition, frames, outcome, reference);
       }
     }
   }
-  /// Whether one frame took longer than the definition allows with fewer boxes.
-  bool slow_at_fewer(std::size_t k, const Case& c) const {
-    const auto at = slow_.find(slow_key(k, c));
-    return at != slow_.end() && at->second < c.count && k != settings_.reference;
-  }
+  /// What took longer than the definition allows is not run again on that set and motion: cases go
+  /// on with more boxes, or with more displacement.
   static std::string slow_key(std::size_t k, const Case& c) {
     return std::to_string(k) + " " + c.set + " " + c.motion;
   }
@@ -281,7 +275,7 @@ class BoxStudy {
   Settings settings_;
   unsigned repetitions_;
   StudyRecord record_;
-  std::map<std::string, std::size_t> slow_;
+  std::set<std::string> slow_;
   std::mt19937 random_{20260101};
 };
 
