@@ -66,7 +66,7 @@ class Blocks {
     return tree_.bytes() + order_.bytes() + candidates_.bytes() +
            sizeof(Pair) * (pairs_.capacity() + began_.capacity() + ended_.capacity() +
                            before_.capacity() + after_.capacity()) +
-           (reaches_.capacity() + spare_.capacity()) * sizeof(Row<T>) +
+           (reaches_.capacity() + spare_.capacity() + last_rows_.capacity()) * sizeof(Row<T>) +
            previous_.capacity() * sizeof(Box<T>) + 4 * slots_.capacity();
   }
 
@@ -210,7 +210,9 @@ class Blocks {
     const int horizon = best_horizon(motion);
     if (horizon == 0) return refit(boxes) || in_vain();
     wait_ = 0;
-    find_candidates(boxes, horizon);
+    if (settings_.changes == Changes::reported && state_ == State::followed)
+      return renew_quietly(boxes, horizon);
+    find_candidates(boxes, horizon, settings_.changes);
     reason_ = "followed: new candidates for the frames to come";
     return true;
   }
@@ -354,9 +356,21 @@ class Blocks {
     return {most<T>(reach.lo, zero - limit), least<T>(reach.hi, zero + limit)};
   }
 
+  /// Where changes are reported, the old candidates, which are good for one frame more, tell them
+  /// before new ones are found; to compare two whole lists would cost more.
+  bool renew_quietly(Boxes<T> boxes, int horizon) {
+    auto& rows = candidates_.rows();
+    last_rows_ = rows;
+    if (!follow(boxes)) return false;
+    if (!newcomers_.empty() || !emptied_.empty()) return true;  // slots changed: next time
+    std::swap(rows, last_rows_);
+    find_candidates(boxes, horizon, Changes::unreported);
+    return true;
+  }
+
   /// Reaches, the candidates, and all pairs.
-  void find_candidates(Boxes<T> boxes, int horizon) {
-    const bool compare = settings_.changes == Changes::reported;
+  void find_candidates(Boxes<T> boxes, int horizon, Changes changes) {
+    const bool compare = changes == Changes::reported;
     if (compare) keep_before();
     sort_if_due(boxes);
     auto& rows = candidates_.rows();
@@ -396,7 +410,7 @@ class Blocks {
     horizon_ = horizon, age_ = 0;
     few_moved_ = false;
     previous_known_ = false;
-    write_candidates(compare ? Keep::places : Keep::nothing);
+    write_candidates(settings_.changes == Changes::reported ? Keep::places : Keep::nothing);
     if (compare) difference_(before_.view(), pairs_.view(), began_, ended_);
   }
   /// A new order, once the old one costs a third more or holds slots that are empty.
@@ -645,7 +659,7 @@ class Blocks {
   double spreading_ = 0;  ///< visits that the last refit added
 
   CandidatePairs<T, Contact> candidates_;
-  std::vector<Row<T>> reaches_, spare_;
+  std::vector<Row<T>> reaches_, spare_, last_rows_;
   std::vector<std::uint32_t> slots_;  ///< of each box
   std::size_t candidates_at_first_ = 0, list_visits_ = 0, list_visits_when_sorted_ = 0;
   bool sorted_ = false;
