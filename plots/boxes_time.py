@@ -57,28 +57,46 @@ def exponent(group):
 def against_number(name, rows, out):
     both = rows.coherent.nunique() > 1
     sets = list(dict.fromkeys(rows.set))
-    for quantity, factor, label, suffix in (("time", 1e6, "ms of processor time a frame", ""),
-                                            ("bytes", 1, "bytes held a box", "-memory")):
-        panels = [(s, c) for s in sets for c in (("off", "on") if both and not suffix else ("off",))]
-        figure, axes = plt.subplots(1, len(panels), figsize=(1 + 3.3 * len(panels), 3.4), sharey=True, squeeze=False)
-        for axis, (set_name, coherent) in zip(axes[0], panels):
-            here = rows[(rows.set == set_name)]
-            for method in LOOKS:
-                group = here[(here.method == method) & ((here.coherent == coherent) | (here.method == "cgal-1000"))]
-                group = group.sort_values("boxes")
-                if group.empty:
+    panels = [(s, c) for s in sets for c in (("off", "on") if both else ("off",))]
+    figure, axes = plt.subplots(1, len(panels), figsize=(1 + 3.3 * len(panels), 3.4), sharey=True, squeeze=False)
+    for axis, (set_name, coherent) in zip(axes[0], panels):
+        here = rows[rows.set == set_name]
+        for method in LOOKS:
+            group = here[(here.method == method) & ((here.coherent == coherent) | (here.method == "cgal-1000"))]
+            group = group.sort_values("boxes")
+            if group.empty:
+                continue
+            slope = exponent(group)
+            text = method + (f"  $n^{{{slope:.2f}}}$" if slope is not None else "")
+            axis.plot(group.boxes, group.time / 1e6, label=text, markersize=4, linewidth=1.1, **look(method))
+        kind = "" if not both else ", coherent" if coherent == "on" else ", from scratch"
+        axis.set(xscale="log", yscale="log", xlabel="boxes", title=set_name + kind)
+        axis.legend(frameon=False, fontsize=6.5, loc="upper left", labelspacing=0.25)
+    axes[0, 0].set_ylabel("ms of processor time a frame")
+    figure.tight_layout()
+    print(style.save(figure, out, name))
+    memory_against_number(name, rows, sets, out)
+
+
+def memory_against_number(name, rows, sets, out):
+    """Divided by boxes and pairs together: flat is O(n + k)."""
+    figure, axes = plt.subplots(1, len(sets), figsize=(2.2 + 3 * len(sets), 3), sharey=True, squeeze=False)
+    for axis, set_name in zip(axes[0], sets):
+        here = rows[rows.set == set_name]
+        for method in LOOKS:
+            for coherent in ("off", "on"):
+                group = here[(here.method == method) & (here.coherent == coherent)].sort_values("boxes")
+                if group.empty or coherent == "on" and method not in ("blocks", "cgal-1000"):
                     continue
-                text = method
-                if not suffix and (slope := exponent(group)) is not None:
-                    text += f"  $n^{{{slope:.2f}}}$"
-                values = group[quantity] / factor / (group.boxes if suffix else 1)
-                axis.plot(group.boxes, values, label=text, markersize=4, linewidth=1.1, **look(method))
-            kind = "" if suffix or not both else ", coherent" if coherent == "on" else ", from scratch"
-            axis.set(xscale="log", yscale="log", xlabel="boxes", title=set_name + kind)
-            axis.legend(frameon=False, fontsize=6.5, loc="upper left", labelspacing=0.25)
-        axes[0, 0].set_ylabel(label)
-        figure.tight_layout()
-        print(style.save(figure, out, name + suffix))
+                kept = coherent == "on" and method == "blocks"
+                axis.plot(group.boxes, group.bytes / (group.boxes + group.pairs), markersize=4, linewidth=1.1,
+                          label=method + (", coherent" if kept else ""), **look(method),
+                          **(dict(markerfacecolor="white") if kept else {}))
+        axis.set(xscale="log", xlabel="boxes", title=set_name, ylim=(0, None))
+    axes[0, 0].set_ylabel("bytes held, a box or pair")
+    axes[0, -1].legend(frameon=False, fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    figure.tight_layout()
+    print(style.save(figure, out, name + "-memory"))
 
 
 def conclusions(rows):
