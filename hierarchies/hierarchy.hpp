@@ -35,6 +35,7 @@ class Hierarchy {
     for (const auto& v : volumes_) reach_ = std::max(reach_, static_cast<double>(reach_of(v)));
     for (const auto& v : mesh.vertices) reach_ = std::max(reach_, v.stableNorm());
     reach_ *= 1 + 8 * unit_roundoff<typename V::scalar>;
+    surround(mesh);
     begin_.clear(), end_.clear();
   }
 
@@ -47,8 +48,23 @@ class Hierarchy {
   std::size_t primitives() const { return primitives_.size(); }
   /// No vertex and no volume's reference point is farther than this from the mesh's own origin.
   double reach() const { return reach_; }
+  /// The middle of the mesh, in its frame, and how far from there its farthest corner is at most.
+  const Vec3<double>& centre() const { return centre_; }
+  double radius() const { return radius_; }
 
  private:
+  void surround(const TriangleMesh& mesh) {
+    Vec3<double> low = mesh.corners(0)[0], high = low;
+    for (const auto& triangle : mesh.triangles)
+      for (const auto v : triangle)
+        low = low.cwiseMin(mesh.vertices[v]), high = high.cwiseMax(mesh.vertices[v]);
+    centre_ = low / 2 + high / 2;
+    for (const auto& triangle : mesh.triangles)
+      for (const auto v : triangle)
+        radius_ = std::max(radius_, (mesh.vertices[v] - centre_).stableNorm());
+    radius_ *= 1 + 16 * unit_roundoff<double>;
+  }
+
   /// The range of primitives below each node: children come after their parent, leaf by leaf.
   void ranges_of(const Topology& topology) {
     begin_.resize(nodes_.size()), end_.resize(nodes_.size());
@@ -86,7 +102,8 @@ class Hierarchy {
   std::vector<std::uint32_t> primitives_;
   std::vector<Node> nodes_;
   std::vector<V> volumes_;
-  double reach_ = 0;
+  double reach_ = 0, radius_ = 0;
+  Vec3<double> centre_;
   // Only while fitting:
   std::vector<std::uint32_t> begin_, end_, corners_;
   std::vector<Vec3<double>> points_;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hierarchies/hierarchy.hpp"
+#include "traversal/approach.hpp"
 
 namespace bvlab {
 
@@ -32,12 +33,23 @@ class Body {
     pose_ = pose;
     origin_ = origin;
     placement_ = PlacementOf<V>(pose, origin, hierarchy_->reach());
+    const Stand stand(pose, *hierarchy_);
+    // Rounded up, so that no step is lost in a long way.
+    if (epoch_ > 0)
+      way_ = (way_ + step_between(stand_, stand, hierarchy_->radius())) *
+             (1 + 4 * unit_roundoff<double>);
+    stand_ = stand;
     if (++epoch_ == 0) forget();
     return true;
   }
 
   const Hierarchy<V>& hierarchy() const { return *hierarchy_; }
   const Pose& pose() const { return pose_; }
+  /// The same number means that the body has not moved, unless 2^32 - 1 moves lie between.
+  std::uint32_t epoch() const { return epoch_; }
+  const Stand& stand() const { return stand_; }
+  /// The way that its points have come, step by step, at most: it grows whenever the body moves.
+  double way() const { return way_; }
 
   /// Poses the node and its sibling unless that has been done since the body moved.
   template <class Counter>
@@ -80,6 +92,8 @@ class Body {
   Pose pose_;
   Vec3<double> origin_ = Vec3<double>::Zero();
   PlacementOf<V> placement_;
+  Stand stand_;
+  double way_ = 0;
   std::uint32_t epoch_ = 0;
   std::vector<Posed<V>> volumes_;
   std::vector<std::uint32_t> volume_epochs_;  // one for two siblings

@@ -28,6 +28,8 @@ class Front {
     witnessed_ = false;
   }
 
+  void clear() { entries_.clear(); }
+
   /// The entry in `slot` is about to be replaced by what it ends in: at least two calls of `add`
   /// follow for it, and the first fills its place.
   void open(std::size_t slot) { holes_.push_back(static_cast<std::uint32_t>(slot)); }

@@ -10,11 +10,15 @@
 #pragma once
 
 #include "hierarchies/geometry/type_list.hpp"
+#include "traversal/strategies/adaptive.hpp"
+#include "traversal/strategies/by_cost.hpp"
+#include "traversal/strategies/margins.hpp"
 #include "traversal/strategies/recursive.hpp"
 #include "traversal/strategies/separation_list.hpp"
 
 namespace bvlab {
 
-using Strategies = TypeList<Recursive, RecursiveBoth, SeparationList, Deferred>;
+using Strategies =
+    TypeList<Recursive, RecursiveBoth, SeparationList, Deferred, ByCost, Margins, Adaptive>;
 
 }  // namespace bvlab

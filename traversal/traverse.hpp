@@ -4,19 +4,22 @@
 /// node being descended, or by the four pairs of all children.
 ///
 /// Started from the two roots it is the recursive algorithm, depth first up to W - 1 pairs; started
-/// from a front it visits the front's entries in order and keeps the front up to date. Volume,
-/// query, counter, width and whether a front is kept are template parameters; nothing here knows
-/// which.
+/// from a front it visits the front's entries in order and keeps the front up to date; from a front
+/// with margins only those entries that have to be looked at. Volume, query, counter, width and
+/// what is kept are template parameters; nothing here knows which.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <vector>
 
+#include "traversal/approach.hpp"
 #include "traversal/body.hpp"
 #include "traversal/front.hpp"
 #include "traversal/gather.hpp"
+#include "traversal/margin_front.hpp"
 #include "traversal/queries/candidate.hpp"
 
 namespace bvlab {
@@ -26,6 +29,10 @@ namespace bvlab {
 ///   primitives(pending)   takes one candidate or more; says whether the traversal can end
 ///   patience              so many candidates may be held back before `primitives` must be called
 ///   wants_bound           if there and true: one pair of near leaves is handed over first
+/// and for strategies that keep margins:
+///   primitives(pending, verdicts)   the same, saying of each candidate what was found
+///   limit()                         surfaces farther apart than this matter to the query no more
+///   known(a, b)                     two triangles still share a point; says whether that is enough
 template <class Q, class P>
 concept Query = requires(Q query, const P& p, std::span<const Candidate> pending) {
   { Q::name } -> std::convertible_to<std::string_view>;
@@ -57,18 +64,33 @@ class OpenPairs {
 struct Workspace {
   OpenPairs open;
   std::vector<Candidate> pending;
+  std::vector<Verdict> verdicts;
+  std::vector<std::uint32_t> due;
+};
+
+/// What a traversal had to do.
+struct Walked {
+  bool everything = true;     ///< false where the query stopped it
+  std::size_t volumes = 0;    ///< pairs of volumes tested
+  std::size_t triangles = 0;  ///< pairs of primitives tested
 };
 
 /// For `traverse` where no front is kept.
 struct NoFront {
-  static constexpr bool kept = false, descends_both = false;
+  static constexpr bool kept = false, margins = false, descends_both = false;
 };
 struct NoFrontBoth : NoFront {
   static constexpr bool descends_both = true;
 };
 struct KeptFront {
-  static constexpr bool kept = true, descends_both = false;
+  static constexpr bool kept = true, margins = false, descends_both = false;
   Front& front;
+};
+struct KeptMargins {
+  static constexpr bool kept = true, margins = true, descends_both = false;
+  MarginFront& front;
+  const Approach& approach;
+  double step;  ///< how much nearer the bodies come from run to run, about
 };
 
 namespace detail {
@@ -87,22 +109,19 @@ class Traversal {
         counter_(counter),
         keeping_(keeping),
         open_(workspace.open),
-        pending_(workspace.pending) {}
+        pending_(workspace.pending),
+        verdicts_(workspace.verdicts),
+        due_(workspace.due) {}
 
-  bool run() {
+  Walked run() {
     open_.clear();
     pending_.clear();
     bool stopped = false;
     if constexpr (wants_bound()) stopped = find_bound();
-    if constexpr (Keeping::kept) {
-      const std::size_t end = keeping_.front.size();
-      for (std::size_t next = 0; next < end && !stopped;) {
-        const int count = take_front(next, end);
-        stopped =
-            look_at<true>(count, next) || (next == 0 && keeping_.front.witnessed() && flush());
-        next += static_cast<std::size_t>(count);
-        while (open_.size() >= W && !stopped) stopped = look_at<false>(take_open(), 0);
-      }
+    if constexpr (Keeping::margins) {
+      stopped = stopped || sweep_due();
+    } else if constexpr (Keeping::kept) {
+      stopped = stopped || sweep();
     } else {
       a_.require(0, counter_);
       b_.require(0, counter_);
@@ -115,14 +134,63 @@ class Traversal {
       // What was pushed but not reached stays to be looked at next time.
       while (!open_.empty()) keeping_.front.add(open_.pop());
       if (witness_ != Outcome::none) keeping_.front.bring_forward(witness_);
+      if constexpr (Keeping::margins)
+        if (stopped) keeping_.front.leave_rest();
     }
-    return !stopped;
+    walked_.everything = !stopped;
+    return walked_;
   }
 
  private:
   static constexpr bool wants_bound() {
     if constexpr (requires { Query::wants_bound; }) return Query::wants_bound;
     return false;
+  }
+
+  /// All entries of the front, the witness by itself.
+  bool sweep() requires Keeping::kept {
+    bool stopped = false;
+    const std::size_t end = keeping_.front.size();
+    for (std::size_t next = 0; next < end && !stopped;) {
+      const int count = take_front(next, end);
+      stopped = look_at<true>(count, next) || (next == 0 && keeping_.front.witnessed() && flush());
+      next += static_cast<std::size_t>(count);
+      while (open_.size() >= W && !stopped) stopped = look_at<false>(take_open(), 0);
+    }
+    return stopped;
+  }
+
+  /// The entries whose deadlines have passed, the witness first where it is one of them or a bound
+  /// is wanted.
+  bool sweep_due() requires Keeping::margins {
+    const double now = keeping_.approach.now();
+    const std::uint32_t witness = keeping_.front.witness();
+    const bool first =
+        keeping_.front.witnessed() && (wants_bound() || !(keeping_.front.deadline(witness) > now));
+    if (first) {
+      const NodePair& pair = keeping_.front[witness];
+      hold(a_.hierarchy().node(pair.a), b_.hierarchy().node(pair.b), witness);
+      if (flush()) return true;
+    }
+    auto& due = due_;
+    keeping_.front.collect(now + query_.limit(), due);
+    if (first) std::erase(due, witness);
+    bool stopped = false;
+    for (std::size_t next = 0; next < due.size() && !stopped;) {
+      const int count = take_front(next, due.size());
+      stopped = look_at<true>(count, next);
+      next += static_cast<std::size_t>(count);
+      while (open_.size() >= W && !stopped) stopped = look_at<false>(take_open(), 0);
+    }
+    return stopped;
+  }
+
+  /// The slot of the i-th entry of this sweep.
+  std::size_t slot_of(std::size_t i) const {
+    if constexpr (Keeping::margins)
+      return due_[i];
+    else
+      return i;
   }
 
   /// Goes down to one pair of leaves, always to the nearer child, and hands their primitives over.
@@ -140,7 +208,7 @@ class Traversal {
         hold(a, b, Outcome::none);
         return flush();
       }
-      counter_.tested(2);
+      count_tests(2);
       if (descends_b(a, b)) {
         b_.require(b.first, counter_);
         pair.b = b.first + (gap_of(pair.a, b.first + 1) < gap_of(pair.a, b.first));
@@ -166,10 +234,11 @@ class Traversal {
 
   int take_front(std::size_t next, std::size_t end) requires Keeping::kept {
     // A witness is tested by itself: most often it settles the matter, or most of it.
-    const std::size_t most = next == 0 && keeping_.front.witnessed() ? 1 : W;
+    const bool alone = !Keeping::margins && next == 0 && keeping_.front.witnessed();
+    const std::size_t most = alone ? 1 : W;
     const int count = static_cast<int>(std::min(most, end - next));
     for (int i = 0; i < count; ++i) {
-      const NodePair pair = keeping_.front[next + static_cast<std::size_t>(i)];
+      const NodePair pair = keeping_.front[slot_of(next + static_cast<std::size_t>(i))];
       nodes_a_[i] = pair.a, nodes_b_[i] = pair.b;
       a_.require(pair.a, counter_);
       b_.require(pair.b, counter_);
@@ -179,49 +248,114 @@ class Traversal {
 
   /// Tests the pairs taken; says whether the query has had enough.
   template <bool kFromFront>
-  bool look_at(int count, std::size_t first_slot) {
-    counter_.tested(static_cast<std::uint64_t>(count));
+  bool look_at(int count, std::size_t first) {
+    count_tests(static_cast<std::size_t>(count));
     open_.reserve(4 * W);
-    const std::uint64_t excluded = test(count);
-    if constexpr (Keeping::kept && !kFromFront)
+    std::uint64_t excluded = test(count);
+    if constexpr (Keeping::margins) excluded &= ~worth_opening(excluded);
+    if constexpr (Keeping::kept && (Keeping::margins || !kFromFront))
       for (std::uint64_t rest = excluded; rest; rest &= rest - 1) {
         const int i = std::countr_zero(rest);
-        keeping_.front.add({nodes_a_[i], nodes_b_[i]});
+        if constexpr (!Keeping::margins) {
+          keeping_.front.add({nodes_a_[i], nodes_b_[i]});
+        } else {
+          const double deadline = keeping_.approach.deadline(static_cast<double>(gaps_[i]));
+          if constexpr (kFromFront)
+            keeping_.front.expire_at(slot_of(first + static_cast<std::size_t>(i)), deadline);
+          else
+            keeping_.front.add({nodes_a_[i], nodes_b_[i]}, deadline);
+        }
       }
     for (std::uint64_t rest = ~excluded & all(count); rest; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       const NodePair pair{nodes_a_[i], nodes_b_[i]};
       const auto& a = a_.hierarchy().node(pair.a);
       const auto& b = b_.hierarchy().node(pair.b);
-      [[maybe_unused]] const std::size_t slot = first_slot + static_cast<std::size_t>(i);
+      [[maybe_unused]] const auto slot = [&] {
+        return slot_of(first + static_cast<std::size_t>(i));
+      };
       if (a.count && b.count) {
         std::size_t from = 0;
-        if constexpr (Keeping::kept) from = kFromFront ? slot : keeping_.front.add(pair);
+        if constexpr (Keeping::kept) from = kFromFront ? slot() : add_leaves(pair);
         hold(a, b, from);
       } else {
-        if constexpr (Keeping::kept && kFromFront) keeping_.front.open(slot);
+        if constexpr (Keeping::kept && kFromFront) keeping_.front.open(slot());
         descend(pair, a, b);
       }
     }
-    return pending_.size() > Query::patience && flush();
+    // Margins are found for eight at once.
+    constexpr std::size_t patience =
+        std::max<std::size_t>(Query::patience, Keeping::margins ? 7 : 0);
+    return pending_.size() > patience && flush();
   }
 
   static constexpr std::uint64_t all(int count) { return (std::uint64_t{2} << (count - 1)) - 1; }
 
   std::uint64_t test(int count) {
     // A pair by itself is not worth a batch.
-    if (count == 1) {
-      return bits(query_.excludes(a_.volumes()[nodes_a_[0]], b_.volumes()[nodes_b_[0]]));
-    } else {
-      for (int i = count; i < W; ++i) nodes_a_[i] = nodes_a_[0], nodes_b_[i] = nodes_b_[0];
-      return bits(query_.excludes(gather<B>(a_.volumes(), nodes_a_.data()),
-                                  gather<B>(b_.volumes(), nodes_b_.data()))) &
-             all(count);
+    if constexpr (W > 1)
+      if (count > 1) {
+        for (int i = count; i < W; ++i) nodes_a_[i] = nodes_a_[0], nodes_b_[i] = nodes_b_[0];
+        return excluded(gather<B>(a_.volumes(), nodes_a_.data()),
+                        gather<B>(b_.volumes(), nodes_b_.data())) &
+               all(count);
+      }
+    return excluded(a_.volumes()[nodes_a_[0]], b_.volumes()[nodes_b_[0]]);
+  }
+
+  template <class P>
+  [[gnu::always_inline]] std::uint64_t excluded(const P& p, const P& q) {
+    if constexpr (Keeping::margins) {
+      const auto apart = gap(p, q);
+      if constexpr (Batched<std::remove_const_t<decltype(apart)>>)
+        apart.copy_to(gaps_.data(), stdx::element_aligned);
+      else
+        gaps_[0] = apart;
     }
+    return bits(query_.excludes(p, q));
+  }
+
+  /// Which of the pairs that need no further look are given one all the same, for wider gaps.
+  ///
+  /// An entry that has a gap of g to spare costs a test in g / step runs, or in every run. One of
+  /// two inner nodes that is opened costs two such entries, whose gaps are wider by about a quarter
+  /// of the size of the node opened; one of two leaves, whose triangles are as dear as
+  /// `triangle_cost` volumes, is farther from them by about half of both sizes. And all this does
+  /// not pay for itself where gaps last for many runs anyway.
+  std::uint64_t worth_opening(std::uint64_t excluded) const requires Keeping::margins {
+    constexpr double triangle_cost = 3, leaf_gain = 0.5, inner_gain = 0.25, long_enough = 4;
+    const double step = keeping_.step, limit = query_.limit();
+    std::uint64_t opened = 0;
+    for (std::uint64_t rest = excluded; rest; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      const auto& a = a_.hierarchy().node(nodes_a_[i]);
+      const auto& b = b_.hierarchy().node(nodes_b_[i]);
+      const double spare = static_cast<double>(gaps_[i]) - limit;
+      const bool leaves = a.count && b.count;
+      const double wider = leaves ? leaf_gain * static_cast<double>(a.size + b.size)
+                                  : inner_gain * static_cast<double>(std::max(a.size, b.size));
+      const double cost = leaves ? 1 + triangle_cost : 2;
+      const bool gains = spare < long_enough * step && cost * std::max(spare, step) < spare + wider;
+      opened |= std::uint64_t{gains} << i;
+    }
+    return opened;
+  }
+
+  void count_tests(std::size_t tests) {
+    walked_.volumes += tests;
+    counter_.tested(tests);
   }
 
   static bool descends_b(const Node& a, const Node& b) {
     return a.count || (!b.count && b.size > a.size);
+  }
+
+  std::size_t add_leaves(const NodePair& pair) requires Keeping::kept {
+    // With margins, the deadline is set when the triangles have been tested.
+    if constexpr (Keeping::margins)
+      return keeping_.front.add(pair, std::numeric_limits<double>::infinity());
+    else
+      return keeping_.front.add(pair);
   }
 
   void descend(const NodePair& pair, const Node& a, const Node& b) {
@@ -252,11 +386,40 @@ class Traversal {
 
   bool flush() {
     if (pending_.empty()) return false;
-    const Outcome outcome = query_.primitives(pending_);
+    Outcome outcome;
+    if constexpr (Keeping::margins) {
+      verdicts_.assign(pending_.size(), {});
+      outcome = query_.primitives(pending_, verdicts_);
+      settle();
+    } else {
+      outcome = query_.primitives(pending_);
+    }
     if (outcome.witness != Outcome::none) witness_ = pending_[outcome.witness].slot;
-    counter_.primitives(outcome.enough ? outcome.witness + 1 : pending_.size());
+    const std::size_t tested = outcome.enough ? outcome.witness + 1 : pending_.size();
+    walked_.triangles += tested;
+    counter_.primitives(tested);
     pending_.clear();
     return outcome.enough;
+  }
+
+  /// A pair of leaves is next looked at when the first of its verdicts can change.
+  void settle() requires Keeping::margins {
+    for (std::size_t first = 0; first < pending_.size();) {
+      const std::size_t slot = pending_[first].slot;
+      double least = std::numeric_limits<double>::infinity();
+      std::size_t i = first;
+      for (; i < pending_.size() && pending_[i].slot == slot; ++i) {
+        const Verdict& verdict = verdicts_[i];
+        least = std::min(least, verdict.margin);
+        if (verdict.hit && slot != Outcome::none)
+          keeping_.front.add_hit(slot, keeping_.approach.deadline(verdict.margin), pending_[i].a,
+                                 pending_[i].b);
+      }
+      if (slot != Outcome::none)
+        keeping_.front.expire_at(
+            slot, least < 0 ? MarginFront::passed : keeping_.approach.deadline(least));
+      first = i;
+    }
   }
 
   Body<V>& a_;
@@ -266,7 +429,11 @@ class Traversal {
   Keeping keeping_;
   OpenPairs& open_;
   std::vector<Candidate>& pending_;
+  std::vector<Verdict>& verdicts_;
+  std::vector<std::uint32_t>& due_;  // slots to be looked at, where margins are kept
   std::array<std::uint32_t, W> nodes_a_, nodes_b_;
+  std::array<Element<B>, Keeping::margins ? W : 0> gaps_;
+  Walked walked_;
   std::size_t witness_ = Outcome::none;
 };
 
@@ -275,17 +442,27 @@ class Traversal {
 /// Runs the query over two bodies from their roots. B is the scalar or batch that volumes are
 /// tested in. Says whether everything was seen: false where the query stopped it.
 template <class B, class Roots = NoFront, class V, class Query, class Counter>
-bool traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
+Walked traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
   return detail::Traversal<B, V, Query, Counter, Roots>(a, b, query, counter, {}, workspace).run();
 }
 
 /// The same from a front, which is kept up to date: it never shrinks, and stays a partition also
 /// when the query stops the traversal. The entry at which it stopped is the first one then.
 template <class B, class V, class Query, class Counter>
-bool traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace,
-              Front& front) {
+Walked traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace,
+                Front& front) {
   return detail::Traversal<B, V, Query, Counter, KeptFront>(a, b, query, counter, {front},
                                                             workspace)
+      .run();
+}
+
+/// The same from a front with margins: looks at the entries whose deadlines have passed, and gives
+/// them new ones.
+template <class B, class V, class Query, class Counter>
+Walked traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace,
+                const KeptMargins& margins) {
+  return detail::Traversal<B, V, Query, Counter, KeptMargins>(a, b, query, counter, margins,
+                                                              workspace)
       .run();
 }
 

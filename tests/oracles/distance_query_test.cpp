@@ -9,6 +9,7 @@
 #include "hierarchies/volumes.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/primitives/triangle_distance.hpp"
+#include "traversal/strategies.hpp"
 
 namespace bvlab {
 namespace {
@@ -77,12 +78,13 @@ TEST(DistanceQuery, CoherentIsFreshForEveryVolume) {
     const Scenery scene = scenery(1500, 4, step);
     const auto fresh = distances(scene, "sphere", "recursive");
     Volumes::for_each([&]<class V>(std::type_identity<V>) {
-      for (const char* strategy : {"recursive", "separation-list", "deferred:3"}) {
+      Strategies::for_each([&](auto type) {
+        const std::string strategy{decltype(type)::type::name};
         const auto kept = distances(scene, V::name, strategy);
         ASSERT_EQ(kept.size(), fresh.size());
         for (std::size_t i = 0; i < fresh.size(); ++i)
           ASSERT_NEAR(kept[i], fresh[i], 1e-12 * fresh[i]) << strategy << ' ' << V::name;
-      }
+      });
     });
   }
 }
@@ -92,7 +94,7 @@ TEST(DistanceQuery, ARelativeErrorIsAPromise) {
   const auto truth = distances(scene, "sphere", "recursive");
   for (const double allowed : {0.01, 0.1, 0.5})
     Volumes::for_each([&]<class V>(std::type_identity<V>) {
-      for (const char* strategy : {"recursive", "deferred"}) {
+      for (const char* strategy : {"recursive", "deferred", "margins"}) {
         const auto rough = distances(scene, V::name, strategy, allowed);
         double worst = 0;
         for (std::size_t i = 0; i < truth.size(); ++i) {

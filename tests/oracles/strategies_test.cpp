@@ -15,7 +15,7 @@
 namespace bvlab {
 namespace {
 
-ReplayResult answer(const Played& scene, const char* strategy, const char* query,
+ReplayResult answer(const Played& scene, const std::string& strategy, const char* query,
                     std::string_view volume = Volumes::at<0>::name) {
   Variant variant;
   variant.volume = volume;
@@ -25,8 +25,11 @@ ReplayResult answer(const Played& scene, const char* strategy, const char* query
   return replay(scene.meshes, scene.trace, variant, {});
 }
 
-constexpr const char* all_strategies[] = {"recursive", "recursive-both", "separation-list",
-                                          "deferred", "deferred:4"};
+std::vector<std::string> all_strategies() {
+  std::vector<std::string> names{"deferred:4"};
+  Strategies::for_each([&](auto type) { names.emplace_back(decltype(type)::type::name); });
+  return names;
+}
 
 /// Every strategy of every volume against recursive spheres; `volumes` says which.
 template <class Wanted>
@@ -45,7 +48,7 @@ void expect_recursive_answers(std::size_t frames, Wanted wanted) {
     EXPECT_LT(touching.hits, touching.touching.size()) << setting.name;
     Volumes::for_each([&]<class V>(std::type_identity<V>) {
       if (!wanted(V::name)) return;
-      for (const char* strategy : all_strategies) {
+      for (const std::string& strategy : all_strategies()) {
         EXPECT_EQ(answer(scene, strategy, "touching", V::name).touching, touching.touching)
             << setting.name << ' ' << strategy << ' ' << V::name;
         EXPECT_EQ(answer(scene, strategy, "contacts", V::name).contacts, contacts.contacts)

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "hierarchies/geometry/triangle_mesh.hpp"
+#include "traversal/primitives/triangle_margin.hpp"
 
 namespace bvlab {
 
@@ -25,9 +26,12 @@ struct Outcome {
   bool enough = false;         ///< the traversal can end here
 };
 
-/// Which of the pairs (*a[i], *b[i]), i < count <= 64, share a point: bit i is pair i's.
-using TriangleTest = std::uint64_t (*)(const Triangle* const* a, const Triangle* const* b,
-                                       int count);
+/// What is known of a candidate that was tested: how far its triangles can be moved, relative to
+/// each other, before that can change (see triangle_margin.hpp).
+struct Verdict {
+  double margin = -1;  ///< negative: it was not tested
+  bool hit = false;    ///< they share a point
+};
 
 /// Calls `hit(i)` for each candidate whose triangles share a point, in order, until it says to
 /// stop; gives the index at which it did, or their number.
@@ -46,6 +50,25 @@ std::size_t for_each_hit(std::span<const Candidate> pending, TriangleTest test, 
     }
   }
   return pending.size();
+}
+
+constexpr std::size_t verdicts_at_once = 16;
+
+/// Gives each candidate its verdict, 16 at a time, and calls `block(first, count, hits)` for those,
+/// bit i of `hits` being the verdict on candidate `first + i`, until it says to stop.
+template <class Block>
+void with_margins(std::span<const Candidate> pending, std::span<Verdict> verdicts,
+                  TriangleTest test, Block&& block) {
+  for (std::size_t first = 0; first < pending.size(); first += verdicts_at_once) {
+    const std::size_t count = std::min(verdicts_at_once, pending.size() - first);
+    const Triangle *a[verdicts_at_once], *b[verdicts_at_once];
+    for (std::size_t i = 0; i < count; ++i)
+      a[i] = pending[first + i].triangle_a, b[i] = pending[first + i].triangle_b;
+    double found[verdicts_at_once];
+    const std::uint64_t hits = touching_with_margins(a, b, static_cast<int>(count), test, found);
+    for (std::size_t i = 0; i < count; ++i) verdicts[first + i] = {found[i], (hits >> i & 1) != 0};
+    if (block(first, count, hits)) return;
+  }
 }
 
 }  // namespace bvlab

@@ -22,6 +22,7 @@ class Contacts {
   static constexpr std::string_view name = "contacts";
   static constexpr std::string_view description = "all pairs of triangles that share a point";
   static constexpr std::size_t patience = 15;
+  static constexpr bool one_hit_is_enough = false;
 
   /// Contacts are appended to `found`.
   explicit Contacts(std::vector<Contact>& found, TriangleTest test = intersect_batch<Exact>)
@@ -38,6 +39,23 @@ class Contacts {
       return false;
     });
     return {};
+  }
+
+  Outcome primitives(std::span<const Candidate> pending, std::span<Verdict> verdicts) {
+    with_margins(pending, verdicts, test_, [&](std::size_t first, std::size_t, std::uint64_t hits) {
+      for (; hits; hits &= hits - 1) {
+        const auto& hit = pending[first + static_cast<std::size_t>(std::countr_zero(hits))];
+        known(hit.a, hit.b);
+      }
+      return false;
+    });
+    return {};
+  }
+
+  double limit() const { return 0; }
+  bool known(std::uint32_t a, std::uint32_t b) {
+    found_.push_back({a, b});
+    return false;
   }
 
  private:

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 #include <span>
 #include <string_view>
@@ -26,6 +27,7 @@ class Distance {
   static constexpr std::string_view description =
       "how far apart the two surfaces are; within --relative-error above the truth";
   static constexpr std::size_t patience = 7;
+  static constexpr bool one_hit_is_enough = true;
   /// The traversal looks for a small upper bound before it starts.
   static constexpr bool wants_bound = true;
 
@@ -39,10 +41,40 @@ class Distance {
 
   Outcome primitives(std::span<const Candidate> pending) {
     Outcome outcome;
-    for (std::size_t first = 0; first < pending.size() && !outcome.enough; first += at_once)
-      look_at(pending, first, std::min(at_once, pending.size() - first), outcome);
+    for (std::size_t first = 0; first < pending.size() && !outcome.enough; first += at_once) {
+      const std::size_t count = std::min(at_once, pending.size() - first);
+      std::array<double, at_once> lower{};
+      if (limit_ < std::numeric_limits<double>::infinity()) lower = bounds(&pending[first], count);
+      look_at(pending, first, std::span(lower).first(count), outcome);
+    }
     return outcome;
   }
+
+  /// Margins are distances, rounded down: those that cannot make the answer smaller need no other.
+  Outcome primitives(std::span<const Candidate> pending, std::span<Verdict> verdicts) {
+    Outcome outcome;
+    with_margins(pending, verdicts, intersect_batch<Exact>,
+                 [&](std::size_t first, std::size_t count, std::uint64_t hits) {
+                   if (hits) {
+                     const auto i = first + static_cast<std::size_t>(std::countr_zero(hits));
+                     outcome = {.witness = i, .enough = known(pending[i].a, pending[i].b)};
+                     return true;
+                   }
+                   std::array<double, verdicts_at_once> lower{};
+                   for (std::size_t i = 0; i < count; ++i) lower[i] = verdicts[first + i].margin;
+                   look_at(pending, first, std::span(lower).first(count), outcome);
+                   return outcome.enough;
+                 });
+    return outcome;
+  }
+
+  double limit() const { return limit_; }
+  bool known(std::uint32_t, std::uint32_t) {
+    distance_ = limit_ = 0;
+    return true;
+  }
+  /// Nothing has moved since this was the answer.
+  void stays(double distance) { distance_ = distance; }
 
   /// In units of the meshes; infinity before anything was seen.
   double distance() const { return distance_; }
@@ -50,15 +82,13 @@ class Distance {
  private:
   static constexpr std::size_t at_once = native_width<double>;
 
-  /// Bounds for all, then distances in the order of bounds, until the least bound is no longer
-  /// below what is looked for.
-  void look_at(std::span<const Candidate> pending, std::size_t first, std::size_t count,
+  /// Distances in the order of their lower bounds, until the least bound is no longer below what
+  /// is looked for.
+  void look_at(std::span<const Candidate> pending, std::size_t first, std::span<double> lower,
                Outcome& outcome) {
-    std::array<double, at_once> lower{};
-    if (limit_ < std::numeric_limits<double>::infinity()) lower = bounds(&pending[first], count);
     while (!outcome.enough) {
-      const std::size_t i = static_cast<std::size_t>(
-          std::min_element(lower.begin(), lower.begin() + count) - lower.begin());
+      const std::size_t i =
+          static_cast<std::size_t>(std::min_element(lower.begin(), lower.end()) - lower.begin());
       if (!(lower[i] < limit_)) return;
       lower[i] = std::numeric_limits<double>::infinity();
       const auto& candidate = pending[first + i];

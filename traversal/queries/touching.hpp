@@ -17,6 +17,7 @@ class Touching {
   static constexpr std::string_view name = "touching";
   static constexpr std::string_view description = "do the two surfaces share a point, yes or no";
   static constexpr std::size_t patience = 3;
+  static constexpr bool one_hit_is_enough = true;
 
   explicit Touching(TriangleTest test = intersect_batch<Exact>) : test_(test) {}
 
@@ -31,6 +32,24 @@ class Touching {
     touching_ = true;
     return {.witness = first, .enough = true};
   }
+
+  /// Of several hits the one that lasts longest is the witness.
+  Outcome primitives(std::span<const Candidate> pending, std::span<Verdict> verdicts) {
+    Outcome outcome;
+    with_margins(pending, verdicts, test_, [&](std::size_t first, std::size_t, std::uint64_t hits) {
+      for (; hits; hits &= hits - 1) {
+        const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(hits));
+        if (!outcome.enough || verdicts[i].margin > verdicts[outcome.witness].margin)
+          outcome = {.witness = i, .enough = true};
+      }
+      return outcome.enough;
+    });
+    touching_ = touching_ || outcome.enough;
+    return outcome;
+  }
+
+  double limit() const { return 0; }
+  bool known(std::uint32_t, std::uint32_t) { return touching_ = true; }
 
   bool touching() const { return touching_; }
 

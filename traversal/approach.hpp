@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// How much nearer two bodies, and any parts of them, can have come to each other: a clock that
+/// shows an upper bound on it, by which a gap that was measured expires.
+///
+/// A point of a body, given by v about the body's middle c in the mesh's frame, stands at
+/// x = (Rc + t) + Rv. From a stand r to a stand f it moves by
+///
+///   (c_f - c_r) + (R_f - R_r) v,   |(R_f - R_r) v| <= |R_f - R_r|_2 radius.
+///
+/// The singular values of the difference of two rotations by an angle of s between them are
+/// 2 sin(s / 2), 2 sin(s / 2) and 0, so that |R_f - R_r|_2 = |R_f - R_r|_F / sqrt(2): nothing needs
+/// a quaternion or an angle. A matrix that is no rotation is within d = |R'R - I|_F of the
+/// orthonormal one next to it (its singular values s give |s - 1| <= |s^2 - 1|), hence
+///
+///   |R_f - R_r|_2 <= (F + d_f + d_r) / sqrt(2) + d_f + d_r,   F = |R_f - R_r|_F,
+///
+/// where both lie on the same side of O(3), which is so if F + d_f + d_r < 2; else F itself is the
+/// bound. For a point of each of two bodies the difference of their moves is at most
+///
+///   |(c_f - c_r)_a - (c_f - c_r)_b| + |R_f - R_r|_2,a radius_a + |R_f - R_r|_2,b radius_b,
+///
+/// so that bodies carried along together do not approach.
+///
+/// Rounding. A vertex as it stands, fl(Rv + t), and a middle, fl(Rc + t), are each off by less than
+/// 8u (reach + |t|) (see placement.hpp): `noise` is the sum of both, twice. It is counted at both
+/// stands. The sums of squares and their roots are off by less than 16 roundings in relative terms,
+/// those of the whole by 16 more: a factor of 1 + 32u pays for all.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "hierarchies/geometry/pose.hpp"
+
+namespace bvlab {
+
+/// Where a body stands, as far as its later motion is to be bounded.
+struct Stand {
+  Mat3<double> rotation = Mat3<double>::Identity();
+  Vec3<double> centre = Vec3<double>::Zero();  ///< of the body, in the world
+  double defect = 0;                           ///< at least |R'R - I|_F
+  double noise = 0;                            ///< of everything above, in units of the mesh
+
+  Stand() = default;
+
+  template <class Hierarchy>
+  Stand(const Pose& pose, const Hierarchy& hierarchy)
+      : rotation(pose.rotation), centre(pose(hierarchy.centre())) {
+    constexpr double u = unit_roundoff<double>;
+    defect = (rotation.transpose() * rotation - Mat3<double>::Identity()).norm() + 16 * u;
+    noise =
+        32 * u * (hierarchy.reach() + pose.translation.norm()) + std::numeric_limits<double>::min();
+  }
+};
+
+/// At least |R_to - R_from|_2.
+inline double turn_between(const Stand& from, const Stand& to) {
+  const double norm = (to.rotation - from.rotation).norm();
+  const double defects = from.defect + to.defect;
+  if (!(norm + defects < 1.9)) return norm;
+  return std::min(norm, (norm + defects) * M_SQRT1_2 + defects);
+}
+
+/// How far any point of a body that went from one stand to another can have come, at most.
+inline double step_between(const Stand& from, const Stand& to, double radius) {
+  return ((to.centre - from.centre).norm() + turn_between(from, to) * radius) *
+         (1 + 32 * unit_roundoff<double>)+(from.noise + to.noise);
+}
+
+class Approach {
+ public:
+  /// Begins at zero.
+  template <class Body>
+  void restart(const Body& a, const Body& b) {
+    base_ = since_ = 0;
+    refer(a, b);
+  }
+
+  /// The bodies have moved.
+  template <class Body>
+  void advance(const Body& a, const Body& b) {
+    const Stand &to_a = a.stand(), &to_b = b.stand();
+    const Vec3<double> shift = (to_a.centre - a_.centre) - (to_b.centre - b_.centre);
+    since_ = (shift.norm() + turn_between(a_, to_a) * a.hierarchy().radius() +
+              turn_between(b_, to_b) * b.hierarchy().radius()) *
+             (1 + 32 * unit_roundoff<double>)+(a_.noise + to_a.noise + b_.noise + to_b.noise);
+  }
+
+  /// From now on motion is measured from here. What was shown before goes on to hold, but what is
+  /// measured later no longer profits from motions that cancel.
+  template <class Body>
+  void refer(const Body& a, const Body& b) {
+    base_ = now();
+    a_ = a.stand(), b_ = b.stand();
+    since_ = a_.noise + b_.noise;
+  }
+
+  /// What the clock shows.
+  double now() const { return (base_ + since_) * (1 + 4 * unit_roundoff<double>); }
+  /// Of which so much since the stands that motion is measured from.
+  double since() const { return since_; }
+
+  /// Bodies (or parts) that are `gap` apart now cannot touch while the clock shows less than this.
+  double deadline(double gap) const {
+    return base_ + (gap - since_) - 4 * unit_roundoff<double> * (base_ + gap + since_);
+  }
+
+  /// Sets the clock back to what has passed since motion was last referred; says by how much.
+  double set_back() { return std::exchange(base_, 0); }
+
+ private:
+  Stand a_, b_;
+  double base_ = 0;   // what it showed at those stands
+  double since_ = 0;  // how much nearer since then, at most
+};
+
+}  // namespace bvlab

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A front whose entries need not be looked at for a while: each has a deadline on the clock of an
+/// Approach, and until the clock shows that much, nothing below the entry can touch; or, at an
+/// entry whose triangles have been tested, no verdict can have changed.
+///
+/// More precisely, an entry of deadline e stands for surfaces at least e - now apart: those that
+/// are not asked within a limit of l need a look only if e <= now + l. Deadlines lie in an array of
+/// their own, so that those that have passed are found by comparing a whole register at once: 16
+/// entries in two or three instructions, cheaper than any order kept among them while a front has
+/// less than some ten thousand entries, and nothing has to be moved when a deadline changes.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "hierarchies/geometry/scalar.hpp"
+#include "traversal/front.hpp"
+#include "traversal/queries/candidate.hpp"
+
+namespace bvlab {
+
+/// A pair of triangles found to share a point, which it goes on to do until the deadline.
+struct KnownHit {
+  std::uint32_t slot;
+  float deadline;
+  std::uint32_t a, b;
+};
+
+/// A float below x, but not by much: half a unit in the last place is lost to the first rounding
+/// and as much to the second; the last term is for what underflows.
+inline float just_below(double x) {
+  const auto y = static_cast<float>(x);
+  return y - std::abs(y) * 0x1p-22f - std::numeric_limits<float>::min();
+}
+inline float just_above(double x) { return -just_below(-x); }
+
+class MarginFront {
+ public:
+  static constexpr float passed = -std::numeric_limits<float>::infinity();
+  static constexpr std::uint32_t nowhere = static_cast<std::uint32_t>(-1);
+
+  std::size_t size() const { return entries_.size(); }
+  bool empty() const { return entries_.empty(); }
+  const NodePair& operator[](std::size_t slot) const { return entries_[slot]; }
+  const std::vector<NodePair>& entries() const { return entries_; }
+
+  /// Starts again from the two roots.
+  void restart() {
+    entries_.assign(1, NodePair{0, 0});
+    deadlines_.assign(1, passed);
+    earliest_ = passed;
+    hits_.clear();
+    witness_ = nowhere;
+  }
+
+  void clear() {
+    entries_.clear();
+    deadlines_.clear();
+    hits_.clear();
+    witness_ = nowhere;
+  }
+
+  void open(std::size_t slot) { holes_.push_back(static_cast<std::uint32_t>(slot)); }
+
+  /// Adds an entry that has to be looked at, and says in which slot.
+  std::size_t add(const NodePair& pair, double deadline = passed) {
+    std::size_t slot = entries_.size();
+    if (holes_.empty()) {
+      entries_.push_back(pair);
+      deadlines_.push_back(passed);
+    } else {
+      slot = holes_.back();
+      holes_.pop_back();
+      entries_[slot] = pair;
+    }
+    expire_at(slot, deadline);
+    return slot;
+  }
+
+  void expire_at(std::size_t slot, double deadline) {
+    // Written so that what is no number has passed.
+    deadlines_[slot] = deadline > passed ? just_below(deadline) : passed;
+    earliest_ = std::min(earliest_, deadlines_[slot]);
+  }
+
+  /// Some that were collected have been given none: the traversal was cut short.
+  void leave_rest() { earliest_ = passed; }
+
+  /// No deadline is before this.
+  float earliest() const { return earliest_; }
+
+  /// Slots whose deadlines are not above `time`, in order. They are to be given new ones.
+  void collect(double time, std::vector<std::uint32_t>& due) {
+    using Some = stdx::native_simd<float>;
+    constexpr std::size_t width = Some::size();
+    const float limit = just_above(time);
+    const std::size_t n = deadlines_.size();
+    due.resize(n);
+    std::size_t found = 0;
+    Some earliest = -passed;
+    for (std::size_t first = 0; first < n; first += width) {
+      Some some = -passed;
+      if (first + width <= n)
+        some.copy_from(&deadlines_[first], stdx::element_aligned);
+      else
+        for (std::size_t i = first; i < n; ++i) some[i - first] = deadlines_[i];
+      const auto later = some > limit;
+      for (std::uint64_t rest = ~bits(later) & ((std::uint64_t{1} << width) - 1); rest;
+           rest &= rest - 1)
+        due[found++] =
+            static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(std::countr_zero(rest));
+      stdx::where(later && some < earliest, earliest) = some;
+    }
+    due.resize(found);
+    earliest_ = stdx::hmin(earliest);
+  }
+
+  /// The clock was set back by so much.
+  void set_back(double by) {
+    for (auto& deadline : deadlines_) deadline = just_below(deadline - by);
+    for (auto& hit : hits_) hit.deadline = just_below(hit.deadline - by);
+    earliest_ = just_below(earliest_ - by);
+  }
+
+  /// All deadlines have passed.
+  void expire() {
+    std::fill(deadlines_.begin(), deadlines_.end(), passed);
+    earliest_ = passed;
+    hits_.clear();
+  }
+
+  float deadline(std::size_t slot) const { return deadlines_[slot]; }
+
+  /// Makes the entry in `slot` the first to be tested next time.
+  void bring_forward(std::size_t slot) { witness_ = static_cast<std::uint32_t>(slot); }
+  /// Whether that has happened since the last restart, and which entry it was.
+  bool witnessed() const { return witness_ != nowhere; }
+  std::uint32_t witness() const { return witness_; }
+
+  std::vector<KnownHit>& hits() { return hits_; }
+  const std::vector<KnownHit>& hits() const { return hits_; }
+  void add_hit(std::size_t slot, double deadline, std::uint32_t a, std::uint32_t b) {
+    hits_.push_back({static_cast<std::uint32_t>(slot), just_below(deadline), a, b});
+  }
+
+ private:
+  std::vector<NodePair> entries_;
+  std::vector<float> deadlines_;
+  std::vector<KnownHit> hits_;
+  float earliest_ = passed;
+  std::uint32_t witness_ = nowhere;
+  std::vector<std::uint32_t> holes_;  // empty between runs
+};
+
+}  // namespace bvlab

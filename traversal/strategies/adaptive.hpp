@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Recursion, a list or margins, whichever has been cheapest lately for this pair.
+///
+/// Costs are counted, not timed, so that runs repeat: pairs of volumes and of triangles tested,
+/// each at what it costs in that strategy (`price`; the unit is about a nanosecond with spheres).
+/// What recursion costs is known while it is in use. Another strategy is tried for at most eight
+/// runs: it is given up as soon as one run after its first costs more than recursion, and taken
+/// over if all eight together, its building included, were cheaper. A failed trial of a list costs
+/// a fifth of a run, one of margins about four: so each failure doubles the time until the next
+/// trial, from 16 runs and from 128, and none is made after large steps; but when the motion has
+/// fallen to half of what it was at the failure, margins are tried at once. While a list or margins
+/// are in use, recursion is asked for a run when they have become dearer than it was, and takes
+/// over if it is still cheaper. Both stay valid meanwhile.
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+
+#include "traversal/strategies/by_cost.hpp"
+#include "traversal/strategies/margins.hpp"
+
+namespace bvlab {
+
+class Adaptive {
+ public:
+  static constexpr std::string_view name = "adaptive";
+  static constexpr std::string_view description =
+      "recursion, a list or margins, whichever has been cheapest lately";
+
+  template <class B, class V, class Query, class Counter>
+  void run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
+    const double way = a.way() + b.way();
+    const double radius = (a.hierarchy().radius() + b.hierarchy().radius()) / 2;
+    // Before the first motion all that is known is that it may be large.
+    step_ = way_ < 0 ? radius : way - way_;
+    way_ = way;
+    if (!(step_ < hopeless * radius) && used_ != Used::recursion) drop();
+    switch (used_) {
+      case Used::recursion:
+        return after_recursion(price(traverse<B>(a, b, query, counter, workspace), plain), radius);
+      case Used::list:
+        return after_other(price(list_.run<B>(a, b, query, counter, workspace), plain));
+      case Used::margins:
+        return after_other(price(margins_.run<B>(a, b, query, counter, workspace), careful));
+    }
+  }
+
+  std::size_t front_size() const { return list_.front_size() + margins_.front_size(); }
+
+ private:
+  enum class Used { recursion, list, margins };
+  struct Prices {
+    double run, volumes, triangles;
+  };
+  static constexpr Prices plain{20, 12, 25}, careful{15, 35, 100};
+  static constexpr int trial = 8, probe_every = 8;
+  /// Steps of a tenth of the bodies close most gaps there are; after steps of a third of them
+  /// nothing is where it was.
+  static constexpr double too_far = 0.1, hopeless = 0.3;
+
+  static double price(const Walked& walked, const Prices& prices) {
+    return prices.run + prices.volumes * static_cast<double>(walked.volumes) +
+           prices.triangles * static_cast<double>(walked.triangles);
+  }
+
+  void after_recursion(double cost, double radius) {
+    if (probing_) {
+      probing_ = false;
+      recursion_ = cost;
+      if (recursion_ > other_)
+        used_ = other_used_;
+      else
+        drop();
+      return;
+    }
+    recursion_ = recursion_ == 0 ? cost : 0.75 * recursion_ + 0.25 * cost;
+    --until_list_, --until_margins_;
+    // A step of a tenth of the bodies closes most gaps there are, but not those of bodies far
+    // apart.
+    const bool small = step_ < 0.1 * radius || cost < plain.run + 8 * plain.volumes;
+    if ((until_margins_ <= 0 && small) || step_ < failed_step_ / 2)
+      begin(Used::margins);
+    else if (until_list_ <= 0)
+      begin(Used::list);
+  }
+
+  void begin(Used other) {
+    used_ = other;
+    runs_ = 0;
+    other_ = 0;
+  }
+
+  void after_other(double cost) {
+    ++runs_;
+    if (runs_ <= trial) {
+      other_ += cost / trial;
+      if (runs_ > 1 && cost > recursion_) return fail();
+      if (runs_ == trial && other_ > recursion_) return fail();
+      if (runs_ == trial) succeed();
+      return;
+    }
+    other_ = 0.9 * other_ + 0.1 * cost;
+    if (other_ > recursion_ && runs_ % probe_every == 0) {
+      probing_ = true;
+      other_used_ = used_;
+      used_ = Used::recursion;
+    }
+  }
+
+  void fail() {
+    if (used_ == Used::list) {
+      until_list_ = list_wait_ = std::min(2 * list_wait_, longest);
+    } else {
+      until_margins_ = margins_wait_ = std::min(2 * margins_wait_, longest);
+      failed_step_ = step_;
+    }
+    drop();
+  }
+
+  void succeed() {
+    if (used_ == Used::list)
+      list_wait_ = 8;
+    else
+      margins_wait_ = 64, failed_step_ = 0;
+  }
+
+  void drop() {
+    used_ = Used::recursion;
+    list_.forget();
+    margins_.forget();
+  }
+
+  static constexpr int longest = 1 << 14;
+
+  ByCost list_;
+  Margins margins_;
+  Used used_ = Used::recursion, other_used_ = Used::recursion;
+  bool probing_ = false;
+  double recursion_ = 0, other_ = 0;  // mean cost of a run
+  int runs_ = 0;                      // of the other
+  int until_list_ = 2, until_margins_ = 1, list_wait_ = 8, margins_wait_ = 64;
+  double way_ = -1, step_ = 0, failed_step_ = 0;
+};
+
+}  // namespace bvlab

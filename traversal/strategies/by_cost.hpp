@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A separation list that is rebuilt when its upkeep has become dearer than a rebuild pays for.
+///
+/// A rebuild that finds n ends takes 2n - 1 tests, runs after it n and, as the list grows and gets
+/// out of date, more. As with any machine that wears out, the mean cost of a run, the rebuild
+/// included, is least if the list is replaced when one more run costs more than the mean so far.
+/// That needs no parameter: at rest the mean falls from 2n towards n and the list is kept for ever;
+/// where growth costs more than a rebuild saves, it is kept for one run.
+#pragma once
+
+#include <string_view>
+
+#include "traversal/front.hpp"
+#include "traversal/traverse.hpp"
+
+namespace bvlab {
+
+class ByCost {
+ public:
+  static constexpr std::string_view name = "by-cost";
+  static constexpr std::string_view description =
+      "separation list, rebuilt once a run costs more than the mean since the last rebuild";
+
+  template <class B, class V, class Query, class Counter>
+  Walked run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
+    const std::size_t longest = room * (a.hierarchy().size() + b.hierarchy().size());
+    if (front_.empty() || worn_out_ || front_.size() > longest) {
+      front_.restart();
+      cost_ = runs_ = 0;
+      a.require(0, counter);
+      b.require(0, counter);
+    }
+    const Walked walked = traverse<B>(a, b, query, counter, workspace, front_);
+    const auto tests = static_cast<double>(walked.volumes);
+    cost_ += tests;
+    runs_ += 1;
+    worn_out_ = tests * runs_ > cost_;
+    return walked;
+  }
+
+  /// Starts again from the roots next time.
+  void forget() { front_.clear(); }
+
+  const Front& front() const { return front_; }
+  std::size_t front_size() const { return front_.size(); }
+
+ private:
+  /// Runs that a hit cuts short cost little and can let the list grow: so many entries for each
+  /// node are the most.
+  static constexpr std::size_t room = 16;
+
+  Front front_;
+  double cost_ = 0, runs_ = 0;  // since the last rebuild, that included
+  bool worn_out_ = false;
+};
+
+}  // namespace bvlab

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A front of which only those entries are looked at whose gaps the bodies can have closed since
+/// they were measured; verdicts on triangles stay as long as their margins do.
+///
+/// The cost of a run follows the motion, not the length of the front: an entry of gap g costs one
+/// test in about g / (motion per run) runs. So it pays to open pairs that are apart, but hardly:
+/// two children with wide gaps cost less than a parent with a narrow one. A pair is opened while
+/// its gap is below six times the last motion.
+///
+/// Motion is bounded between stands rather than along the way (see approach.hpp), so a body that
+/// jitters about a place is nearly free. What was measured at a stand r + d counts 2d less than at
+/// r: once d passes four times the last motion, r is moved up.
+///
+/// The front is rebuilt from the roots when that is due by the rule for replacing a machine whose
+/// upkeep rises: when a run (smoothed) costs more than the mean since the last rebuild, that
+/// included. A front too long by then, because bodies moved apart, is replaced; and one of which a
+/// jump has made more entries due than the last rebuild took tests is replaced at once.
+///
+/// A run in which nothing is due costs some additions; it is a matter of tens of nanoseconds.
+#pragma once
+
+#include <string_view>
+
+#include "traversal/approach.hpp"
+#include "traversal/margin_front.hpp"
+#include "traversal/traverse.hpp"
+
+namespace bvlab {
+
+class Margins {
+ public:
+  static constexpr std::string_view name = "margins";
+  static constexpr std::string_view description =
+      "a front whose entries are not looked at before the bodies can have closed their gaps";
+
+  template <class B, class V, class Query, class Counter>
+  Walked run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
+    if (!front_.empty() && unchanged(a, b, query)) return {};
+    if (front_.empty() || worn_out_) rebuild(a, b);
+    if (repeat_hits(query)) {
+      quiet_until_ = front_.hits().front().deadline;
+      return {};
+    }
+    const Walked walked =
+        traverse<B>(a, b, query, counter, workspace, KeptMargins{front_, approach_, step_});
+    account(walked);
+    remember(query);
+    return walked;
+  }
+
+  /// Starts again from the roots next time.
+  void forget() { front_.clear(); }
+
+  std::size_t front_size() const { return front_.size(); }
+  const MarginFront& front() const { return front_; }
+
+ private:
+  static constexpr double stretch = 4;    // motion is measured over so many steps
+  static constexpr double triangles = 4;  // one pair of triangles costs as much as pairs of volumes
+  static constexpr double farthest = 1024;  // the clock is set back after so many radii
+
+  /// Follows the bodies. Says whether nothing can have changed, and answers the query then.
+  template <class V, class Query>
+  bool unchanged(const Body<V>& a, const Body<V>& b, Query& query) {
+    const double way = a.way() + b.way();
+    const bool moved = way != way_;
+    if (moved) {
+      // The ways are sums of many steps, rounded up; what is wrong with their own sum is added.
+      step_ = way - way_ + 4 * unit_roundoff<double> * way;
+      way_ = way;
+      shown_ = (shown_ + step_) * (1 + 4 * unit_roundoff<double>);
+    }
+    if constexpr (requires { query.distance(); }) {
+      if (!moved && asked_ == &Query::name) return query.stays(distance_), true;
+    } else if (asked_ == &Query::name && (!moved || shown_ < quiet_until_)) {
+      for (const auto& hit : front_.hits())
+        if (query.known(hit.a, hit.b)) break;
+      return true;
+    }
+    if (moved) follow(a, b);
+    return false;
+  }
+
+  template <class V>
+  void follow(const Body<V>& a, const Body<V>& b) {
+    approach_.advance(a, b);
+    if (!(approach_.now() < std::numeric_limits<float>::max())) {
+      front_.expire();
+      approach_.restart(a, b);
+    } else if (approach_.since() > stretch * step_) {
+      approach_.refer(a, b);
+      if (approach_.now() > farthest * (a.hierarchy().radius() + b.hierarchy().radius()))
+        front_.set_back(approach_.set_back());
+    }
+    shown_ = approach_.now();
+  }
+
+  /// Tells the query of the hits that are sure to stay; the others are found again. Says whether
+  /// that is enough.
+  template <class Query>
+  bool repeat_hits(Query& query) {
+    auto& hits = front_.hits();
+    if constexpr (Query::one_hit_is_enough)
+      std::erase_if(hits, [&](const KnownHit& hit) { return !(hit.deadline > shown_); });
+    else
+      std::erase_if(hits, [&](const KnownHit& hit) {
+        return !(front_.deadline(hit.slot) > just_above(shown_));
+      });
+    for (const auto& hit : hits)
+      if (query.known(hit.a, hit.b)) return true;
+    return false;
+  }
+
+  template <class V>
+  void rebuild(const Body<V>& a, const Body<V>& b) {
+    if (front_.empty()) way_ = a.way() + b.way();
+    front_.restart();
+    approach_.restart(a, b);
+    shown_ = approach_.now();
+    upkeep_ = cost_ = 0;
+    runs_ = 0;
+    worn_out_ = false;
+  }
+
+  void account(const Walked& walked) {
+    const double cost =
+        static_cast<double>(walked.volumes) + triangles * static_cast<double>(walked.triangles);
+    cost_ += cost;
+    if (++runs_ == 1) return;
+    upkeep_ = 0.75 * upkeep_ + 0.25 * cost;
+    worn_out_ = upkeep_ * runs_ > cost_;
+  }
+
+  template <class Query>
+  void remember(const Query& query) {
+    asked_ = &Query::name;
+    if constexpr (requires { query.distance(); })
+      distance_ = query.distance();
+    else
+      quiet_until_ = front_.earliest();
+  }
+
+  MarginFront front_;
+  Approach approach_;
+  double way_ = 0;          // of both bodies, when they were last looked at
+  double step_ = 0;         // how far they have moved since the time before
+  double shown_ = 0;        // at least what the clock shows
+  double quiet_until_ = 0;  // the answer is what it was while the clock shows less
+  double distance_ = 0;
+  double upkeep_ = 0, cost_ = 0, runs_ = 0;  // of a run, smoothed; since the last rebuild
+  bool worn_out_ = false;
+  const std::string_view* asked_ = nullptr;  // the query that was answered last
+};
+
+}  // namespace bvlab
