@@ -28,7 +28,8 @@ namespace bvlab {
 ///   excludes(p, q)        a mask over posed volumes p of body a and q of body b
 ///   primitives(pending)   takes one candidate or more; says whether the traversal can end
 ///   patience              so many candidates may be held back before `primitives` must be called
-///   wants_bound           if there and true: one pair of near leaves is handed over first
+///   wants_bound           if there and true: one pair of near leaves is handed over first, near
+///                         pairs are looked at before far ones, and `excludes(gap)` says the same
 /// and for strategies that keep margins:
 ///   primitives(pending, verdicts)   the same, saying of each candidate what was found
 ///   limit()                         surfaces farther apart than this matter to the query no more
@@ -146,6 +147,8 @@ class Traversal {
     if constexpr (requires { Query::wants_bound; }) return Query::wants_bound;
     return false;
   }
+
+  static constexpr bool keeps_gaps() { return Keeping::margins || wants_bound(); }
 
   /// All entries of the front, the witness by itself.
   bool sweep() requires Keeping::kept {
@@ -266,8 +269,10 @@ class Traversal {
             keeping_.front.add({nodes_a_[i], nodes_b_[i]}, deadline);
         }
       }
-    for (std::uint64_t rest = ~excluded & all(count); rest; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
+    std::array<std::uint8_t, W> order;
+    const int kept = in_order(~excluded & all(count), order);
+    for (int k = 0; k < kept; ++k) {
+      const int i = order[static_cast<std::size_t>(k)];
       const NodePair pair{nodes_a_[i], nodes_b_[i]};
       const auto& a = a_.hierarchy().node(pair.a);
       const auto& b = b_.hierarchy().node(pair.b);
@@ -289,6 +294,20 @@ class Traversal {
     return pending_.size() > patience && flush();
   }
 
+  /// The lanes of a mask as they are to be descended: where a bound is wanted the nearest last, so
+  /// that it is the first to be looked at.
+  int in_order(std::uint64_t mask, std::array<std::uint8_t, W>& order) const {
+    std::size_t count = 0;
+    for (; mask; mask &= mask - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(mask));
+      std::size_t at = count++;
+      if constexpr (wants_bound())
+        for (; at > 0 && gaps_[order[at - 1]] < gaps_[lane]; --at) order[at] = order[at - 1];
+      order[at] = static_cast<std::uint8_t>(lane);
+    }
+    return static_cast<int>(count);
+  }
+
   static constexpr std::uint64_t all(int count) { return (std::uint64_t{2} << (count - 1)) - 1; }
 
   std::uint64_t test(int count) {
@@ -305,12 +324,13 @@ class Traversal {
 
   template <class P>
   [[gnu::always_inline]] std::uint64_t excluded(const P& p, const P& q) {
-    if constexpr (Keeping::margins) {
+    if constexpr (keeps_gaps()) {
       const auto apart = gap(p, q);
       if constexpr (Batched<std::remove_const_t<decltype(apart)>>)
         apart.copy_to(gaps_.data(), stdx::element_aligned);
       else
         gaps_[0] = apart;
+      if constexpr (wants_bound()) return bits(query_.excludes(apart));
     }
     return bits(query_.excludes(p, q));
   }
@@ -432,7 +452,7 @@ class Traversal {
   std::vector<Verdict>& verdicts_;
   std::vector<std::uint32_t>& due_;  // slots to be looked at, where margins are kept
   std::array<std::uint32_t, W> nodes_a_, nodes_b_;
-  std::array<Element<B>, Keeping::margins ? W : 0> gaps_;
+  std::array<Element<B>, keeps_gaps() ? W : 0> gaps_;
   Walked walked_;
   std::size_t witness_ = Outcome::none;
 };

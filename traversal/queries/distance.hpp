@@ -35,8 +35,12 @@ class Distance {
 
   template <class P>
   auto excludes(const P& a, const P& b) const {
-    using S = decltype(gap(a, b));
-    return gap(a, b) >= S(rounded_up<Element<S>>(limit_));
+    return excludes(gap(a, b));
+  }
+  /// By the gap of two volumes.
+  template <Scalar S>
+  auto excludes(const S& gap) const {
+    return gap >= S(rounded_up<Element<S>>(limit_));
   }
 
   Outcome primitives(std::span<const Candidate> pending) {
