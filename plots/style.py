@@ -24,6 +24,20 @@ STYLES = {
     "libccd-gjk": dict(color="#a6761d", marker="*", linestyle=":", hatch="**"),
     "gjk-coherent": dict(color="#00796b", marker="h", linestyle="-.", hatch="..."),
     "v-clip": dict(color="#c2185b", marker="8", linestyle="--", hatch="++"),
+    "by-cost": dict(color="#8c6bb1", marker="D", linestyle=":", hatch="xx"),
+    "margins": dict(color="#31a354", marker="v", linestyle=(0, (5, 1)), hatch="\\\\\\"),
+    "adaptive": dict(color="#de2d26", marker="*", linestyle="-", hatch="++"),
+    "fcl-world": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
+    "bullet-world": dict(color="#b0413e", marker="<", linestyle="-.", hatch="--"),
+    # Volumes, where they stand beside each other.
+    "sphere": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
+    "obb": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
+    "aabb": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
+    "kdop14": dict(color="#c7e9c0", marker="v", linestyle=":", hatch="xx"),
+    "kdop18": dict(color="#74c476", marker="v", linestyle=":", hatch="xx"),
+    "kdop26": dict(color="#238b45", marker="v", linestyle=":", hatch="xx"),
+    "rss": dict(color="#8c6bb1", marker="D", linestyle="--", hatch="oo"),
+    "shell": dict(color="#fdae6b", marker="P", linestyle=":", hatch="++"),
     # Precisions, and tests of two triangles.
     "exact": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
     "float64": dict(color="#2b7bba", marker="s", linestyle="--", hatch="///"),
@@ -63,6 +77,15 @@ def marker_style(name):
     """Keywords for plot without a line: colour, marker."""
     style = STYLES[name]
     return dict(color=style["color"], marker=style["marker"], linestyle="none")
+
+
+def world_style(variant):
+    """Keywords for plot: a peer by its own name, ours ("sphere deferred") by its strategy's, hollow
+    where the volume is not the sphere."""
+    volume, _, strategy = variant.partition(" ")
+    style = STYLES.get(strategy.partition(":")[0], STYLES["published"]) if strategy else STYLES[volume]
+    hollow = dict(markerfacecolor="white") if strategy and volume != "sphere" else {}
+    return dict(color=style["color"], marker=style["marker"], linestyle=style["linestyle"], **hollow)
 
 
 def bar_style(name):
