@@ -6,14 +6,16 @@
 /// With coherence, what is done follows what moved:
 ///
 /// - nothing moved: the boxes are compared with the last frame's, and the list stands.
-/// - moved steadily: *followed*. Every box gets a reach, where it will be for some frames if it goes
+/// - moved steadily: *followed*. Every box gets a reach, where it will be for some frames if it
+/// goes
 ///   on as it just did, and the pairs of boxes whose reaches meet are candidates (BibTeX:
 ///   verlet1967computer; the reach is one-sided, along the motion of each face, so it grows the box
 ///   a quarter of what a margin would). Until a box leaves its reach, no pair but a candidate can
 ///   overlap, so a frame costs one look at every box and under two nanoseconds a candidate, in the
 ///   cache. For how many frames a reach is made is chosen so that those and making the next
 ///   candidates cost least together.
-/// - a few moved: the same, but only their candidates are compared, and the list is changed in place:
+/// - a few moved: the same, but only their candidates are compared, and the list is changed in
+/// place:
 ///   the cost follows the number of boxes that moved, and of changes. A box that leaves its reach
 ///   gets a wider one, one that jumps or is new another slot.
 /// - moved far: *refitted*. The tree's bounds are computed again and joined as from scratch.
