@@ -7,17 +7,15 @@
 ///
 /// - nothing moved: the boxes are compared with the last frame's, and the list stands.
 /// - moved steadily: *followed*. Every box gets a reach, where it will be for some frames if it
-/// goes
-///   on as it just did, and the pairs of boxes whose reaches meet are candidates (BibTeX:
+///   goes on as it just did, and the pairs of boxes whose reaches meet are candidates (BibTeX:
 ///   verlet1967computer; the reach is one-sided, along the motion of each face, so it grows the box
 ///   a quarter of what a margin would). Until a box leaves its reach, no pair but a candidate can
 ///   overlap, so a frame costs one look at every box and under two nanoseconds a candidate, in the
 ///   cache. For how many frames a reach is made is chosen so that those and making the next
 ///   candidates cost least together.
 /// - a few moved: the same, but only their candidates are compared, and the list is changed in
-/// place:
-///   the cost follows the number of boxes that moved, and of changes. A box that leaves its reach
-///   gets a wider one, one that jumps or is new another slot.
+///   place: the cost follows the number of boxes that moved, and of changes. A box that leaves its
+///   reach gets a wider one, one that jumps or is new another slot.
 /// - moved far: *refitted*. The tree's bounds are computed again and joined as from scratch.
 /// - jumped: from scratch.
 ///
@@ -127,19 +125,19 @@ class Blocks {
     });
   }
   /// Calls work(t, threads, share) on every thread. Shares follow each other, so the list is the
-  /// one that a single thread would have written.
+  /// one that a single thread would have written; the first of them is the list itself.
   template <class Work>
   void in_shares(PairList& list, Work&& work) {
     const auto threads = static_cast<std::size_t>(settings_.threads);
-    shares_.resize(threads);
-    const auto run = [&](std::size_t t) {
-      shares_[t].clear();
-      work(t, threads, shares_[t]);
-    };
+    shares_.resize(threads - 1);
     {
       std::vector<std::jthread> others;
-      for (std::size_t t = 1; t < threads; ++t) others.emplace_back(run, t);
-      run(0);
+      for (std::size_t t = 1; t < threads; ++t)
+        others.emplace_back([&, t] {
+          shares_[t - 1].clear();
+          work(t, threads, shares_[t - 1]);
+        });
+      work(0, threads, list);
     }
     for (const PairList& share : shares_) list.append(share.view());
   }
