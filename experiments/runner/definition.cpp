@@ -114,6 +114,8 @@ class Reader {
         definition.description = string(node, "description");
       else if (key == "repetitions")
         definition.repetitions = repetitions(node);
+      else if (key == "measures")
+        definition.measures_coherence = measures_coherence(node);
       else if (key == "parameters")
         definition.parameters = settings(node, {});
       else if (key == "axis")
@@ -162,6 +164,15 @@ class Reader {
   std::string string(const toml::node& node, const std::string& key) const {
     if (const auto value = node.value_exact<std::string>()) return *value;
     fail(node.source(), key + " must be a string");
+  }
+
+  bool measures_coherence(const toml::node& node) const {
+    const auto* list = node.as_array();
+    if (!list) fail(node.source(), "measures must be a list");
+    for (auto&& each : *list)
+      if (const auto name = each.value_exact<std::string>(); !name || *name != "coherence")
+        fail(each.source(), "measures: there is coherence");
+    return !list->empty();
   }
 
   unsigned repetitions(const toml::node& node) const {

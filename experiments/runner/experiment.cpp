@@ -12,6 +12,7 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/disagreements.hpp"
 #include "experiments/peers/peers.hpp"
+#include "experiments/runner/coherence.hpp"
 #include "experiments/runner/record.hpp"
 #include "experiments/runner/replay.hpp"
 #include "experiments/runner/touches_any.hpp"
@@ -189,7 +190,8 @@ class Experiment {
                 axis_columns({"frame", "n_u", "n_v", "n_p", "front", "hits"})),
         disagreements_(record / (definition.name + ".disagreements.csv"),
                        axis_columns({"frame", "object_i", "object_j", "triangle_i", "triangle_j",
-                                     "theirs", "ours", "exact"})) {
+                                     "theirs", "ours", "exact"})),
+        coherence_(record / (definition.name + ".coherence.csv"), coherence_columns()) {
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       auto& group = by_trace_[trace_key(cells_[i]) + cells_[i]["query"]];
       if (group.empty()) order_.push_back(&group);
@@ -229,6 +231,51 @@ class Experiment {
     for (const auto& axis : definition_.axes) row.push_back(axis.name);
     row.insert(row.end(), measured.begin(), measured.end());
     return row;
+  }
+
+  /// What says which trace it is, and what of a variant its front depends on.
+  static bool matters_to_front(const std::string& name) {
+    return !is_of_variant(name) || name == "volume" || name == "query" || name == "build" ||
+           name == "leaf_size";
+  }
+  static Row front_key(const Cell& cell) {
+    Row row;
+    for (const auto& [name, value] : cell.parameters)
+      if (matters_to_front(name)) row.push_back(value);
+    return row;
+  }
+  Row coherence_columns() const {
+    Row row;
+    for (const auto& [name, value] : cells_.at(0).parameters)
+      if (matters_to_front(name)) row.push_back(name);
+    for (const char* name : {"pair_runs", "near_runs", "moved_runs", "still_runs", "tests", "ends",
+                             "kept", "grown", "motion_leaf", "motion_gap"})
+      row.push_back(name);
+    return row;
+  }
+
+  void measure_coherence(const Prepared& ready, const std::vector<const Cell*>& cells) {
+    std::map<Row, const Cell*> fronts;
+    for (const Cell* cell : cells)
+      if ((*cell)["peer"].empty() && (*cell)["query"] != "distance")
+        fronts.emplace(front_key(*cell), cell);
+    const std::vector<std::pair<Row, const Cell*>> all(fronts.begin(), fronts.end());
+    std::vector<Coherence> found(all.size());
+    side_by_side(all.size(), [&](std::size_t i) {
+      found[i] = coherence(ready.meshes, ready.trace, variant_of(*all[i].second));
+    });
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Coherence& c = found[i];
+      Row row = all[i].first;
+      coherence_.forget(row);
+      for (const auto n :
+           {c.pair_runs, c.near_runs, c.moved_runs, c.still_runs, c.tests, c.ends, c.kept, c.grown})
+        row.push_back(std::to_string(n));
+      row.push_back(std::to_string(c.motion_leaf));
+      row.push_back(std::to_string(c.motion_gap));
+      coherence_.add(std::move(row));
+    }
+    coherence_.save();
   }
 
   Row axis_row(const Cell& cell) const {
@@ -276,6 +323,7 @@ class Experiment {
       if (!ours && differences.back() > 0)
         list_disagreements(ready, *cells[i], counted[i], counted.back(), slack);
     }
+    if (definition_.measures_coherence) measure_coherence(ready, cells);
     time(ready, cells, counted, differences);
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const Row key = axis_row(*cells[i]);
@@ -342,7 +390,7 @@ class Experiment {
   const Definition& definition_;
   std::vector<Cell> cells_;
   std::size_t keys_ = 0;
-  Table rows_, frames_, disagreements_;
+  Table rows_, frames_, disagreements_, coherence_;
   std::map<std::string, std::vector<std::size_t>> by_trace_;
   std::vector<const std::vector<std::size_t>*> order_;
   std::mt19937_64 random_{20260101};

@@ -20,7 +20,7 @@ using Progress = std::function<void(std::size_t done, std::size_t all)>;
 void check(const Definition& definition);
 
 /// Writes `<record>/<name>.csv`, one row for each cell and repetition, and, where the definition
-/// asks for a series, `<name>.frames.csv`. Traces whose rows are all there already are passed over.
+/// asks for a series, `<name>.frames.csv`, where it measures coherence, `<name>.coherence.csv`. Traces whose rows are all there already are passed over.
 void run_experiment(const Definition& definition, const std::filesystem::path& record,
                     const Progress& progress);
 

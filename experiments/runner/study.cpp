@@ -14,7 +14,8 @@ namespace bvlab {
 namespace {
 
 /// THE list of kinds.
-const StudyKind* const kinds[] = {&studies::boxes, &studies::stability, &studies::triangles};
+const StudyKind* const kinds[] = {&studies::boxes, &studies::stability, &studies::triangles,
+                                  &studies::worlds};
 
 const StudyKind& kind_of(const StudyDefinition& definition) {
   std::string names;

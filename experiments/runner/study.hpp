@@ -76,6 +76,7 @@ namespace studies {
 extern const StudyKind boxes;
 extern const StudyKind stability;
 extern const StudyKind triangles;
+extern const StudyKind worlds;
 
 }  // namespace studies
 

@@ -8,25 +8,11 @@
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/circle.hpp"
+#include "experiments/scenes/places.hpp"
 #include "experiments/scenes/random.hpp"
 
 namespace bvlab {
 namespace {
-
-using Quaternion = std::array<double, 4>;  // w, x, y, z
-
-Quaternion product(const Quaternion& a, const Quaternion& b) {
-  return {((a[0] * b[0] - a[1] * b[1]) - a[2] * b[2]) - a[3] * b[3],
-          ((a[0] * b[1] + a[1] * b[0]) + a[2] * b[3]) - a[3] * b[2],
-          ((a[0] * b[2] - a[1] * b[3]) + a[2] * b[0]) + a[3] * b[1],
-          ((a[0] * b[3] + a[1] * b[2]) - a[2] * b[1]) + a[3] * b[0]};
-}
-
-Quaternion normalised(Quaternion q) {
-  const double norm = std::sqrt(((q[0] * q[0] + q[1] * q[1]) + q[2] * q[2]) + q[3] * q[3]);
-  for (double& component : q) component /= norm;
-  return q;
-}
 
 /// One step: a displacement of the centre and a turn about it.
 struct Step {
@@ -34,15 +20,6 @@ struct Step {
   Quaternion turn = {1, 0, 0, 0};
   bool turns = false;
 };
-
-struct Place {
-  Vec3<double> centre = Vec3<double>::Zero();
-  Quaternion attitude = {1, 0, 0, 0};
-};
-
-void need(bool fulfilled, const std::string& what) {
-  if (!fulfilled) throw Unusable(what);
-}
 
 class Walk {
  public:
@@ -183,33 +160,14 @@ class Walk {
     return place;
   }
 
-  /// What stands in the trace for this body: x y z qw qx qy qz. The mesh's origin is where turning
-  /// about the centre leaves it.
-  std::array<double, 7> row_of(std::size_t object) const {
-    const auto& [centre, q] = places_[object];
-    const Vec3<double>& c = meshes_[object % meshes_.size()].centre;
-    const Quaternion turned =
-        product(product(q, {0, c[0], c[1], c[2]}), {q[0], -q[1], -q[2], -q[3]});
-    return {centre[0] - turned[1],
-            centre[1] - turned[2],
-            centre[2] - turned[3],
-            q[0],
-            q[1],
-            q[2],
-            q[3]};
-  }
-
-  /// Exactly what reading the trace gives.
+  const Extent& mesh_of(std::size_t object) const { return meshes_[object % meshes_.size()]; }
   Pose pose_of(std::size_t object) const {
-    const auto row = row_of(object);
-    return *pose_from({row[0], row[1], row[2]}, row[3], row[4], row[5], row[6]);
+    return bvlab::pose_of(places_[object], mesh_of(object));
   }
 
   void append(std::vector<double>& data) const {
-    for (std::size_t object = 0; object < options_.objects; ++object) {
-      const auto row = row_of(object);
-      data.insert(data.end(), row.begin(), row.end());
-    }
+    for (std::size_t object = 0; object < options_.objects; ++object)
+      bvlab::append(data, places_[object], mesh_of(object));
   }
 
   const RandomWalk& options_;

@@ -2,12 +2,14 @@
 /// THE list of scenes.
 #pragma once
 
+#include "experiments/scenes/pile.hpp"
+#include "experiments/scenes/planner.hpp"
 #include "experiments/scenes/random_walk.hpp"
 #include "experiments/scenes/tori.hpp"
 #include "hierarchies/geometry/type_list.hpp"
 
 namespace bvlab {
 
-using Scenes = TypeList<RandomWalk, Tori>;
+using Scenes = TypeList<RandomWalk, Planner, Pile, Tori>;
 
 }  // namespace bvlab

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/peers/world_peers.hpp"
+
+#include <algorithm>
+
+namespace bvlab {
+namespace {
+
+struct Entry {
+  std::string_view name;
+  std::unique_ptr<WorldEngine> (*make)(std::span<const TriangleMesh>, std::size_t);
+};
+
+constexpr Entry list[] = {
+    {"fcl-world", make_fcl_world},        // dynamic tree of boxes, OBB trees
+    {"bullet-world", make_bullet_world},  // dynamic trees of boxes, GImpact
+};
+
+}  // namespace
+
+std::unique_ptr<WorldEngine> make_world_peer(std::string_view name,
+                                             std::span<const TriangleMesh> meshes,
+                                             std::size_t objects) {
+  for (const auto& each : list)
+    if (each.name == name) return each.make(meshes, objects);
+  return nullptr;
+}
+
+bool is_world_peer(std::string_view name) {
+  return std::any_of(std::begin(list), std::end(list),
+                     [&](const Entry& each) { return each.name == name; });
+}
+
+std::string world_peer_names() {
+  std::string names;
+  for (const auto& each : list) names += (names.empty() ? "" : ", ") + std::string(each.name);
+  return names;
+}
+
+}  // namespace bvlab

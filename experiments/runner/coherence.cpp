@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/runner/coherence.hpp"
+
+#include "hierarchies/volumes.hpp"
+
+namespace bvlab {
+
+Coherence coherence(std::span<const TriangleMesh> meshes, const Trace& trace,
+                    const Variant& variant) {
+  check(variant);
+  Coherence result;
+  Volumes::with(variant.volume, [&]<class V>(std::type_identity<V>) {
+    result = coherence_of<V>(meshes, trace, variant);
+  });
+  return result;
+}
+
+}  // namespace bvlab

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Whole scenes: whatever is near, moves, jumps or stays, the pairs that touch are those that
+/// asking every pair in every frame finds.
+#include "traversal/world.hpp"
+
+#include <gtest/gtest.h>
+
+#include "broadphase/broadphase.hpp"
+#include "experiments/runner/worlds.hpp"
+#include "hierarchies/volumes.hpp"
+#include "tests/oracles/settings.hpp"
+#include "traversal/strategies.hpp"
+
+namespace bvlab {
+namespace {
+
+/// As `replay` writes touching: (frames, pairs).
+std::vector<std::uint8_t> touching(const WorldRun& run, const Trace& trace) {
+  std::vector<std::uint8_t> all(trace.frames * trace.pairs(), 0);
+  const std::size_t n = trace.objects;
+  for (std::size_t frame = 0; frame < trace.frames; ++frame)
+    for (const auto& [i, j] : run.answers[frame])
+      ++all[frame * trace.pairs() + i * n - i * (i + 1) / 2 + (j - i - 1)];
+  return all;
+}
+
+void expect_all_pairs_answers(const Played& scene, const char* name, const char* volume,
+                              const char* strategy) {
+  const auto truth = replay(scene.meshes, scene.trace, {}, {}).touching;
+  Variant variant;
+  variant.volume = volume, variant.strategy = strategy;
+  const auto world = make_world(scene.meshes, scene.trace.objects, variant);
+  EXPECT_EQ(touching(play_frames(*world, scene.trace, Answers::kept), scene.trace), truth)
+      << name << ' ' << volume << ' ' << strategy;
+}
+
+/// Everything overlaps everything; and far more bodies than `settings` has, few of which move.
+std::vector<Setting> more_settings() {
+  return {
+      {"all overlapping", {{"torus", 64}}, walk(12, 200, 0.05, 0.01, 2, 0.05)},
+      {"many, few move", {{"star", 60}, {"icosphere", 80}}, walk(60, 300, 6, 0.1, 5, 0.1, 3)},
+      {"many, all move", {{"knot", 96}, {"box", 12}}, walk(60, 100, 6, 0.1, 5, 0)},
+      {"one body", {{"torus", 64}}, walk(1, 50, 4, 0.1, 5, 0)},
+  };
+}
+
+TEST(World, GivesTheAnswersOfAllPairs) {
+  auto all = settings(500);
+  for (auto& each : more_settings()) all.push_back(each);
+  for (const auto& setting : all) {
+    const Played scene = played(setting);
+    Strategies::for_each([&]<class S>(std::type_identity<S>) {
+      expect_all_pairs_answers(scene, setting.name, "sphere", S::name.data());
+    });
+    Volumes::for_each([&]<class V>(std::type_identity<V>) {
+      expect_all_pairs_answers(scene, setting.name, V::name.data(), "deferred");
+    });
+  }
+}
+
+Played standing(Played scene, std::size_t frames) {
+  auto& values = scene.trace.values;
+  values.resize(scene.trace.objects * 7);
+  const auto first = values;
+  for (scene.trace.frames = 1; scene.trace.frames < frames; ++scene.trace.frames)
+    values.insert(values.end(), first.begin(), first.end());
+  return scene;
+}
+
+TEST(World, WhatStandsIsNotAskedAgain) {
+  const Played scene = standing(played(more_settings()[1]), 5);
+  expect_all_pairs_answers(scene, "standing", "sphere", "recursive");
+  const auto world = make_world(scene.meshes, scene.trace.objects, {});
+  const WorldRun run = play_frames(*world, scene.trace, Answers::counted);
+  EXPECT_GT(run.near, 0u);
+  EXPECT_EQ(run.asked, 0u);
+}
+
+TEST(World, FarFromTheOriginAndWithoutBodies) {
+  Played scene = played(settings(50)[0]);
+  for (std::size_t i = 0; i < scene.trace.values.size(); i += 7)
+    for (int axis = 0; axis < 3; ++axis) scene.trace.values[i + axis] += 1e7;
+  expect_all_pairs_answers(scene, "far", "sphere", "recursive");
+  Played none = scene;
+  none.trace = {3, 0, {}};
+  const auto world = make_world(none.meshes, 0, {});
+  EXPECT_EQ(play_frames(*world, none.trace, Answers::kept).answers.size(), 3u);
+}
+
+/// Bodies worlds apart: boxes that no float holds are boxes everywhere.
+TEST(World, LargerThanFloatsReach) {
+  Played scene = played(settings(20)[0]);
+  for (std::size_t row = 0; row < scene.trace.values.size() / 7; ++row)
+    if (row % scene.trace.objects == 1) scene.trace.values[row * 7] += 1e45;
+  expect_all_pairs_answers(scene, "worlds apart", "sphere", "recursive");
+}
+
+/// The box holds every vertex as Pose moves it.
+TEST(TurnedBox, HoldsEveryVertex) {
+  for (const auto& setting : settings(100)) {
+    const Played scene = played(setting);
+    std::vector<Pose> poses(scene.trace.objects);
+    for (std::size_t frame = 0; frame < scene.trace.frames; ++frame) {
+      scene.trace.poses(frame, poses);
+      for (std::size_t i = 0; i < poses.size(); ++i) {
+        const auto& mesh = scene.meshes[i % scene.meshes.size()];
+        const Vec3<double> origin(0.1, -3, 1e3);
+        const Box<float> box = TurnedBox(mesh)(poses[i], origin);
+        for (const auto& vertex : mesh.vertices) {
+          const Vec3<long double> at =
+              poses[i](vertex).cast<long double>() - origin.cast<long double>();
+          for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_GE(at[axis], static_cast<long double>(box.lo[axis]));
+            EXPECT_LE(at[axis], static_cast<long double>(box.hi[axis]));
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bvlab
