@@ -30,6 +30,8 @@ struct Coherence {
   std::uint64_t ends = 0;        ///< entries of the last frame's front
   std::uint64_t kept = 0;        ///< of these, entries of this frame's front
   std::uint64_t grown = 0;       ///< entries more, after running through the last frame's
+  std::uint64_t again = 0;       ///< tests of pairs of volumes that this running through took
+  std::uint64_t still_ends = 0;  ///< entries of those last fronts that did not grow
   double motion_leaf = 0;        ///< sum of motions, in leaf sizes
   double motion_gap = 0;         ///< sum of motions as shares of the gap
 };

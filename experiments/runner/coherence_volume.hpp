@@ -87,10 +87,11 @@ class CoherenceMeter {
     sums_.tests += tests;
     sums_.ends += ends;
     sums_.kept += shared(last, fronts_[p]);
-    Counting unused;
-    ask(p, last, unused);
+    Counting again;
+    ask(p, last, again);
+    sums_.again += again.n_v;
     sums_.grown += last.size() - ends;
-    sums_.still_runs += last.size() == ends;
+    if (last.size() == ends) ++sums_.still_runs, sums_.still_ends += ends;
     measure_motion(pairs_[p], poses);
   }
 

@@ -249,7 +249,7 @@ class Experiment {
     for (const auto& [name, value] : cells_.at(0).parameters)
       if (matters_to_front(name)) row.push_back(name);
     for (const char* name : {"pair_runs", "near_runs", "moved_runs", "still_runs", "tests", "ends",
-                             "kept", "grown", "motion_leaf", "motion_gap"})
+                             "kept", "grown", "again", "still_ends", "motion_leaf", "motion_gap"})
       row.push_back(name);
     return row;
   }
@@ -268,8 +268,8 @@ class Experiment {
       const Coherence& c = found[i];
       Row row = all[i].first;
       coherence_.forget(row);
-      for (const auto n :
-           {c.pair_runs, c.near_runs, c.moved_runs, c.still_runs, c.tests, c.ends, c.kept, c.grown})
+      for (const auto n : {c.pair_runs, c.near_runs, c.moved_runs, c.still_runs, c.tests, c.ends,
+                           c.kept, c.grown, c.again, c.still_ends})
         row.push_back(std::to_string(n));
       row.push_back(std::to_string(c.motion_leaf));
       row.push_back(std::to_string(c.motion_gap));
