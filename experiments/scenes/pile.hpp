@@ -7,7 +7,7 @@
 ///   with walls, at any attitude, and fall. A body's ball has `core` times its radius: below 1 so
 ///   that the surfaces themselves meet where bodies lie on each other.
 /// - Positions are corrected until balls neither meet each other nor leave the box, and velocities
-///   follow from what was corrected [mueller2007position]; a ball that slides is slowed and made to
+///   follow from what was corrected (mueller2007position); a ball that slides is slowed and made to
 ///   roll.
 /// - A body that has hardly moved for half a second stands still, to the last bit, until one that
 ///   moves touches it. Time steps are sixtieths of a second; gravity is 20 radii per second

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A path planner at work: the talk's algorithm was part of one (li1998incremental). Bodies stand
 /// about in a cube as a maze, and the last body looks for a way through them by a rapidly exploring
-/// random tree [kuffner2000rrt]. Every frame is one placement that the planner asks about.
+/// random tree (kuffner2000rrt). Every frame is one placement that the planner asks about.
 ///
 /// - Obstacles stand anywhere in the cube, also through each other, but for its two ends: the robot
 ///   starts below the middle of the low side along x, and its goal is the same on the high side.
