@@ -175,9 +175,7 @@ def write_coherence(paper):
                  + " and ".join(f"{v:.2f} ({k})" for k, v in off.items()) + ".\n")
     (paper.out / "tables" / "coherence-text.tex").write_text(text)
     crossings = []
-    for strategy in dict.fromkeys(rows.strategy):
-        if strategy == "recursive":
-            continue
+    for strategy in coherence.strategies_of(rows):
         line = [escape(strategy)]
         for what in ("tests_saved", "time_saved"):
             at, wrong, won = coherence.crossing(rows, strategy, what)

@@ -62,6 +62,13 @@ def read(record):
     return rows
 
 
+def strategies_of(rows):
+    """All but the recursion, in the order in which they were thought of."""
+    order = ["separation-list", "deferred", "by-cost", "margins", "adaptive"]
+    present = set(rows.strategy) - {"recursive"}
+    return [s for s in order if s in present] + sorted(present - set(order))
+
+
 def fitted(rows):
     """Which rows the fit may see."""
     seen = rows.mesh.isin(FITTED_MESHES)
@@ -185,9 +192,7 @@ def print_tables(rows, gamma):
     middle, most = constant_errors(rows)
     print(f"  talk's constants 4/3, 3/2: {100 * middle:.1f} %  {100 * most:.1f} %\n")
     print("Survival below which a strategy loses, cells on the wrong side, share of cells won:")
-    for strategy in dict.fromkeys(rows.strategy):
-        if strategy == "recursive":
-            continue
+    for strategy in strategies_of(rows):
         for what, label in (("tests_saved", "tests"), ("time_saved", "time")):
             at, wrong, won = crossing(rows, strategy, what)
             print(f"  {strategy:16} {label:5}  {at:.3f}  {100 * wrong:4.1f} %  {100 * won:5.1f} %")
@@ -199,7 +204,7 @@ def print_tables(rows, gamma):
 
 def draw_speedup(rows, out):
     """Speedup against survival, a panel per strategy, tests above and time below."""
-    strategies = [s for s in dict.fromkeys(rows.strategy) if s != "recursive"]
+    strategies = strategies_of(rows)
     figure, axes = plt.subplots(2, len(strategies), figsize=(2.1 * len(strategies) + 0.6, 4.6),
                                 sharex=True, sharey="row", squeeze=False)
     edges = np.quantile(rows.survival, np.linspace(0, 1, 13))
@@ -241,7 +246,8 @@ def draw_law(rows, gamma, out):
     rows["predicted"] = predicted(rows, gamma)
     seen = fitted(rows)
     figure, axes = plt.subplots(1, 3, figsize=(9.2, 3.1))
-    low, high = 0.9 * rows[["predicted", "tests_saved"]].min().min(), 2.15
+    low, high = (f * x for f, x in ((0.8, rows[["predicted", "tests_saved"]].min().min()),
+                                    (1.25, rows[["predicted", "tests_saved"]].max().max())))
     for name in LISTS:
         look = style.STYLES[name]
         for part, fill, label in ((seen, look["color"], "fitted"), (~seen, "none", "left out")):
@@ -255,10 +261,17 @@ def draw_law(rows, gamma, out):
                          marker=look["marker"], markersize=3.5, markeredgecolor=look["color"],
                          markerfacecolor=fill, markeredgewidth=0.7)
     axes[0].plot([low, high], [low, high], color="black", linewidth=0.8)
-    axes[0].set(xlabel="speedup in tests, by the law", ylabel="measured", xlim=(low, high), ylim=(low, high))
+    axes[0].set(xlabel="speedup in tests, by the law", ylabel="measured", xlim=(low, high), ylim=(low, high),
+                xscale="log", yscale="log")
+    for axis in (axes[0].xaxis, axes[0].yaxis):
+        ticks = [t for t in (0.05, 0.1, 0.2, 0.5, 1, 2, 5) if low <= t <= high]
+        axis.set_ticks(ticks, [f"{t:g}" for t in ticks])
+        axis.set_minor_locator(plt.NullLocator())
     axes[0].legend(frameon=False, fontsize=7)
     axes[1].axhline(1, color="black", linewidth=0.8)
-    axes[1].set(xlabel="share of the front lost a frame", ylabel="law / measured", ylim=(0.5, 1.5))
+    axes[1].set(xlabel="share of the front lost a frame", ylabel="law / measured", yscale="log", ylim=(0.2, 5))
+    axes[1].set_yticks([0.2, 0.5, 1, 2, 5], ["0.2", "0.5", "1", "2", "5"])
+    axes[1].yaxis.set_minor_locator(plt.NullLocator())
     axes[1].set_xscale("symlog", linthresh=0.01)
     axes[1].set_xlim(left=0)
     axes[1].set_xticks([0, 0.01, 0.1, 1], ["0", "1%", "10%", "all"])
