@@ -189,6 +189,9 @@ def print_tables(rows, gamma):
     print(f"The law's gamma = {gamma:.2f}; error of the predicted speedup, median and 95 %:")
     for label, (middle, most, count) in errors(rows, gamma).items():
         print(f"  {label:9} {100 * middle:5.1f} %  {100 * most:5.1f} %   of {count} cells")
+    for query, part in rows.groupby("query", sort=False):
+        for label, (middle, most, count) in errors(part, gamma).items():
+            print(f"  {query}, {label}: {100 * middle:.1f} %  {100 * most:.1f} %   of {count} cells")
     middle, most = constant_errors(rows)
     print(f"  talk's constants 4/3, 3/2: {100 * middle:.1f} %  {100 * most:.1f} %\n")
     print("Survival below which a strategy loses, cells on the wrong side, share of cells won:")
