@@ -7,7 +7,7 @@ usage: coherence.py RECORD [--out FOLDER] [--table-only]
 
 Figures: coherence-speedup (tests saved by each strategy against survival), coherence-law (predicted
 against measured, with residuals, fitted and left out apart), coherence-margins (what margins leave to do
-against the motion in gaps).
+against the motion in leaf sizes).
 
 The law (the talk's 2n, n, n argument, carried on). A recursion that ends in n pairs makes 2n - 1 tests (R;
 fewer where a hit ends it), a run through the front that it leaves makes c: n, 2 more for every entry gained,
@@ -163,19 +163,19 @@ def crossing(rows, strategy, what):
 
 
 def fit_margins(rows):
-    """What margins leave to do, as c gaps^alpha: least squares in logarithms, where not everything is
-    done anyway."""
+    """What margins leave to do, as c leaves^alpha: least squares in logarithms, where they save."""
     group = rows[(rows.strategy == "margins") & fitted(rows)]
-    group = group[(group.gaps > 0) & (group.gaps < 0.5)]
+    group = group[(group.leaves > 0) & (group.all_saved > 1.1)]
     if len(group) < 3:
         return None
-    alpha, log_c = np.polyfit(np.log(group.gaps), -np.log(group.all_saved), 1)
+    alpha, log_c = np.polyfit(np.log(group.leaves), -np.log(group.all_saved), 1)
     return np.exp(log_c), alpha
 
 
 def margins_errors(rows, law):
-    group = rows[(rows.strategy == "margins") & (rows.gaps > 0)]
-    left = np.minimum(1, law[0] * group.gaps ** law[1])
+    """By which factor the fitted line is off, median, fitted and left out."""
+    group = rows[(rows.strategy == "margins") & (rows.leaves > 0)]
+    left = np.minimum(1, law[0] * group.leaves ** law[1])
     off = np.exp(np.abs(np.log(left * group.all_saved)))
     return {label: off[part].median() for label, part in
             (("fitted", fitted(group)), ("left out", ~fitted(group))) if part.any()}
@@ -195,13 +195,14 @@ def print_tables(rows, gamma):
     middle, most = constant_errors(rows)
     print(f"  talk's constants 4/3, 3/2: {100 * middle:.1f} %  {100 * most:.1f} %\n")
     print("Survival below which a strategy loses, cells on the wrong side, share of cells won:")
-    for strategy in strategies_of(rows):
-        for what, label in (("tests_saved", "tests"), ("time_saved", "time")):
-            at, wrong, won = crossing(rows, strategy, what)
-            print(f"  {strategy:16} {label:5}  {at:.3f}  {100 * wrong:4.1f} %  {100 * won:5.1f} %")
+    for query, strategy, what, label in ((q, s, w, t) for q in dict.fromkeys(rows["query"])
+                                         for s in strategies_of(rows)
+                                         for w, t in (("tests_saved", "tests"), ("time_saved", "time"))):
+        at, wrong, won = crossing(rows[rows["query"] == query], strategy, what)
+        print(f"  {query:9} {strategy:16} {label:5}  {at:.3f}  {100 * wrong:4.1f} %  {100 * won:5.1f} %")
     law = fit_margins(rows)
     if law:
-        print(f"\nMargins leave {law[0]:.2f} gaps^{law[1]:.2f} of the recursion's tests to do; off by a factor of",
+        print(f"\nMargins leave {law[0]:.2f} leaves^{law[1]:.2f} of the recursion's tests to do; off by a factor of",
               ", ".join(f"{v:.2f} ({k})" for k, v in margins_errors(rows, law).items()))
 
 
@@ -306,22 +307,22 @@ def draw_curve(axis, gamma):
 
 def draw_margins(rows, out):
     law = fit_margins(rows)
-    group = rows[(rows.strategy == "margins") & (rows.gaps > 0)]
+    group = rows[(rows.strategy == "margins") & (rows.leaves > 0)]
     figure, axes = plt.subplots(1, 2, figsize=(7.2, 3.1), sharex=True)
     for axis, what in zip(axes, ("all_saved", "time_saved")):
         for volume, part in group.groupby("volume", sort=False):
             look = style.STYLES[volume]
             seen = fitted(part)
             for where, fill in ((seen, look["color"]), (~seen, "none")):
-                axis.plot(part.gaps[where], 1 / part[what][where], linestyle="none", marker=look["marker"],
+                axis.plot(part.leaves[where], 1 / part[what][where], linestyle="none", marker=look["marker"],
                           markersize=3.5, markeredgecolor=look["color"], markerfacecolor=fill,
                           markeredgewidth=0.7, label=volume if fill != "none" else None)
         axis.axhline(1, color="black", linewidth=0.8)
-        axis.set(xscale="log", yscale="log", xlabel="motion a frame, as a share of the gap")
-    gaps = np.geomspace(group.gaps.min(), 1, 50)
+        axis.set(xscale="log", yscale="log", xlabel="motion a frame, in leaf sizes")
+    leaves = np.geomspace(group.leaves.min(), group.leaves.max(), 50)
     if law:
-        axes[0].plot(gaps, np.minimum(1, law[0] * gaps ** law[1]), color="black", linewidth=1.4,
-                     label=f"{law[0]:.2f} gaps$^{{{law[1]:.2f}}}$")
+        axes[0].plot(leaves, np.minimum(1, law[0] * leaves ** law[1]), color="black", linewidth=1.4,
+                     label=f"{law[0]:.2f} leaves$^{{{law[1]:.2f}}}$")
     axes[0].set_ylabel("tests, margins / recursive")
     axes[1].set_ylabel("time, margins / recursive")
     axes[0].legend(frameon=False, fontsize=7)

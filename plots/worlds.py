@@ -87,8 +87,8 @@ def draw(rows, out):
     for axis in axes[:, 0]:
         axis.set_ylabel("ms per frame")
     handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncol=4, frameon=False,
-                  bbox_to_anchor=(0.5, -0.06 if len(steps) > 1 else -0.14))
+    figure.legend(handles, labels, loc="lower center", ncol=2 * len(objects) + 1, frameon=False,
+                  bbox_to_anchor=(0.5, -0.03 * len(labels) / (len(objects) + 1)))
     figure.tight_layout()
     return style.save(figure, out, "worlds")
 
