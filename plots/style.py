@@ -49,6 +49,8 @@ STYLES = {
     "fcl": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
 }
 
+DENSITY_COLOURS = {"interlocked": "#b0413e", "dense": "#e69f00", "sparse": "#41a5c4"}
+
 plt.rcParams.update({
     "font.size": 9,
     "axes.titlesize": 9,
