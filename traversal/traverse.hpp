@@ -177,7 +177,8 @@ class Traversal {
     }
     auto& due = due_;
     keeping_.front.collect(now + query_.limit(), due);
-    if (first) std::erase(due, witness);
+    // It has its new deadline; where that has passed already, the front must go on to say so.
+    const bool still_due = first && std::erase(due, witness) > 0;
     bool stopped = false;
     for (std::size_t next = 0; next < due.size() && !stopped;) {
       const int count = take_front(next, due.size());
@@ -185,6 +186,7 @@ class Traversal {
       next += static_cast<std::size_t>(count);
       while (open_.size() >= W && !stopped) stopped = look_at<false>(take_open(), 0);
     }
+    if (still_due) keeping_.front.leave_rest();
     return stopped;
   }
 

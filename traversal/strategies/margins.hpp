@@ -38,6 +38,7 @@ class Margins {
     if (!front_.empty() && unchanged(a, b, query)) return {};
     if (front_.empty() || worn_out_) rebuild(a, b);
     if (repeat_hits(query)) {
+      asked_ = &Query::name;
       quiet_until_ = front_.hits().front().deadline;
       return {};
     }
@@ -77,7 +78,8 @@ class Margins {
         if (query.known(hit.a, hit.b)) break;
       return true;
     }
-    if (moved) follow(a, b);
+    // Also where only the query is another: quiet runs have not followed.
+    follow(a, b);
     return false;
   }
 
