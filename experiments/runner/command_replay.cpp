@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// `bvlab replay`: a motion trace through one variant of the engine.
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "experiments/files/npy.hpp"
 #include "experiments/files/peak_bytes.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/runner/commands.hpp"
+#include "experiments/runner/hierarchy_size.hpp"
 #include "experiments/runner/replay.hpp"
+#include "experiments/runner/replay_budgeted.hpp"
 #include "experiments/runner/whole_number.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 
@@ -18,10 +21,36 @@ struct Arguments {
   std::string trace, out, json, count = "off";
   Variant variant;
   unsigned threads = 1;
+  std::optional<std::uint64_t> budget;
 };
 
-nlohmann::ordered_json totals_of(const Arguments& arguments, const Trace& trace,
-                                 const ReplayResult& result) {
+/// What there would have been to do: volumes to pose in every frame, and the tests of the recursive
+/// strategy. That is played once more for it, where counting was asked for.
+nlohmann::ordered_json skipped(const Arguments& arguments, std::span<const TriangleMesh> meshes,
+                               const Trace& trace, const ReplayResult& result) {
+  if (arguments.count != "on") return nullptr;
+  Variant variant = arguments.variant;
+  variant.strategy = "recursive";
+  ReplayOptions options;
+  options.count = Count::on;
+  options.keep_answers = false;
+  const ReplayResult recursive =
+      arguments.variant.strategy == "recursive" ? result : replay(meshes, trace, variant, options);
+  std::uint64_t volumes = 0, triangles = 0;
+  for (std::size_t i = 0; i < trace.objects; ++i) {
+    triangles += meshes[i % meshes.size()].triangles.size();
+    volumes += hierarchy_size(meshes[i % meshes.size()], variant);
+  }
+  const auto part = [](std::uint64_t done, std::uint64_t all) {
+    return nlohmann::ordered_json{{"done", done}, {"of", all}};
+  };
+  return {{"volumes_posed", part(result.n_u, volumes * trace.frames)},
+          {"volume_tests", part(result.n_v, recursive.n_v)},
+          {"triangle_tests", part(result.n_p, recursive.n_p)}};
+}
+
+nlohmann::ordered_json totals_of(const Arguments& arguments, std::span<const TriangleMesh> meshes,
+                                 const Trace& trace, const ReplayResult& result) {
   const bool counted = arguments.count == "on";
   const auto count = [&](auto value) {
     return counted ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
@@ -44,7 +73,37 @@ nlohmann::ordered_json totals_of(const Arguments& arguments, const Trace& trace,
           {"build", arguments.variant.build},
           {"leaf_size", arguments.variant.leaf_size},
           {"precision", arguments.variant.precision},
-          {"threads", arguments.threads}};
+          {"threads", arguments.threads},
+          {"skipped", skipped(arguments, meshes, trace, result)}};
+}
+
+nlohmann::ordered_json totals_of(const Arguments& arguments, const Trace& trace,
+                                 const BudgetedResult& result) {
+  const bool counted = arguments.count == "on";
+  const auto count = [&](auto value) {
+    return counted ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+  };
+  return {{"seconds", result.seconds},
+          {"build_seconds", result.build_seconds},
+          {"first_seconds", result.first_seconds},
+          {"peak_bytes", peak_bytes()},
+          {"frames", trace.frames},
+          {"objects", trace.objects},
+          {"pairs", trace.pairs()},
+          {"budget", *arguments.budget},
+          {"touching", result.touching},
+          {"apart", result.apart},
+          {"unknown", result.unknown},
+          {"deepest", result.deepest},
+          {"mean_deepest", result.mean_deepest},
+          {"n_u", count(result.n_u)},
+          {"n_v", count(result.n_v)},
+          {"n_p", count(result.n_p)},
+          {"volume", arguments.variant.volume},
+          {"query", arguments.variant.query},
+          {"build", arguments.variant.build},
+          {"leaf_size", arguments.variant.leaf_size},
+          {"precision", arguments.variant.precision}};
 }
 
 void write_answers(const Arguments& arguments, const Trace& trace, const ReplayResult& result) {
@@ -62,22 +121,51 @@ void write_answers(const Arguments& arguments, const Trace& trace, const ReplayR
   }
 }
 
-void run(const Arguments& arguments) {
+void check(const Arguments& arguments) {
   check(arguments.variant);
   require_place("--out", arguments.out);
   require_place("--json", arguments.json);
+  if (!arguments.budget) return;
+  if (arguments.variant.query != "touching")
+    throw Unusable("--budget",
+                   "answers whether surfaces touch; not with --query " + arguments.variant.query);
+  if (arguments.variant.strategy != "recursive")
+    throw Unusable("--budget", "starts from the roots in every frame; not with --strategy " +
+                                   arguments.variant.strategy);
+  if (arguments.threads != 1) throw Unusable("--budget", "runs in one thread");
+}
+
+void put(const Arguments& arguments, const nlohmann::ordered_json& totals) {
+  const std::string text = totals.dump(2) + "\n";
+  if (!arguments.json.empty())
+    write_whole(arguments.json, text);
+  else
+    std::fputs(text.c_str(), stdout);
+}
+
+void run(const Arguments& arguments) {
+  check(arguments);
   std::vector<TriangleMesh> meshes;
   for (const auto& file : arguments.meshes) meshes.push_back(read_mesh(file));
   const Trace trace = read_trace(arguments.trace);
+  const Count count = arguments.count == "on" ? Count::on : Count::off;
+  if (arguments.budget) {
+    const BudgetedResult result =
+        replay_budgeted(meshes, trace, arguments.variant, *arguments.budget, count);
+    if (!arguments.out.empty()) {
+      const std::size_t shape[] = {trace.frames, trace.pairs()};
+      write_npy<std::uint8_t>(arguments.out, shape, result.known);
+    }
+    return put(arguments, totals_of(arguments, trace, result));
+  }
   ReplayOptions options;
-  options.count = arguments.count == "on" ? Count::on : Count::off;
+  options.count = count;
   options.threads = arguments.threads;
   options.keep_answers = !arguments.out.empty();
   const ReplayResult result = replay(meshes, trace, arguments.variant, options);
-  const std::string totals = totals_of(arguments, trace, result).dump(2) + "\n";
+  const nlohmann::ordered_json totals = totals_of(arguments, meshes, trace, result);
   if (!arguments.out.empty()) write_answers(arguments, trace, result);
-  if (!arguments.json.empty()) write_whole(arguments.json, totals);
-  if (arguments.json.empty()) std::fputs(totals.c_str(), stdout);
+  put(arguments, totals);
 }
 
 }  // namespace
@@ -109,6 +197,11 @@ void add_replay(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--precision", arguments->variant.precision, "see `bvlab list precisions`")
       ->capture_default_str();
+  command
+      ->add_option("--budget", arguments->budget,
+                   "so many tests of volumes for each pair and frame: 0 apart, 1 touching, 2 not "
+                   "known yet, with a bound on how deep")
+      ->check(whole_number(0, 1u << 30));
   command->add_option("--threads", arguments->threads)
       ->check(whole_number(1, 1024))
       ->capture_default_str();

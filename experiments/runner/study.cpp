@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <set>
 
 #include "experiments/files/unusable.hpp"
@@ -14,7 +15,8 @@ namespace bvlab {
 namespace {
 
 /// THE list of kinds.
-const StudyKind* const kinds[] = {&studies::boxes, &studies::stability, &studies::triangles,
+const StudyKind* const kinds[] = {&studies::boxes,    &studies::box_precision, &studies::budget,
+                                  &studies::distance, &studies::stability,     &studies::triangles,
                                   &studies::worlds};
 
 const StudyKind& kind_of(const StudyDefinition& definition) {
@@ -79,6 +81,14 @@ double StudyDefinition::number(const std::string& key, double fallback) const {
   return values[0];
 }
 
+std::size_t StudyDefinition::whole(const std::string& key, std::size_t fallback,
+                                   std::size_t most) const {
+  const double value = number(key, static_cast<double>(fallback));
+  if (!(value >= 1 && value <= static_cast<double>(most)) || value != std::floor(value))
+    throw Unusable(file, key + " must be a whole number from 1 to " + std::to_string(most));
+  return static_cast<std::size_t>(value);
+}
+
 std::optional<StudyDefinition> study_from(const std::string& text, const std::string& file) {
   // What the reader of experiments refuses before it parses is refused here, too, by that reader.
   if (text.find("kind") == std::string::npos) return {};
@@ -124,7 +134,14 @@ std::optional<StudyDefinition> study_from(const std::string& text, const std::st
 void check(const StudyDefinition& definition) {
   const StudyKind& kind = kind_of(definition);
   asked().clear();
-  kind.check(definition);
+  try {
+    kind.check(definition);
+  } catch (const Unusable& fault) {
+    // Names are refused by those who look them up, and they don't know the file.
+    const std::string what = fault.what();
+    if (what.starts_with(definition.file)) throw;
+    throw Unusable(definition.file, what);
+  }
   std::string names;
   for (const auto& key : asked()) names += (names.empty() ? "" : ", ") + key;
   for (const auto& [key, value] : definition.parameters)

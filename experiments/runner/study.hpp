@@ -33,6 +33,8 @@ class StudyDefinition {
   std::vector<std::string> strings(const std::string& key, std::vector<std::string> fallback) const;
   std::vector<double> numbers(const std::string& key, std::vector<double> fallback) const;
   double number(const std::string& key, double fallback) const;
+  /// A whole number from 1 to `most`.
+  std::size_t whole(const std::string& key, std::size_t fallback, std::size_t most) const;
 
   std::map<std::string, std::vector<std::string>> parameters;
 };
@@ -73,7 +75,10 @@ struct StudyKind {
 
 namespace studies {
 
+extern const StudyKind box_precision;
 extern const StudyKind boxes;
+extern const StudyKind budget;
+extern const StudyKind distance;
 extern const StudyKind stability;
 extern const StudyKind triangles;
 extern const StudyKind worlds;

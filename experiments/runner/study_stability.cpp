@@ -27,16 +27,8 @@ struct Settings {
 };
 
 Settings settings_of(const StudyDefinition& definition) {
-  const auto whole = [&](const char* key, double fallback, double most) {
-    const double value = definition.number(key, fallback);
-    if (!(value >= 1 && value <= most) || value != std::floor(value))
-      throw Unusable(definition.file,
-                     std::string(key) + " must be a whole number from 1 to " + text_of(most));
-    return value;
-  };
-  return {static_cast<std::size_t>(whole("frames", 100, 1e6)),
-          static_cast<std::uint64_t>(whole("seed", 1, 1e9)),
-          static_cast<int>(whole("seconds", 20, 3600))};
+  return {definition.whole("frames", 100, 1'000'000), definition.whole("seed", 1, 1'000'000'000),
+          static_cast<int>(definition.whole("seconds", 20, 3600))};
 }
 
 void check_settings(const StudyDefinition& definition) { settings_of(definition); }

@@ -55,13 +55,13 @@ std::vector<Test> all_tests() {
   return tests;
 }
 
-const TriangleSet& set_named(const std::string& name) {
+const TriangleSet& set_named(const std::string& file, const std::string& name) {
   std::string names;
   for (const auto& set : triangle_sets) {
     if (set.name == name) return set;
     names += (names.empty() ? "" : ", ") + std::string(set.name);
   }
-  throw Unusable("sets: no '" + name + "'; there are " + names);
+  throw Unusable(file, "sets: no '" + name + "'; there are " + names);
 }
 
 struct Settings {
@@ -75,16 +75,10 @@ Settings settings_of(const StudyDefinition& definition) {
   for (const auto& set : triangle_sets) all.emplace_back(set.name);
   Settings settings;
   for (const auto& name : definition.strings("sets", all))
-    settings.sets.push_back(&set_named(name));
-  const auto whole = [&](const char* key, double fallback) {
-    const double value = definition.number(key, fallback);
-    if (!(value >= 1 && value <= 1e7) || value != std::floor(value))
-      throw Unusable(definition.file, std::string(key) + " must be a whole number from 1 to 1e7");
-    return static_cast<std::size_t>(value);
-  };
-  settings.pairs = whole("pairs", 50000);
-  settings.at_once = whole("at_once", 5000);
-  settings.seed = whole("seed", 1);
+    settings.sets.push_back(&set_named(definition.file, name));
+  settings.pairs = definition.whole("pairs", 50000, 10'000'000);
+  settings.at_once = definition.whole("at_once", 5000, 10'000'000);
+  settings.seed = definition.whole("seed", 1, 1'000'000'000);
   return settings;
 }
 

@@ -199,6 +199,16 @@ class Names(ProgramTest):
         self.refuse(*self.replay, "--strategy", "recursive:1", mentions="takes no parameter")
         self.refuse(*self.replay, "--count", "maybe", mentions=["--count", "on", "off"])
 
+    def test_of_a_budget(self):
+        for value in ("-1", "x", "1.5", ""):
+            self.refuse(*self.replay, "--budget", value, mentions="--budget")
+        budget = [*self.replay, "--budget", "10"]
+        self.refuse(*budget, "--query", "distance", mentions=["--budget", "distance"])
+        self.refuse(*budget, "--query", "contacts", mentions=["--budget", "contacts"])
+        self.refuse(*budget, "--strategy", "deferred", mentions=["--budget", "deferred"])
+        self.refuse(*budget, "--threads", "2", mentions=["--budget", "thread"])
+        self.refuse(*budget, "--volume", "frob", mentions=["--volume", *names_of("volumes")])
+
     def test_of_the_other_commands(self):
         rest = ["--out", "out.npy"]
         given = ["boxes", "--trace", "boxes.npy", "--method", "frob"]
@@ -316,6 +326,24 @@ class Definitions(ProgramTest):
         self.refuse_definition("name = 'x'\nparameters = 3\n", "line 2", "table")
         self.refuse_definition(self.START + "seed = [1]\n", "line 7", "seed")
         self.refuse_definition(self.START + "[series]\nfrob = 1\n", "series", "frob", "seed")
+
+    def test_studies(self):
+        start = "name = 'x'\nkind = 'triangles'\n"
+        self.refuse_definition("name = 'x'\nkind = 'frob'\n", "frob", "triangles", "stability")
+        self.refuse_definition("kind = 'triangles'\n", "name")
+        self.refuse_definition(start + "frob = 1\n", "line 3", "frob")
+        self.refuse_definition(start + "parameters = 1\n", "line 3", "table")
+        self.refuse_definition(start + "repetitions = 0\n", "line 3", "repetitions")
+        self.refuse_definition(start + "[parameters]\nfrob = 1\n", "frob", "pairs", "sets")
+        self.refuse_definition(start + "[parameters]\npairs = 'x'\n", "pairs", "x")
+        self.refuse_definition(start + "[parameters]\npairs = [1, 2]\n", "pairs", "one number")
+        self.refuse_definition(start + "[parameters]\npairs = 0\n", "pairs", "whole number")
+        self.refuse_definition(start + "[parameters]\nsets = ['frob']\n", "frob", "integer grid")
+        for kind in ("stability", "budget", "distance"):
+            given = f"name = 'x'\nkind = '{kind}'\n[parameters]\nframes = -1\n"
+            self.refuse_definition(given, "frames", "whole number")
+        given = "name = 'x'\nkind = 'distance'\n[parameters]\nstrategies = 'frob'\n"
+        self.refuse_definition(given, "frob", *names_of("strategies"))
 
     def test_axes(self):
         def axis(text):
