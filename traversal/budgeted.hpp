@@ -6,9 +6,8 @@
 /// The bound. A pair of nodes in question stands for two patches of surface. Let D be the smaller
 /// patch's diameter, as it stands in the world. If the patches share a point, no point of that
 /// patch is farther than D from it, so none has gone deeper than D past the other surface there.
-/// The pairs in question are kept in the order of D and the largest is split, so the first D of the
-/// queue bounds all of them, and no order makes it smaller after so many tests by halving the
-/// largest.
+/// The pairs
+/// in question are kept in the order of D and the largest is looked at first: its D bounds them all.
 #pragma once
 
 #include <algorithm>
