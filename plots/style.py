@@ -24,6 +24,7 @@ STYLES = {
     "libccd-gjk": dict(color="#a6761d", marker="*", linestyle=":", hatch="**"),
     "gjk-coherent": dict(color="#00796b", marker="h", linestyle="-.", hatch="..."),
     "v-clip": dict(color="#c2185b", marker="8", linestyle="--", hatch="++"),
+    "recursive-both": dict(color="#6b6b6b", marker="p", linestyle="-", hatch="\\\\"),
     "by-cost": dict(color="#8c6bb1", marker="D", linestyle=":", hatch="xx"),
     "margins": dict(color="#31a354", marker="v", linestyle=(0, (5, 1)), hatch="\\\\\\"),
     "adaptive": dict(color="#de2d26", marker="*", linestyle="-", hatch="++"),
