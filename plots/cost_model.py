@@ -123,6 +123,10 @@ def main():
     ratio = rows.us_model / rows.us_measured
     print("Predicted / measured, median by density and strategy:")
     print(ratio.groupby([rows.density, rows.strategy]).median().unstack().round(2).to_string())
+    busy = rows[rows.density != "sparse"]
+    loop = (busy.us_measured - busy.us_model) * 1e3 * busy.pairs / busy.n_v
+    print("What is left over, ns a test of volumes (dense and interlocked):")
+    print(loop.groupby(busy.volume, sort=False).describe()[["25%", "50%", "75%"]].round(1).to_string())
     draw_errors(rows, out)
     draw_split(rows, out)
 

@@ -139,7 +139,7 @@ def draw_variants(middle, out, name):
 def print_tests(rows):
     """Volume tests of those that count, per pair and frame."""
     counted = rows[rows.n_v != ""].drop_duplicates(PLACES + ["variant"])
-    counted = counted.assign(n_v=counted.n_v.astype(float) / counted.pairs, n_p=counted.n_p.astype(float) / counted.pairs)
+    counted = counted.assign(n_v=pd.to_numeric(counted.n_v) / counted.pairs, n_p=pd.to_numeric(counted.n_p, errors="coerce") / counted.pairs)
     print(counted.pivot_table(index="variant", columns=["query", "polygons"], values=["n_v", "n_p"], sort=False)
           .round(1).to_string())
 
