@@ -9,6 +9,8 @@
 #include "broadphase/structures/pair_list.hpp"
 #include "broadphase/structures/voxels.hpp"
 
+#include <vector>
+
 namespace bvlab {
 
 template <class T, class Contact>

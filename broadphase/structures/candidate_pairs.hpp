@@ -8,6 +8,7 @@
 /// 8 bytes a candidate, and 20 more once it is followed in place.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "broadphase/settings.hpp"
