@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// `bvlab replay`: a motion trace through one variant of the engine.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -36,10 +37,10 @@ nlohmann::ordered_json skipped(const Arguments& arguments, std::span<const Trian
   options.keep_answers = false;
   const ReplayResult recursive =
       arguments.variant.strategy == "recursive" ? result : replay(meshes, trace, variant, options);
-  std::uint64_t volumes = 0, triangles = 0;
-  for (std::size_t i = 0; i < trace.objects; ++i) {
-    triangles += meshes[i % meshes.size()].triangles.size();
-    volumes += hierarchy_size(meshes[i % meshes.size()], variant);
+  std::uint64_t volumes = 0;
+  for (std::size_t m = 0; m < std::min(meshes.size(), trace.objects); ++m) {
+    const std::size_t alike = (trace.objects - m - 1) / meshes.size() + 1;
+    volumes += alike * hierarchy_size(meshes[m], variant);
   }
   const auto part = [](std::uint64_t done, std::uint64_t all) {
     return nlohmann::ordered_json{{"done", done}, {"of", all}};
