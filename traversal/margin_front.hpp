@@ -109,7 +109,9 @@ class MarginFront {
       else
         for (std::size_t i = first; i < n; ++i) some[i - first] = deadlines_[i];
       const auto later = some > limit;
-      for (std::uint64_t rest = ~bits(later) & ((std::uint64_t{1} << width) - 1); rest;
+      // Where the limit is infinite, what fills the last register is not later either.
+      const std::size_t taken = std::min(width, n - first);
+      for (std::uint64_t rest = ~bits(later) & ((std::uint64_t{1} << taken) - 1); rest;
            rest &= rest - 1)
         due[found++] =
             static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(std::countr_zero(rest));

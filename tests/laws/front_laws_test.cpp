@@ -133,5 +133,21 @@ TYPED_TEST(FrontLaws, AHitIsTheFirstToBeTestedNextTime) {
   EXPECT_EQ(again.n_v, 1u);
 }
 
+/// Every slot once and no other, however full the last register is: also where all are due for
+/// ever, as they are to a query without a limit.
+TEST(MarginFronts, CollectWhatIsDue) {
+  for (std::size_t n = 1; n < 70; ++n) {
+    MarginFront front;
+    for (std::size_t i = 0; i < n; ++i) front.add({0, 0}, static_cast<double>(i));
+    std::vector<std::uint32_t> due;
+    for (const double time : {-1.0, 0.0, n / 2.0, 1e3, std::numeric_limits<double>::infinity()}) {
+      front.collect(time, due);
+      const auto passed = static_cast<std::size_t>(std::clamp(time + 1, 0.0, double(n)));
+      ASSERT_EQ(due.size(), passed) << n << " entries at " << time;
+      for (std::size_t i = 0; i < passed; ++i) ASSERT_EQ(due[i], i);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bvlab
