@@ -15,4 +15,14 @@ Coherence coherence(std::span<const TriangleMesh> meshes, const Trace& trace,
   return result;
 }
 
+BestRebuilds best_rebuilds(std::span<const TriangleMesh> meshes, const Trace& trace,
+                           const Variant& variant) {
+  check(variant);
+  BestRebuilds result;
+  Volumes::with(variant.volume, [&]<class V>(std::type_identity<V>) {
+    result = best_rebuilds_of<V>(meshes, trace, variant);
+  });
+  return result;
+}
+
 }  // namespace bvlab

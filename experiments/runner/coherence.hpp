@@ -3,14 +3,14 @@
 ///
 /// Three measures, all of pairs that are near (whose roots could not be told apart in this frame or
 /// the one before):
-///   survival    kept / ends: the share of the recursive front that is still there in the next
-///   frame; stillness   still_runs / near_runs: how often nothing of it had to be descended, which
-///   is what
-///               the talk's lists predict from;
-///   motion      how far the two bodies can have moved relative to each other since the frame
-///   before
-///               (translations plus 2 sin(angle / 2) radius), in units of a leaf's size, and as a
-///               share of the gap between them, at most 1.
+///
+///   survival   kept / ends: the share of the recursive front that is still there in the next frame
+///   stillness  still_runs / near_runs: how often nothing of it had to be descended, which is what
+///              the talk's lists predict from
+///   motion     how far the two bodies can have moved relative to each other since the frame before
+///              (translations plus 2 sin(angle / 2) radius), in units of a leaf's size, and as a
+///              share of the gap between them, at most 1
+///
 /// What is counted is sums, so that parts of a trace, and traces, add up.
 #pragma once
 
@@ -41,9 +41,24 @@ struct Coherence {
 Coherence coherence(std::span<const TriangleMesh> meshes, const Trace& trace,
                     const Variant& variant);
 
-/// The same for one volume; the variant's names have been checked. Each is compiled by itself.
+/// What a separation list costs at best, see best_rebuilds.hpp: all pairs together.
+struct BestRebuilds {
+  std::uint64_t tests = 0;     ///< of pairs of volumes
+  std::uint64_t rebuilds = 0;  ///< the first included
+};
+
+/// For the variant's volume, query (touching or contacts), build and leaf size. Takes O(frames^2)
+/// runs a pair.
+BestRebuilds best_rebuilds(std::span<const TriangleMesh> meshes, const Trace& trace,
+                           const Variant& variant);
+
+/// Both for one volume; the variant's names have been checked. Each is compiled by itself.
 template <BoundingVolume V>
 Coherence coherence_of(std::span<const TriangleMesh> meshes, const Trace& trace,
                        const Variant& variant);
+
+template <BoundingVolume V>
+BestRebuilds best_rebuilds_of(std::span<const TriangleMesh> meshes, const Trace& trace,
+                              const Variant& variant);
 
 }  // namespace bvlab

@@ -115,7 +115,7 @@ class Reader {
       else if (key == "repetitions")
         definition.repetitions = repetitions(node);
       else if (key == "measures")
-        definition.measures_coherence = measures_coherence(node);
+        definition.measures = measures(node);
       else if (key == "parameters")
         definition.parameters = settings(node, {});
       else if (key == "axis")
@@ -166,13 +166,17 @@ class Reader {
     fail(node.source(), key + " must be a string");
   }
 
-  bool measures_coherence(const toml::node& node) const {
+  std::set<std::string> measures(const toml::node& node) const {
     const auto* list = node.as_array();
     if (!list) fail(node.source(), "measures must be a list");
-    for (auto&& each : *list)
-      if (const auto name = each.value_exact<std::string>(); !name || *name != "coherence")
-        fail(each.source(), "measures: there is coherence");
-    return !list->empty();
+    std::set<std::string> result;
+    for (auto&& each : *list) {
+      const auto name = each.value_exact<std::string>();
+      if (!name || (*name != "coherence" && *name != "best rebuilds"))
+        fail(each.source(), "measures: there are coherence, best rebuilds");
+      result.insert(*name);
+    }
+    return result;
   }
 
   unsigned repetitions(const toml::node& node) const {

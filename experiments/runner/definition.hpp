@@ -5,7 +5,7 @@
 ///     name = "nine-bunnies"
 ///     description = "one line"
 ///     repetitions = 3                # timed runs of each cell, interleaved
-///     measures = ["coherence"]       # beside the rest, see coherence.hpp
+///     measures = ["coherence", "best rebuilds"]   # beside the rest, see coherence.hpp
 ///
 ///     [parameters]                   # see `parameter_names`; what is not set has its default
 ///     mesh = "bunny"
@@ -25,6 +25,7 @@
 ///     until = 1000                   # this many frames of each, at most
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -53,7 +54,7 @@ struct Definition {
   Settings series;  ///< labels or parameters that a cell must have to be written frame by frame
   bool has_series = false;
   std::size_t series_until = static_cast<std::size_t>(-1);  ///< frames of each
-  bool measures_coherence = false;                          ///< of every trace, for every volume
+  std::set<std::string> measures;                           ///< of every trace, for every volume
   std::string text;                                         ///< the file as it was
   std::string file;                                         ///< for messages
 };

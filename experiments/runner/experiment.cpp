@@ -248,8 +248,9 @@ class Experiment {
     Row row;
     for (const auto& [name, value] : cells_.at(0).parameters)
       if (matters_to_front(name)) row.push_back(name);
-    for (const char* name : {"pair_runs", "near_runs", "moved_runs", "still_runs", "tests", "ends",
-                             "kept", "grown", "again", "still_ends", "motion_leaf", "motion_gap"})
+    for (const char* name :
+         {"pair_runs", "near_runs", "moved_runs", "still_runs", "tests", "ends", "kept", "grown",
+          "again", "still_ends", "motion_leaf", "motion_gap", "best_tests", "best_rebuilds"})
       row.push_back(name);
     return row;
   }
@@ -261,8 +262,12 @@ class Experiment {
         fronts.emplace(front_key(*cell), cell);
     const std::vector<std::pair<Row, const Cell*>> all(fronts.begin(), fronts.end());
     std::vector<Coherence> found(all.size());
+    std::vector<std::optional<BestRebuilds>> best(all.size());
     side_by_side(all.size(), [&](std::size_t i) {
-      found[i] = coherence(ready.meshes, ready.trace, variant_of(*all[i].second));
+      const Variant variant = variant_of(*all[i].second);
+      found[i] = coherence(ready.meshes, ready.trace, variant);
+      if (definition_.measures.contains("best rebuilds"))
+        best[i] = best_rebuilds(ready.meshes, ready.trace, variant);
     });
     for (std::size_t i = 0; i < all.size(); ++i) {
       const Coherence& c = found[i];
@@ -273,6 +278,8 @@ class Experiment {
         row.push_back(std::to_string(n));
       row.push_back(std::to_string(c.motion_leaf));
       row.push_back(std::to_string(c.motion_gap));
+      row.push_back(best[i] ? std::to_string(best[i]->tests) : "");
+      row.push_back(best[i] ? std::to_string(best[i]->rebuilds) : "");
       coherence_.add(std::move(row));
     }
     coherence_.save();
@@ -323,7 +330,7 @@ class Experiment {
       if (!ours && differences.back() > 0)
         list_disagreements(ready, *cells[i], counted[i], counted.back(), slack);
     }
-    if (definition_.measures_coherence) measure_coherence(ready, cells);
+    if (!definition_.measures.empty()) measure_coherence(ready, cells);
     time(ready, cells, counted, differences);
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const Row key = axis_row(*cells[i]);

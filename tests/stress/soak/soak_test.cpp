@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Coherent equals fresh, for ever: one pair of bodies for a very long time, every strategy beside
-/// recursion in every frame. BVLAB_SOAK_FRAMES says how long.
-///
-/// Speeds change over six orders of magnitude; there are stops of one body and of both, teleports,
-/// and contacts. One body's quaternions have any length; the other's rotation is a product of all
-/// the turns so far, never made orthonormal again.
+/// recursion in every frame; and one strategy asked now this, now that.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <random>
+#include <algorithm>
 
 #include "experiments/scenes/formula_mesh.hpp"
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes/sphere.hpp"
+#include "tests/stress/soak/way.hpp"
 #include "tests/types_of.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
@@ -23,62 +19,6 @@ namespace {
 
 using V = Sphere<float>;
 using B = Batch<float, std::max(native_width<float>, 4)>;
-
-std::size_t soak_frames() {
-  const char* const text = std::getenv("BVLAB_SOAK_FRAMES");
-  return text ? std::strtoul(text, nullptr, 10) : 20000;
-}
-
-/// Two bodies on a long way.
-class Way {
- public:
-  void step() {
-    if (left_-- == 0) begin();
-    if (happens(0.001)) position_ = Vec3<double>(anywhere(), anywhere(), anywhere());
-    if (!first_stops_) {
-      turn_ = (turn_ * small_turn()).normalized();
-      position_ = (0.999 * position_ + speed_ * direction()).eval();
-    }
-    if (!second_stops_) {
-      const double angle = speed_ / 2;
-      const Vec3<double> axis = direction();
-      const Pose turn = *pose_from(Vec3<double>::Zero(), std::cos(angle), std::sin(angle) * axis[0],
-                                   std::sin(angle) * axis[1], std::sin(angle) * axis[2]);
-      second_.rotation = (turn.rotation * second_.rotation).eval();
-    }
-  }
-
-  Pose first() const {
-    return *pose_from(position_, length_ * turn_.w(), length_ * turn_.x(), length_ * turn_.y(),
-                      length_ * turn_.z());
-  }
-  const Pose& second() const { return second_; }
-
- private:
-  void begin() {
-    left_ = static_cast<int>(std::pow(10, 2.5 * unit_(random_)));
-    speed_ = std::pow(10, -6 * unit_(random_));
-    first_stops_ = happens(0.25), second_stops_ = happens(0.25);
-    length_ = std::pow(10, 6 * unit_(random_) - 3);
-  }
-  bool happens(double probability) { return unit_(random_) < probability; }
-  double anywhere() { return 3 * unit_(random_) - 1.5; }
-  Vec3<double> direction() {
-    return Vec3<double>(anywhere(), anywhere(), anywhere() + 1e-9).normalized();
-  }
-  Eigen::Quaterniond small_turn() {
-    return Eigen::Quaterniond(Eigen::AngleAxisd(speed_ * unit_(random_), direction()));
-  }
-
-  std::mt19937_64 random_{42};
-  std::uniform_real_distribution<double> unit_{0, 1};
-  Eigen::Quaterniond turn_ = Eigen::Quaterniond::Identity();
-  Vec3<double> position_{1, 0, 0};
-  Pose second_;
-  double speed_ = 0, length_ = 1;
-  bool first_stops_ = false, second_stops_ = false;
-  int left_ = 0;
-};
 
 template <class Strategy>
 class Soak : public ::testing::Test {
@@ -114,7 +54,7 @@ class Soak : public ::testing::Test {
 TYPED_TEST_SUITE(Soak, TypesOf<Strategies>);
 
 TYPED_TEST(Soak, CoherentEqualsFresh) {
-  const std::size_t frames = soak_frames();
+  const std::size_t frames = soak_frames(20000);
   Way way;
   Recursive fresh;
   TypeParam for_contacts, for_touching, for_distance, for_any;
