@@ -1,0 +1,75 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tests of every strategy over those of a separation list with the best possible rebuilds.
+
+usage: best_rebuilds.py RECORD [--out FOLDER]
+
+RECORD holds best-rebuilds.csv and best-rebuilds.coherence.csv.
+"""
+
+import argparse
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pandas as pd
+
+import style
+
+
+def read(record):
+    """One row for each motion, query and strategy: medians, N_v over the best, time over the best."""
+    rows = pd.read_csv(Path(record) / "best-rebuilds.csv", keep_default_na=False)
+    best = pd.read_csv(Path(record) / "best-rebuilds.coherence.csv", keep_default_na=False)
+    if (rows.differing != 0).any():
+        raise SystemExit(f"{record}: answers differ")
+    keys = ["step", "degrees", "query"]
+    labels = rows[["motion"] + keys].drop_duplicates()
+    best = best.merge(labels, on=keys)[["motion", "query", "best_tests", "best_rebuilds"]]
+    rows = rows.groupby(["motion", "query", "strategy"], sort=False, as_index=False).median(
+        numeric_only=True)
+    rows = rows.merge(best, on=["motion", "query"])
+    rows["ratio"] = rows.n_v / rows.best_tests
+    fastest = rows.groupby(["motion", "query"]).time_ns.transform("min")
+    rows["slower"] = rows.time_ns / fastest
+    return rows
+
+
+def draw(rows, out):
+    queries = list(dict.fromkeys(rows["query"]))
+    figure, axes = plt.subplots(2, len(queries), figsize=(7.2, 4.8), sharex=True, sharey="row")
+    for column, query in enumerate(queries):
+        part = rows[rows["query"] == query]
+        for strategy in dict.fromkeys(part.strategy):
+            line = part[part.strategy == strategy]
+            look = {k: v for k, v in style.STYLES[strategy].items() if k != "hatch"}
+            for axis, measure in zip(axes[:, column], ("ratio", "slower")):
+                axis.plot(line.motion, line[measure], label=strategy, markersize=4, **look)
+        axes[0, column].set(title=query, yscale="log")
+        axes[0, column].axhline(1, color="#8f8f8f", lw=0.8)
+        axes[1, column].set(yscale="log", xlabel="motion a frame, radii / degrees")
+        axes[1, column].axhline(1, color="#8f8f8f", lw=0.8)
+    axes[0, 0].set_ylabel("tests of volumes over a list's\nwith the best rebuilds")
+    axes[1, 0].set_ylabel("time over that of the\nfastest strategy")
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="lower center", ncols=6, frameon=False)
+    figure.tight_layout(rect=(0, 0.06, 1, 1))
+    style.save(figure, out, "best-rebuilds")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("record")
+    parser.add_argument("--out")
+    arguments = parser.parse_args()
+    rows = read(arguments.record)
+    for measure, text in (("ratio", "N_v over a list's with the best rebuilds"),
+                          ("slower", "time over the fastest strategy's")):
+        print(text)
+        table = rows.pivot_table(index=["query", "motion"], columns="strategy", values=measure,
+                                 sort=False)
+        print(table.round(2).to_string())
+    draw(rows, arguments.out or Path(arguments.record) / "figures")
+
+
+if __name__ == "__main__":
+    main()
