@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "experiments/runner/coherence.hpp"
+#include "experiments/runner/triangle_test.hpp"
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes.hpp"
 #include "traversal/all_pairs.hpp"

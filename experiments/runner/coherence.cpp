@@ -5,10 +5,10 @@
 
 namespace bvlab {
 
-Coherence coherence(std::span<const TriangleMesh> meshes, const Trace& trace,
-                    const Variant& variant) {
+CoherenceSums coherence(std::span<const TriangleMesh> meshes, const Trace& trace,
+                        const Variant& variant) {
   check(variant);
-  Coherence result;
+  CoherenceSums result;
   Volumes::with(variant.volume, [&]<class V>(std::type_identity<V>) {
     result = coherence_of<V>(meshes, trace, variant);
   });

@@ -21,7 +21,7 @@
 
 namespace bvlab {
 
-struct Coherence {
+struct CoherenceSums {
   std::uint64_t pair_runs = 0;   ///< pairs times frames, without the first
   std::uint64_t near_runs = 0;   ///< of these, near; all that follows is of them
   std::uint64_t moved_runs = 0;  ///< in which a body of the pair had moved
@@ -38,8 +38,8 @@ struct Coherence {
 
 /// For the variant's volume, query, build and leaf size; its strategy does not matter. The size of
 /// a leaf is half the mean of its triangle's longest edge.
-Coherence coherence(std::span<const TriangleMesh> meshes, const Trace& trace,
-                    const Variant& variant);
+CoherenceSums coherence(std::span<const TriangleMesh> meshes, const Trace& trace,
+                        const Variant& variant);
 
 /// What a separation list costs at best, see best_rebuilds.hpp: all pairs together.
 struct BestRebuilds {
@@ -54,8 +54,8 @@ BestRebuilds best_rebuilds(std::span<const TriangleMesh> meshes, const Trace& tr
 
 /// Both for one volume; the variant's names have been checked. Each is compiled by itself.
 template <BoundingVolume V>
-Coherence coherence_of(std::span<const TriangleMesh> meshes, const Trace& trace,
-                       const Variant& variant);
+CoherenceSums coherence_of(std::span<const TriangleMesh> meshes, const Trace& trace,
+                           const Variant& variant);
 
 template <BoundingVolume V>
 BestRebuilds best_rebuilds_of(std::span<const TriangleMesh> meshes, const Trace& trace,

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiments/runner/coherence.hpp"
+#include "experiments/runner/triangle_test.hpp"
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes.hpp"
 #include "traversal/all_pairs.hpp"
@@ -74,7 +75,7 @@ class CoherenceMeter {
     before_.assign(poses.begin(), poses.end());
   }
 
-  const Coherence& sums() const { return sums_; }
+  const CoherenceSums& sums() const { return sums_; }
 
  private:
   void look_at(std::size_t p, std::span<const Pose> poses) {
@@ -163,14 +164,14 @@ class CoherenceMeter {
   std::vector<Contact> found_;
   Workspace workspace_;
   NotCounting counter_;
-  Coherence sums_;
+  CoherenceSums sums_;
 };
 
 }  // namespace detail
 
 template <BoundingVolume V>
-Coherence coherence_of(std::span<const TriangleMesh> meshes, const Trace& trace,
-                       const Variant& variant) {
+CoherenceSums coherence_of(std::span<const TriangleMesh> meshes, const Trace& trace,
+                           const Variant& variant) {
   detail::CoherenceMeter<V> meter(meshes, trace.objects, variant);
   std::vector<Pose> poses(trace.objects);
   for (std::size_t frame = 0; frame < trace.frames; ++frame) {

@@ -261,7 +261,7 @@ class Experiment {
       if ((*cell)["peer"].empty() && (*cell)["query"] != "distance")
         fronts.emplace(front_key(*cell), cell);
     const std::vector<std::pair<Row, const Cell*>> all(fronts.begin(), fronts.end());
-    std::vector<Coherence> found(all.size());
+    std::vector<CoherenceSums> found(all.size());
     std::vector<std::optional<BestRebuilds>> best(all.size());
     side_by_side(all.size(), [&](std::size_t i) {
       const Variant variant = variant_of(*all[i].second);
@@ -270,7 +270,7 @@ class Experiment {
         best[i] = best_rebuilds(ready.meshes, ready.trace, variant);
     });
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const Coherence& c = found[i];
+      const CoherenceSums& c = found[i];
       Row row = all[i].first;
       coherence_.forget(row);
       for (const auto n : {c.pair_runs, c.near_runs, c.moved_runs, c.still_runs, c.tests, c.ends,

@@ -15,12 +15,13 @@ namespace bvlab {
 /// Called with the traces finished and all of them.
 using Progress = std::function<void(std::size_t done, std::size_t all)>;
 
-/// Throws Unusable, naming the definition's file, for names that do not exist and values that cannot
-/// be in any of its cells. Takes no time: asked before a record is opened.
+/// Throws Unusable, naming the definition's file, for names that do not exist and values that
+/// cannot be in any of its cells. Takes no time: asked before a record is opened.
 void check(const Definition& definition);
 
 /// Writes `<record>/<name>.csv`, one row for each cell and repetition, and, where the definition
-/// asks for a series, `<name>.frames.csv`, where it measures coherence, `<name>.coherence.csv`. Traces whose rows are all there already are passed over.
+/// asks for a series, `<name>.frames.csv`, where it measures coherence, `<name>.coherence.csv`.
+/// Traces whose rows are all there already are passed over.
 void run_experiment(const Definition& definition, const std::filesystem::path& record,
                     const Progress& progress);
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/runner/replay.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "experiments/files/unusable.hpp"
+#include "experiments/runner/replay_shares.hpp"
 #include "experiments/runner/strategy_text.hpp"
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes.hpp"
@@ -50,6 +53,37 @@ ReplayResult replay(std::span<const TriangleMesh> meshes, const Trace& trace,
     result = replay_with<V>(meshes, trace, variant, options);
   });
   return result;
+}
+
+void detail::play_shares(const Trace& trace, const ReplayOptions& options, const MakeShare& make,
+                         ReplayResult& result) {
+  if (options.keep_series) result.series.resize(trace.frames);
+  const std::size_t pairs = trace.pairs();
+  // A series is of all pairs together, so one thread plays it.
+  const std::size_t threads =
+      options.keep_series
+          ? 1
+          : std::clamp<std::size_t>(options.threads, 1, std::max<std::size_t>(pairs, 1));
+  std::vector<std::unique_ptr<Share>> shares;
+  for (std::size_t t = 0; t < threads; ++t) shares.push_back(make(t, threads, result));
+  const auto start = Clock::now();
+  {
+    std::vector<std::jthread> helpers;
+    for (std::size_t t = 1; t < threads; ++t)
+      helpers.emplace_back([&share = *shares[t]] { share.play(); });
+    shares[0]->play();
+  }
+  result.seconds = seconds_since(start);
+  for (auto& share : shares) share->hand_over(result);
+  std::sort(result.contacts.begin(), result.contacts.end());
+  const double asked = static_cast<double>(pairs) * static_cast<double>(trace.frames);
+  result.front = asked > 0 ? result.front / asked : 0;
+  // Counts have been running totals so far.
+  for (std::size_t frame = result.series.size(); frame-- > 1;) {
+    auto& now = result.series[frame];
+    const auto& before = result.series[frame - 1];
+    now.n_u -= before.n_u, now.n_v -= before.n_v, now.n_p -= before.n_p, now.hits -= before.hits;
+  }
 }
 
 }  // namespace bvlab

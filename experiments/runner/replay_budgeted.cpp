@@ -3,13 +3,12 @@
 
 #include <chrono>
 
+#include "experiments/runner/triangle_test.hpp"
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/budgeted.hpp"
 #include "traversal/counters.hpp"
-#include "traversal/primitives/precisions.hpp"
-#include "traversal/primitives/triangle_intersection.hpp"
 
 namespace bvlab {
 namespace {
@@ -89,10 +88,7 @@ BudgetedResult replay_budgeted(std::span<const TriangleMesh> meshes, const Trace
                                const Variant& variant, std::uint64_t budget, Count count) {
   check(variant);
   BudgetedResult result;
-  TriangleTest test = intersect_batch<Exact>;
-  Precisions::with(variant.precision, [&]<class Precision>(std::type_identity<Precision>) {
-    test = intersect_batch<Precision>;
-  });
+  const TriangleTest test = triangle_test(variant.precision);
   Volumes::with(variant.volume, [&]<class V>(std::type_identity<V>) {
     if (count == Count::on)
       play<V, Counting>(meshes, trace, variant, budget, test, result);

@@ -3,12 +3,10 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
-#include <deque>
-#include <thread>
 
-#include "experiments/runner/replay.hpp"
+#include "experiments/runner/replay_shares.hpp"
 #include "experiments/runner/strategy_text.hpp"
+#include "experiments/runner/triangle_test.hpp"
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes.hpp"
 #include "traversal/all_pairs.hpp"
@@ -21,11 +19,6 @@ namespace bvlab {
 /// As many lanes as a register holds, where registers hold four or more.
 template <class T>
 using NativeBatch = Batch<T, std::max(native_width<T>, 4)>;
-
-using Clock = std::chrono::steady_clock;
-inline double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 namespace detail {
 
@@ -107,13 +100,13 @@ struct Answers<Contacts> {
   }
 };
 
-/// One thread's share: bodies of its own, every `stride`-th pair, all frames.
+/// Bodies of its own, every `stride`-th pair, all frames.
 template <BoundingVolume V, class Strategy, class Query, class Counter>
-class Share {
+class ShareOf final : public Share {
  public:
-  Share(std::span<const Shape<V>> shapes, const Strategy& strategy, std::size_t first,
-        std::size_t stride, const Trace& trace, Manner manner, ReplayResult& result,
-        const ReplayOptions& options)
+  ShareOf(std::span<const Shape<V>> shapes, const Strategy& strategy, std::size_t first,
+          std::size_t stride, const Trace& trace, Manner manner, ReplayResult& result,
+          const ReplayOptions& options)
       : trace_(trace),
         result_(result),
         options_(options),
@@ -122,7 +115,7 @@ class Share {
         engine_(shapes, share_of(trace.objects, first, stride), strategy),
         answers_(result, trace.frames, trace.pairs(), options.keep_answers, manner) {}
 
-  void play() {
+  void play() override {
     const auto start = Clock::now();
     std::vector<Pose> poses(trace_.objects);
     for (std::size_t frame = 0; frame < trace_.frames; ++frame) {
@@ -140,12 +133,12 @@ class Share {
     }
   }
 
-  void hand_over() {
-    result_.first_seconds = std::max(result_.first_seconds, first_seconds_);
-    result_.n_u += counter_.n_u, result_.n_v += counter_.n_v, result_.n_p += counter_.n_p;
-    result_.front += entries_;
-    result_.hits += answers_.hits;
-    answers_.hand_over(result_);
+  void hand_over(ReplayResult& result) override {
+    result.first_seconds = std::max(result.first_seconds, first_seconds_);
+    result.n_u += counter_.n_u, result.n_v += counter_.n_v, result.n_p += counter_.n_p;
+    result.front += entries_;
+    result.hits += answers_.hits;
+    answers_.hand_over(result);
   }
 
  private:
@@ -167,39 +160,6 @@ class Share {
   double entries_ = 0, first_seconds_ = 0;
 };
 
-template <BoundingVolume V, class Strategy, class Query, class Counter>
-void play(std::span<const Shape<V>> shapes, const Strategy& strategy, const Trace& trace,
-          Manner manner, const ReplayOptions& options, ReplayResult& result) {
-  if (options.keep_series) result.series.resize(trace.frames);
-  const std::size_t pairs = trace.pairs();
-  // A series is of all pairs together, so one thread plays it.
-  const std::size_t threads =
-      options.keep_series
-          ? 1
-          : std::clamp<std::size_t>(options.threads, 1, std::max<std::size_t>(pairs, 1));
-  std::deque<Share<V, Strategy, Query, Counter>> shares;
-  for (std::size_t t = 0; t < threads; ++t)
-    shares.emplace_back(shapes, strategy, t, threads, trace, manner, result, options);
-  const auto start = Clock::now();
-  {
-    std::vector<std::jthread> helpers;
-    for (std::size_t t = 1; t < threads; ++t)
-      helpers.emplace_back([&share = shares[t]] { share.play(); });
-    shares[0].play();
-  }
-  result.seconds = seconds_since(start);
-  for (auto& share : shares) share.hand_over();
-  std::sort(result.contacts.begin(), result.contacts.end());
-  const double asked = static_cast<double>(pairs) * static_cast<double>(trace.frames);
-  result.front = asked > 0 ? result.front / asked : 0;
-  // Counts have been running totals so far.
-  for (std::size_t frame = result.series.size(); frame-- > 1;) {
-    auto& now = result.series[frame];
-    const auto& before = result.series[frame - 1];
-    now.n_u -= before.n_u, now.n_v -= before.n_v, now.n_p -= before.n_p, now.hits -= before.hits;
-  }
-}
-
 }  // namespace detail
 
 /// `replay` for one volume; the variant's names have been checked.
@@ -217,20 +177,24 @@ ReplayResult replay_with(std::span<const TriangleMesh> meshes, const Trace& trac
   for (std::size_t i = 0; i < trace.objects; ++i)
     shapes.push_back({&meshes[i % meshes.size()], &hierarchies[i % meshes.size()]});
   result.build_seconds = seconds_since(start);
-  detail::Manner manner{intersect_batch<Exact>, variant.relative_error};
-  Precisions::with(variant.precision, [&]<class Precision>(std::type_identity<Precision>) {
-    manner.test = intersect_batch<Precision>;
-  });
+  const detail::Manner manner{triangle_test(variant.precision), variant.relative_error};
   const bool counted = options.count == Count::on || options.keep_series;
   Strategies::with(name_of(variant.strategy), [&]<class Strategy>(std::type_identity<Strategy>) {
     const auto strategy = made_from<Strategy>(variant.strategy);
     Queries::with(variant.query, [&]<class Query>(std::type_identity<Query>) {
+      const auto play = [&]<class Counter>(std::type_identity<Counter>) {
+        detail::play_shares(
+            trace, options,
+            [&](std::size_t first, std::size_t stride, ReplayResult& all) {
+              return std::make_unique<detail::ShareOf<V, Strategy, Query, Counter>>(
+                  shapes, strategy, first, stride, trace, manner, all, options);
+            },
+            result);
+      };
       if (counted)
-        detail::play<V, Strategy, Query, Counting>(shapes, strategy, trace, manner, options,
-                                                   result);
+        play(std::type_identity<Counting>());
       else
-        detail::play<V, Strategy, Query, NotCounting>(shapes, strategy, trace, manner, options,
-                                                      result);
+        play(std::type_identity<NotCounting>());
     });
   });
   return result;

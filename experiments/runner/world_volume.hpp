@@ -3,6 +3,7 @@
 #pragma once
 
 #include "experiments/runner/strategy_text.hpp"
+#include "experiments/runner/triangle_test.hpp"
 #include "experiments/runner/worlds.hpp"
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes.hpp"
@@ -66,10 +67,7 @@ class TouchingWorld final : public WorldEngine {
 template <BoundingVolume V>
 std::unique_ptr<WorldEngine> make_world_of(std::span<const TriangleMesh> meshes,
                                            std::size_t objects, const Variant& variant) {
-  TriangleTest test = intersect_batch<Exact>;
-  Precisions::with(variant.precision, [&]<class Precision>(std::type_identity<Precision>) {
-    test = intersect_batch<Precision>;
-  });
+  const TriangleTest test = triangle_test(variant.precision);
   std::unique_ptr<WorldEngine> world;
   Strategies::with(name_of(variant.strategy), [&]<class Strategy>(std::type_identity<Strategy>) {
     world = std::make_unique<detail::TouchingWorld<V, Strategy>>(
