@@ -51,8 +51,10 @@ class AllPairs {
     for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].move(poses[i], origin_);
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
       auto query = ask(p);
+      const std::uint64_t tested = counter.n_v + counter.n_p;
       strategies_[p].template run<B>(bodies_[pairs_[p].i], bodies_[pairs_[p].j], query, counter,
                                      workspace_);
+      counter.asked(tested);
       take(p, query);
     }
   }

@@ -10,23 +10,27 @@ namespace bvlab {
 /// Counts where things happen.
 struct Counting {
   static constexpr bool counts = true;
-  std::uint64_t n_u = 0;  ///< volumes posed
-  std::uint64_t n_v = 0;  ///< pairs of volumes tested
-  std::uint64_t n_p = 0;  ///< pairs of primitives tested
+  std::uint64_t n_u = 0;         ///< volumes posed
+  std::uint64_t n_v = 0;         ///< pairs of volumes tested
+  std::uint64_t n_p = 0;         ///< pairs of primitives tested
+  std::uint64_t considered = 0;  ///< pairs of bodies for which anything at all was tested
 
   void posed(std::uint64_t volumes) { n_u += volumes; }
   void tested(std::uint64_t pairs) { n_v += pairs; }
   void primitives(std::uint64_t pairs) { n_p += pairs; }
+  /// A pair of bodies has been asked; so much had been tested before.
+  void asked(std::uint64_t before) { considered += n_v + n_p != before; }
 };
 
 /// Compiles to nothing.
 struct NotCounting {
   static constexpr bool counts = false;
-  static constexpr std::uint64_t n_u = 0, n_v = 0, n_p = 0;
+  static constexpr std::uint64_t n_u = 0, n_v = 0, n_p = 0, considered = 0;
 
   void posed(std::uint64_t) {}
   void tested(std::uint64_t) {}
   void primitives(std::uint64_t) {}
+  void asked(std::uint64_t) {}
 };
 
 }  // namespace bvlab

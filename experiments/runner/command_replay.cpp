@@ -25,8 +25,9 @@ struct Arguments {
   std::optional<std::uint64_t> budget;
 };
 
-/// What there would have been to do: volumes to pose in every frame, and the tests of the recursive
-/// strategy. That is played once more for it, where counting was asked for.
+/// What there would have been to do: every pair to consider and every volume to pose in every
+/// frame, and the tests of the recursive strategy. That is played once more for it, where counting
+/// was asked for.
 nlohmann::ordered_json skipped(const Arguments& arguments, std::span<const TriangleMesh> meshes,
                                const Trace& trace, const ReplayResult& result) {
   if (arguments.count != "on") return nullptr;
@@ -45,7 +46,8 @@ nlohmann::ordered_json skipped(const Arguments& arguments, std::span<const Trian
   const auto part = [](std::uint64_t done, std::uint64_t all) {
     return nlohmann::ordered_json{{"done", done}, {"of", all}};
   };
-  return {{"volumes_posed", part(result.n_u, volumes * trace.frames)},
+  return {{"pairs_considered", part(result.considered, trace.pairs() * trace.frames)},
+          {"volumes_posed", part(result.n_u, volumes * trace.frames)},
           {"volume_tests", part(result.n_v, recursive.n_v)},
           {"triangle_tests", part(result.n_p, recursive.n_p)}};
 }

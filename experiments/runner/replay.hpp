@@ -45,10 +45,11 @@ struct ReplayResult {
   double first_seconds = 0;  ///< the first frame alone
   double build_seconds = 0;
   std::uint64_t n_u = 0, n_v = 0, n_p = 0;  ///< where counted
-  double front = 0;                         ///< mean entries per pair and frame
-  std::uint64_t hits = 0;                   ///< touching pairs, or contacts, over all frames
-  std::vector<std::uint8_t> touching;       ///< (frames, pairs)
-  std::vector<double> distances;            ///< (frames, pairs)
+  std::uint64_t considered = 0;        ///< pairs, over all frames, for which anything was tested
+  double front = 0;                    ///< mean entries per pair and frame
+  std::uint64_t hits = 0;              ///< touching pairs, or contacts, over all frames
+  std::vector<std::uint8_t> touching;  ///< (frames, pairs)
+  std::vector<double> distances;       ///< (frames, pairs)
   std::vector<std::array<std::uint32_t, 5>> contacts;  ///< frame, i, j, triangle of i, of j; sorted
   std::vector<FrameCounts> series;                     ///< one for each frame
 };

@@ -136,6 +136,7 @@ class ShareOf final : public Share {
   void hand_over(ReplayResult& result) override {
     result.first_seconds = std::max(result.first_seconds, first_seconds_);
     result.n_u += counter_.n_u, result.n_v += counter_.n_v, result.n_p += counter_.n_p;
+    result.considered += counter_.considered;
     result.front += entries_;
     result.hits += answers_.hits;
     answers_.hand_over(result);

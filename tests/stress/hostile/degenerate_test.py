@@ -110,6 +110,25 @@ class Replay(ProgramTest):
                     touching = self.replay(["size.off"], trace, "touching", *way)
                     self.assertEqual(touching.tolist(), [[1], [0]], (size, way))
 
+    def test_skipped_work_is_told(self):
+        """Of what a strategy need not do, by counting what it did and what recursion does."""
+        far = poses(5, 3, 50)
+        for strategy in names_of("strategies"):
+            self.replay(["tetrahedron.off"], far, "contacts", "--strategy", strategy, "--count", "on")
+            skipped = json.loads((self.folder / "out.json").read_text())["skipped"]
+            parts = {what: (part["done"], part["of"]) for what, part in skipped.items()}
+            still = strategy in ("margins", "adaptive")
+            with self.subTest(strategy=strategy):
+                considered, pairs = parts["pairs_considered"]
+                self.assertEqual(pairs, 5 * 3)
+                self.assertEqual(considered, 3 if strategy == "margins" else considered)
+                self.assertTrue(0 < considered <= pairs if still else considered == pairs)
+                self.assertEqual(parts["volume_tests"][1], 5 * 3)
+                self.assertEqual(parts["triangle_tests"], (0, 0))
+                # One root in seven of what each of three bodies has, in each of five frames.
+                self.assertEqual(parts["volumes_posed"][1], 5 * 3 * 7)
+                self.assertLessEqual(parts["volumes_posed"][0], 5 * 3)
+
     def test_totals_on_standard_output(self):
         self.write("poses.npy", poses(2, 2))
         said = self.take("replay", "--mesh", "triangle.off", "--trace", "poses.npy")
