@@ -45,6 +45,17 @@ concept FittedToTriangles = requires(std::span<const Vec3<double>> points,
   { V::enclosing(points, triangles) } -> std::same_as<V>;
 };
 
+/// A volume with a second construction, dearer and tighter.
+template <class V>
+concept FittedTightly = requires(std::span<const Vec3<double>> points,
+                                 std::span<const Triangle> triangles) {
+  { V::tight(points, triangles) } -> std::same_as<V>;
+};
+
+/// Which construction volumes are fitted by: the published one, or the tighter one of those that
+/// have one.
+enum class Fit { published, tight };
+
 /// A solid that encloses points and can be compared cheaply with its own kind.
 ///
 /// A volume is a plain aggregate of scalars S (float, double, or a SIMD batch of either), with free

@@ -28,6 +28,11 @@ struct TopDownMedian : Down<SplitAxis::longest, SplitAt::median> {
   static constexpr std::string_view name = "top-down-median";
   static constexpr std::string_view description = "longest axis, equal counts";
 };
+struct TopDownMiddle : Down<SplitAxis::longest, SplitAt::middle> {
+  static constexpr std::string_view name = "top-down-middle";
+  static constexpr std::string_view description =
+      "longest axis, in the middle of the centroids' box, as octrees cut space (Hubbard 1996)";
+};
 struct TopDownSurfaceArea : Down<SplitAxis::longest, SplitAt::surface_area> {
   static constexpr std::string_view name = "top-down-surface-area";
   static constexpr std::string_view description =
@@ -50,6 +55,6 @@ struct BottomUpLocal {
 }  // namespace builds
 
 using Builds = TypeList<builds::TopDownPrincipal, builds::TopDownMean, builds::TopDownMedian,
-                        builds::TopDownSurfaceArea, builds::BottomUpLocal>;
+                        builds::TopDownMiddle, builds::TopDownSurfaceArea, builds::BottomUpLocal>;
 
 }  // namespace bvlab

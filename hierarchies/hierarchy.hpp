@@ -26,17 +26,35 @@ class Hierarchy {
   /// Fits V to a topology of the mesh, which must have a triangle. A parent takes the smaller of
   /// what encloses its two children and what encloses its triangles (quinlan1994efficient).
   /// O(n log n) for balanced trees.
-  Hierarchy(const TriangleMesh& mesh, const Topology& topology)
+  Hierarchy(const TriangleMesh& mesh, const Topology& topology, Fit fit = Fit::published)
       : primitives_(topology.primitives), volumes_(topology.nodes.size()) {
     nodes_.reserve(topology.nodes.size());
     for (const auto& [first, count] : topology.nodes) nodes_.push_back({first, count, 0});
     ranges_of(topology);
-    for (std::size_t i = nodes_.size(); i-- > 0;) fit(i, mesh);
-    for (const auto& v : volumes_) reach_ = std::max(reach_, static_cast<double>(reach_of(v)));
-    for (const auto& v : mesh.vertices) reach_ = std::max(reach_, v.stableNorm());
-    reach_ *= 1 + 8 * unit_roundoff<typename V::scalar>;
+    for (std::size_t i = nodes_.size(); i-- > 0;) {
+      enclose(i, begin_[i], end_[i], mesh, fit);
+      if (const Node& node = nodes_[i]; node.count == 0)
+        take_smaller(i, merge(volumes_[node.first], volumes_[node.first + 1]));
+      nodes_[i].size = size_of(volumes_[i]);
+    }
     surround(mesh);
     begin_.clear(), end_.clear();
+  }
+
+  /// Fits the volumes again to the same triangles, whose corners have moved: leaves by the
+  /// published construction, parents around their children (vandenbergen1997efficient). O(n), and
+  /// the looser the more the mesh has changed its shape. Bodies over it, and strategies that have
+  /// run on them, are to be made anew.
+  void refit(const TriangleMesh& mesh) {
+    for (std::size_t i = nodes_.size(); i-- > 0;) {
+      if (const Node& node = nodes_[i]; node.count > 0) {
+        enclose(i, node.first, node.first + node.count, mesh, Fit::published);
+      } else {
+        volumes_[i] = merge(volumes_[node.first], volumes_[node.first + 1]);
+      }
+      nodes_[i].size = size_of(volumes_[i]);
+    }
+    surround(mesh);
   }
 
   std::size_t size() const { return nodes_.size(); }
@@ -54,6 +72,10 @@ class Hierarchy {
 
  private:
   void surround(const TriangleMesh& mesh) {
+    reach_ = radius_ = 0;
+    for (const auto& v : volumes_) reach_ = std::max(reach_, static_cast<double>(reach_of(v)));
+    for (const auto& v : mesh.vertices) reach_ = std::max(reach_, v.stableNorm());
+    reach_ *= 1 + 8 * unit_roundoff<typename V::scalar>;
     Vec3<double> low = mesh.corners(0)[0], high = low;
     for (const auto& triangle : mesh.triangles)
       for (const auto v : triangle)
@@ -75,28 +97,35 @@ class Hierarchy {
     }
   }
 
-  void fit(std::size_t i, const TriangleMesh& mesh) {
+  void enclose(std::size_t i, std::uint32_t begin, std::uint32_t end, const TriangleMesh& mesh,
+               Fit fit) {
     corners_.clear();
-    for (std::uint32_t place = begin_[i]; place < end_[i]; ++place)
+    for (std::uint32_t place = begin; place < end; ++place)
       for (const auto vertex : mesh.triangles[primitives_[place]]) corners_.push_back(vertex);
     std::sort(corners_.begin(), corners_.end());
     corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
     points_.clear();
     for (const auto vertex : corners_) points_.push_back(mesh.vertices[vertex]);
-    if constexpr (FittedToTriangles<V>) {
+    if constexpr (FittedToTriangles<V> || FittedTightly<V>) {
       triangles_.clear();
-      for (std::uint32_t place = begin_[i]; place < end_[i]; ++place)
+      for (std::uint32_t place = begin; place < end; ++place)
         triangles_.push_back(mesh.corners(primitives_[place]));
+    }
+    if constexpr (FittedTightly<V>) {
+      if (fit == Fit::tight) {
+        volumes_[i] = V::tight(points_, triangles_);
+        return;
+      }
+    }
+    if constexpr (FittedToTriangles<V>)
       volumes_[i] = V::enclosing(points_, triangles_);
-    } else {
+    else
       volumes_[i] = V::enclosing(points_);
-    }
-    if (const Node& node = nodes_[i]; node.count == 0) {
-      const V both = merge(volumes_[node.first], volumes_[node.first + 1]);
-      // Written so that a size that is not a number loses.
-      if (!(size_of(volumes_[i]) <= size_of(both))) volumes_[i] = both;
-    }
-    nodes_[i].size = size_of(volumes_[i]);
+  }
+
+  void take_smaller(std::size_t i, const V& other) {
+    // Written so that a size that is not a number loses.
+    if (!(size_of(volumes_[i]) <= size_of(other))) volumes_[i] = other;
   }
 
   std::vector<std::uint32_t> primitives_;

@@ -14,8 +14,8 @@
 #include <limits>
 
 #include "experiments/runner/coherence.hpp"
+#include "experiments/runner/hierarchies_of.hpp"
 #include "experiments/runner/triangle_test.hpp"
-#include "hierarchies/builds.hpp"
 #include "hierarchies/volumes.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
@@ -77,11 +77,7 @@ class RebuildSearch {
 template <BoundingVolume V>
 BestRebuilds best_rebuilds_of(std::span<const TriangleMesh> meshes, const Trace& trace,
                               const Variant& variant) {
-  std::vector<Hierarchy<V>> hierarchies;
-  Builds::with(variant.build, [&]<class Build>(std::type_identity<Build>) {
-    for (const auto& mesh : meshes)
-      hierarchies.emplace_back(mesh, Build::topology(mesh, variant.leaf_size));
-  });
+  const auto hierarchies = hierarchies_of<V>(meshes, variant);
   std::vector<std::vector<Pose>> poses(trace.frames, std::vector<Pose>(trace.objects));
   for (std::size_t frame = 0; frame < trace.frames; ++frame) trace.poses(frame, poses[frame]);
   BestRebuilds sum;

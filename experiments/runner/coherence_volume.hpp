@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "experiments/runner/coherence.hpp"
+#include "experiments/runner/hierarchies_of.hpp"
 #include "experiments/runner/triangle_test.hpp"
-#include "hierarchies/builds.hpp"
 #include "hierarchies/volumes.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
@@ -54,11 +54,8 @@ class CoherenceMeter {
   CoherenceMeter(std::span<const TriangleMesh> meshes, std::size_t objects, const Variant& variant)
       : pairs_(all_object_pairs(static_cast<std::uint32_t>(objects))),
         fronts_(pairs_.size()),
-        contacts_(variant.query == Contacts::name) {
-    Builds::with(variant.build, [&]<class Build>(std::type_identity<Build>) {
-      for (const auto& mesh : meshes)
-        hierarchies_.emplace_back(mesh, Build::topology(mesh, variant.leaf_size));
-    });
+        contacts_(variant.query == Contacts::name),
+        hierarchies_(hierarchies_of<V>(meshes, variant)) {
     for (const auto& mesh : meshes) {
       middles_.emplace_back(mesh);
       leaf_sizes_.push_back(leaf_size_of(mesh));

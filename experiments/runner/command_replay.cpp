@@ -75,6 +75,7 @@ nlohmann::ordered_json totals_of(const Arguments& arguments, std::span<const Tri
           {"query", arguments.variant.query},
           {"build", arguments.variant.build},
           {"leaf_size", arguments.variant.leaf_size},
+          {"fit", arguments.variant.fit},
           {"precision", arguments.variant.precision},
           {"threads", arguments.threads},
           {"skipped", skipped(arguments, meshes, trace, result)}};
@@ -106,6 +107,7 @@ nlohmann::ordered_json totals_of(const Arguments& arguments, const Trace& trace,
           {"query", arguments.variant.query},
           {"build", arguments.variant.build},
           {"leaf_size", arguments.variant.leaf_size},
+          {"fit", arguments.variant.fit},
           {"precision", arguments.variant.precision}};
 }
 
@@ -190,6 +192,8 @@ void add_replay(CLI::App& app) {
   command->add_option("--query", arguments->variant.query, "see `bvlab list queries`")
       ->capture_default_str();
   command->add_option("--build", arguments->variant.build, "see `bvlab list builds`")
+      ->capture_default_str();
+  command->add_option("--fit", arguments->variant.fit, "of volumes: published, or tight")
       ->capture_default_str();
   command->add_option("--leaf-size", arguments->variant.leaf_size, "triangles in a leaf, at most")
       ->check(whole_number(1, 1u << 16))

@@ -312,8 +312,8 @@ const Settings& default_parameters() {
     for (const auto& setting :
          {Setting{"volume", "sphere"}, Setting{"strategy", "recursive"},
           Setting{"query", "touching"}, Setting{"build", "top-down-principal"},
-          Setting{"leaf_size", "1"}, Setting{"precision", "exact"}, Setting{"relative_error", "0"},
-          Setting{"peer", ""}})
+          Setting{"leaf_size", "1"}, Setting{"fit", "published"}, Setting{"precision", "exact"},
+          Setting{"relative_error", "0"}, Setting{"peer", ""}})
       settings.push_back(setting);
     return settings;
   }();

@@ -51,8 +51,9 @@ struct SettingOption {
 
 /// Parameters that say how a trace is answered; all the others say which trace it is.
 bool is_of_variant(const std::string& name) {
-  static const std::set<std::string> names{"volume",    "strategy",  "query",          "build",
-                                           "leaf_size", "precision", "relative_error", "peer"};
+  static const std::set<std::string> names{"volume",    "strategy",       "query",
+                                           "build",     "leaf_size",      "fit",
+                                           "precision", "relative_error", "peer"};
   return names.contains(name);
 }
 
@@ -69,6 +70,7 @@ Variant variant_of(const Cell& cell) {
           cell["query"],
           cell["build"],
           number<std::uint32_t>("leaf_size", cell["leaf_size"]),
+          cell["fit"],
           cell["precision"],
           number<double>("relative_error", cell["relative_error"])};
 }
@@ -236,7 +238,7 @@ class Experiment {
   /// What says which trace it is, and what of a variant its front depends on.
   static bool matters_to_front(const std::string& name) {
     return !is_of_variant(name) || name == "volume" || name == "query" || name == "build" ||
-           name == "leaf_size";
+           name == "leaf_size" || name == "fit";
   }
   static Row front_key(const Cell& cell) {
     Row row;

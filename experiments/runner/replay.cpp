@@ -34,6 +34,8 @@ void check(const Variant& variant) {
   check_name<Queries>("--query", variant.query);
   check_name<Precisions>("--precision", variant.precision);
   check_name<Builds>("--build", variant.build);
+  if (variant.fit != "published" && variant.fit != "tight")
+    throw Unusable("--fit " + variant.fit + ": unknown; there are published, tight");
   if (variant.leaf_size < 1 || variant.leaf_size > 1u << 16)
     throw Unusable("--leaf-size " + std::to_string(variant.leaf_size) + ": must be 1 to 65536");
   if (!(variant.relative_error >= 0) || !std::isfinite(variant.relative_error))

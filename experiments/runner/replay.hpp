@@ -24,6 +24,7 @@ struct Variant {
   std::string query = "touching";
   std::string build = "top-down-principal";
   std::uint32_t leaf_size = 1;
+  std::string fit = "published";  ///< or "tight", see bounding_volume.hpp
   std::string precision = "exact";
   double relative_error = 0;  ///< of distances
 };

@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "experiments/runner/hierarchies_of.hpp"
 #include "experiments/runner/triangle_test.hpp"
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes.hpp"
@@ -33,8 +34,8 @@ template <class V>
 struct Model {
   Hierarchy<V> hierarchy;
   PatchSizes sizes;
-  Model(const TriangleMesh& mesh, const Topology& topology)
-      : hierarchy(mesh, topology), sizes(mesh, hierarchy) {}
+  Model(const TriangleMesh& mesh, const Topology& topology, Fit fit)
+      : hierarchy(mesh, topology, fit), sizes(mesh, hierarchy) {}
 };
 
 void note(BudgetedResult& result, const BudgetedAnswer& answer) {
@@ -54,7 +55,7 @@ void play(std::span<const TriangleMesh> meshes, const Trace& trace, const Varian
   std::vector<Model<V>> models;
   Builds::with(variant.build, [&]<class Build>(std::type_identity<Build>) {
     for (const auto& mesh : meshes)
-      models.emplace_back(mesh, Build::topology(mesh, variant.leaf_size));
+      models.emplace_back(mesh, Build::topology(mesh, variant.leaf_size), fit_of(variant));
   });
   std::vector<Body<V>> bodies;
   for (std::size_t i = 0; i < trace.objects; ++i)

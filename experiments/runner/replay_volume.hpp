@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "experiments/runner/hierarchies_of.hpp"
 #include "experiments/runner/replay_shares.hpp"
 #include "experiments/runner/strategy_text.hpp"
 #include "experiments/runner/triangle_test.hpp"
-#include "hierarchies/builds.hpp"
 #include "hierarchies/volumes.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
@@ -169,11 +169,7 @@ ReplayResult replay_with(std::span<const TriangleMesh> meshes, const Trace& trac
                          const Variant& variant, const ReplayOptions& options) {
   ReplayResult result;
   const auto start = Clock::now();
-  std::vector<Hierarchy<V>> hierarchies;
-  Builds::with(variant.build, [&]<class Build>(std::type_identity<Build>) {
-    for (const auto& mesh : meshes)
-      hierarchies.emplace_back(mesh, Build::topology(mesh, variant.leaf_size));
-  });
+  const auto hierarchies = hierarchies_of<V>(meshes, variant);
   std::vector<Shape<V>> shapes;
   for (std::size_t i = 0; i < trace.objects; ++i)
     shapes.push_back({&meshes[i % meshes.size()], &hierarchies[i % meshes.size()]});

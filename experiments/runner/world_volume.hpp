@@ -2,10 +2,10 @@
 /// Whole scenes for one volume, compiled by itself: every strategy under it.
 #pragma once
 
+#include "experiments/runner/hierarchies_of.hpp"
 #include "experiments/runner/strategy_text.hpp"
 #include "experiments/runner/triangle_test.hpp"
 #include "experiments/runner/worlds.hpp"
-#include "hierarchies/builds.hpp"
 #include "hierarchies/volumes.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries/touching.hpp"
@@ -21,11 +21,8 @@ struct Hierarchies {
   std::vector<Hierarchy<V>> all;
   std::vector<Shape<V>> shapes;
 
-  Hierarchies(std::span<const TriangleMesh> meshes, std::size_t objects, const Variant& variant) {
-    Builds::with(variant.build, [&]<class Build>(std::type_identity<Build>) {
-      for (const auto& mesh : meshes)
-        all.emplace_back(mesh, Build::topology(mesh, variant.leaf_size));
-    });
+  Hierarchies(std::span<const TriangleMesh> meshes, std::size_t objects, const Variant& variant)
+      : all(hierarchies_of<V>(meshes, variant)) {
     for (std::size_t i = 0; i < objects; ++i)
       shapes.push_back({&meshes[i % meshes.size()], &all[i % all.size()]});
   }

@@ -23,7 +23,7 @@ enum class SplitAxis { longest, principal };
 
 /// Where: equal counts on both sides, the mean of the centroids, or the least expected cost by the
 /// surface-area heuristic over 32 bins (goldsmith1987automatic, wald2007fast).
-enum class SplitAt { median, mean, surface_area };
+enum class SplitAt { median, mean, middle, surface_area };
 
 struct TopDown {
   SplitAxis axis = SplitAxis::longest;
@@ -82,8 +82,9 @@ class Splitter {
     }
     std::size_t left = 0;
     if (low < high && options_.at != SplitAt::median) {
-      const double cut = options_.at == SplitAt::mean ? sum / static_cast<double>(range.size())
-                                                      : cheapest_cut(range, low, high);
+      const double cut = options_.at == SplitAt::mean     ? sum / static_cast<double>(range.size())
+                         : options_.at == SplitAt::middle ? low / 2 + high / 2
+                                                          : cheapest_cut(range, low, high);
       left = static_cast<std::size_t>(
           std::partition(range.begin(), range.end(), [&](auto i) { return keys_[i] < cut; }) -
           range.begin());

@@ -22,6 +22,7 @@
 
 #include "hierarchies/geometry/placement.hpp"
 #include "hierarchies/geometry/principal_axes.hpp"
+#include "hierarchies/geometry/tight_axes.hpp"
 
 namespace bvlab {
 
@@ -44,6 +45,11 @@ struct Obb {
   static Obb enclosing(std::span<const Vec3<double>> points,
                        std::span<const Triangle> triangles) requires(!Batched<S>) {
     return along(principal_axes(points, triangles), points);
+  }
+  /// Of the smallest box that is found from these axes on.
+  static Obb tight(std::span<const Vec3<double>> points,
+                   std::span<const Triangle> triangles) requires(!Batched<S>) {
+    return along(tight_axes(principal_axes(points, triangles), points), points);
   }
 
   /// The smallest box with these axes (orthonormal rows) around the points.

@@ -16,6 +16,7 @@
 
 #include "hierarchies/geometry/placement.hpp"
 #include "hierarchies/geometry/principal_axes.hpp"
+#include "hierarchies/geometry/tight_axes.hpp"
 
 namespace bvlab {
 
@@ -39,6 +40,11 @@ struct Rss {
   static Rss enclosing(std::span<const Vec3<double>> points,
                        std::span<const Triangle> triangles) requires(!Batched<S>) {
     return along(principal_axes(points, triangles), points);
+  }
+  /// Of the smallest box that is found from these axes on.
+  static Rss tight(std::span<const Vec3<double>> points,
+                   std::span<const Triangle> triangles) requires(!Batched<S>) {
+    return along(tight_axes(principal_axes(points, triangles), points), points);
   }
 
   /// The rectangle in the plane of the first two directions (orthonormal rows), halfway through the

@@ -2,6 +2,7 @@
 /// Every volume over every build: a tree with all triangles in it once, each node around its own.
 #include <gtest/gtest.h>
 
+#include <random>
 #include <set>
 
 #include "experiments/scenes/formula_mesh.hpp"
@@ -64,17 +65,78 @@ std::vector<std::uint32_t> check(const Hierarchy<V>& h, std::uint32_t node,
   return below;
 }
 
+template <class V>
+void check_all(const Hierarchy<V>& h, const TriangleMesh& mesh, std::uint32_t leaf_size) {
+  std::size_t visited = 0;
+  const auto all = check(h, 0, mesh, leaf_size, visited);
+  EXPECT_EQ(visited, h.size());
+  EXPECT_EQ(all.size(), mesh.triangles.size());
+  EXPECT_EQ(std::set(all.begin(), all.end()).size(), mesh.triangles.size());
+}
+
 TYPED_TEST(HierarchyLaws, EveryTriangleStandsInOneLeafAndInsideAllAbove) {
   for (const auto& mesh : hostile_meshes())
     for (const std::uint32_t leaf_size : {1u, 2u, 7u})
       Builds::for_each([&](auto build) {
         const Hierarchy<TypeParam> h(mesh, decltype(build)::type::topology(mesh, leaf_size));
-        std::size_t visited = 0;
-        const auto all = check(h, 0, mesh, leaf_size, visited);
-        EXPECT_EQ(visited, h.size());
-        EXPECT_EQ(all.size(), mesh.triangles.size());
-        EXPECT_EQ(std::set(all.begin(), all.end()).size(), mesh.triangles.size());
+        check_all(h, mesh, leaf_size);
       });
+}
+
+TYPED_TEST(HierarchyLaws, SoItIsWithTightVolumes) {
+  for (const auto& mesh : hostile_meshes())
+    check_all(Hierarchy<TypeParam>(mesh, builds::TopDownPrincipal::topology(mesh, 2), Fit::tight),
+              mesh, 2);
+}
+
+/// Vertices move a little, then anywhere, then onto one point.
+TYPED_TEST(HierarchyLaws, SoItIsAfterARefit) {
+  for (auto mesh : hostile_meshes()) {
+    Hierarchy<TypeParam> h(mesh, builds::TopDownPrincipal::topology(mesh, 2));
+    std::mt19937 random(1);
+    for (const double amount : {1e-3, 10.0, 1e7}) {
+      std::uniform_real_distribution<double> shift(-amount, amount);
+      for (auto& v : mesh.vertices) v += Vec3<double>(shift(random), shift(random), shift(random));
+      h.refit(mesh);
+      check_all(h, mesh, 2);
+    }
+    for (auto& v : mesh.vertices) v = Vec3<double>(1, 2, 3);
+    h.refit(mesh);
+    check_all(h, mesh, 2);
+    EXPECT_LT(h.radius(), 1e-12);
+  }
+}
+
+/// What a tight fit is for: over meshes whose patches are no ellipsoids, less surface.
+TEST(TightBoxes, AreSmallerThanThoseOfPrincipalAxes) {
+  const auto half_surface = [](const Hierarchy<Obb<float>>& h) {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < h.size(); ++i)
+      sum += detail::half_surface(h.volume(i).half.template cast<double>());
+    return sum;
+  };
+  for (const char* name : {"star", "torus", "knot"}) {
+    const TriangleMesh mesh = formula_mesh(name, 500);
+    const Topology topology = builds::TopDownPrincipal::topology(mesh, 1);
+    EXPECT_LT(half_surface(Hierarchy<Obb<float>>(mesh, topology, Fit::tight)),
+              0.95 * half_surface(Hierarchy<Obb<float>>(mesh, topology)))
+        << name;
+  }
+}
+
+/// A turned box is found again: to its edges from principal axes that are not its own.
+TEST(TightBoxes, FindATurnedBox) {
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  std::vector<Vec3<double>> points;
+  for (int i = 0; i < 8; ++i)
+    points.push_back(turn * Vec3<double>(i & 1 ? 3 : 0, i & 2 ? 2 : 0, i & 4 ? 1 : 0));
+  // Many points at one corner pull the principal axes away.
+  for (int i = 0; i < 50; ++i) points.push_back(points[7]);
+  const auto box = Obb<double>::along(tight_axes(principal_axes(points), points), points);
+  EXPECT_NEAR(box.half[0], 1.5, 1e-9);
+  EXPECT_NEAR(box.half[1], 1.0, 1e-9);
+  EXPECT_NEAR(box.half[2], 0.5, 1e-9);
 }
 
 }  // namespace

@@ -80,6 +80,15 @@ class Replay(ProgramTest):
                 found = self.replay(every, trace, "contacts", *way)
                 np.testing.assert_array_equal(found, expected, str(way))
 
+    def test_every_volume_fitted_tightly(self):
+        trace = np.concatenate([poses(2, 4, 0), poses(2, 4, 0.5)])
+        for query in names_of("queries"):
+            for volume in names_of("volumes"):
+                way = ["--volume", volume, "--leaf-size", 2]
+                expected = self.replay(list(MESHES), trace, query, *way)
+                found = self.replay(list(MESHES), trace, query, *way, "--fit", "tight")
+                np.testing.assert_array_equal(found, expected, f"{query} {volume}")
+
     def test_few_objects_and_frames(self):
         for query in names_of("queries"):
             for strategy in names_of("strategies"):
