@@ -1,0 +1,85 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a tighter construction and another build gain: tests and time over those of the published
+construction, split along the principal axis.
+
+usage: fits.py RECORD [--out FOLDER]
+
+RECORD holds fits.csv.
+"""
+
+import argparse
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+
+import style
+
+BASE = ("top-down-principal", "published")
+
+
+def read(record):
+    """One row for each polygons, query, volume, build and fit: N_v and time over the base's."""
+    rows = pd.read_csv(Path(record) / "fits.csv", keep_default_na=False)
+    if (rows.hits.groupby([rows.polygons, rows["query"]]).nunique() != 1).any():
+        raise SystemExit(f"{record}: answers differ")
+    keys = ["polygons", "query", "volume", "build", "fit"]
+    rows = rows.groupby(keys, sort=False, as_index=False).median(numeric_only=True)
+    base = rows[(rows.build == BASE[0]) & (rows.fit == BASE[1])]
+    rows = rows.merge(base[["polygons", "query", "volume", "n_v", "time_ns", "build_ns"]],
+                      on=["polygons", "query", "volume"], suffixes=("", "_base"))
+    for measure in ("n_v", "time_ns", "build_ns"):
+        rows[measure] /= rows[measure + "_base"]
+    return rows
+
+
+def draw(rows, out):
+    queries, builds = list(dict.fromkeys(rows["query"])), list(dict.fromkeys(rows.build))
+    rows = rows[rows.polygons == rows.polygons.max()]
+    figure, axes = plt.subplots(2, len(queries), figsize=(7.2, 4.6), sharex=True, sharey="row")
+    places = np.arange(len(builds))
+    for column, query in enumerate(queries):
+        part = rows[rows["query"] == query]
+        for volume in dict.fromkeys(rows.volume):
+            look = style.STYLES[volume]
+            for fit, filled in (("published", True), ("tight", False)):
+                line = part[(part.volume == volume) & (part.fit == fit)].set_index("build")
+                if fit == "tight" and volume not in ("obb", "rss"):
+                    continue
+                for axis, measure in zip(axes[:, column], ("n_v", "time_ns")):
+                    axis.plot(places, line[measure].reindex(builds), marker=look["marker"],
+                              color=look["color"], linestyle="-" if filled else ":",
+                              markerfacecolor=look["color"] if filled else "white", markersize=4,
+                              label=f"{volume}, tight" if fit == "tight" else volume)
+        axes[0, column].set_title(query)
+        for axis in axes[:, column]:
+            axis.axhline(1, color="#8f8f8f", lw=0.8)
+            axis.set_xticks(places, [b.replace("top-down-", "") for b in builds], rotation=60,
+                            ha="right")
+    axes[0, 0].set_ylabel("tests of volumes, relative")
+    axes[1, 0].set_ylabel("time, relative")
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="lower center", ncols=8, frameon=False, columnspacing=1)
+    figure.tight_layout(rect=(0, 0.06, 1, 1))
+    style.save(figure, out, "fits")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("record")
+    parser.add_argument("--out")
+    arguments = parser.parse_args()
+    rows = read(arguments.record)
+    print("Over top-down-principal, published (geometric mean over queries and polygons):")
+    for measure in ("n_v", "time_ns", "build_ns"):
+        table = np.exp(np.log(rows[measure]).groupby([rows.build, rows.fit, rows.volume],
+                                                     sort=False).mean()).unstack()
+        print(measure)
+        print(table.round(2).to_string())
+    draw(rows, arguments.out or Path(arguments.record) / "figures")
+
+
+if __name__ == "__main__":
+    main()
