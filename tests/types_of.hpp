@@ -15,7 +15,13 @@ struct TypesOf;
 template <class... T>
 struct TypesOf<TypeList<T...>> {
   using type = ::testing::Types<T...>;
-  using in_both_precisions = ::testing::Types<Over<T, float>..., Over<T, double>...>;
+};
+
+template <class List>
+struct InBothPrecisions;
+template <class... T>
+struct InBothPrecisions<TypeList<T...>> {
+  using type = ::testing::Types<Over<T, float>..., Over<T, double>...>;
 };
 }  // namespace detail
 
@@ -23,6 +29,6 @@ template <class List>
 using TypesOf = typename detail::TypesOf<List>::type;
 /// Every volume over float and over double.
 template <class List>
-using TypesInBothPrecisions = typename detail::TypesOf<List>::in_both_precisions;
+using TypesInBothPrecisions = typename detail::InBothPrecisions<List>::type;
 
 }  // namespace bvlab
