@@ -16,7 +16,8 @@
 /// included. A front too long by then, because bodies moved apart, is replaced; and one of which a
 /// jump has made more entries due than the last rebuild took tests is replaced at once.
 ///
-/// A run in which nothing is due costs some additions; it is a matter of tens of nanoseconds.
+/// A run in which nothing is due costs some additions; it is a matter of tens of nanoseconds. When
+/// the query is another than last time, all is due; the parameters of a query are to stay.
 #pragma once
 
 #include <string_view>
@@ -37,6 +38,8 @@ class Margins {
   Walked run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
     if (!front_.empty() && unchanged(a, b, query)) return {};
     if (front_.empty() || worn_out_) rebuild(a, b);
+    // What one query learned of triangles is not what another asks: the first hit of an entry, say.
+    if (asked_ != &Query::name) front_.expire();
     if (repeat_hits(query)) {
       asked_ = &Query::name;
       quiet_until_ = front_.hits().front().deadline;
