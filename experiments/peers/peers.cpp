@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/peers/peers.hpp"
 
+#include "experiments/closest_features/closest_features.hpp"
 #include "experiments/peers/bullet.hpp"
 #include "experiments/peers/cgal.hpp"
 #include "experiments/peers/embree.hpp"
 #include "experiments/peers/fcl.hpp"
+#include "experiments/peers/fcl_convex.hpp"
 #include "experiments/peers/ode.hpp"
 
 namespace bvlab {
@@ -44,6 +46,17 @@ constexpr Peer list[] = {
      "that moved is refitted",
      meeting, replay_embree},
     {"cgal", "CGAL 5.5: Rigid_triangle_mesh_collision_detection", yes_or_no, replay_cgal},
+    {"fcl-gjk", "FCL 0.7: its own GJK, from the last direction, to 1e-10; convex solids only",
+     "distance", replay_fcl_gjk},
+    {"libccd-gjk", "FCL 0.7 on libccd 2.1: GJK from scratch, to 1e-10; convex solids only",
+     "distance", replay_libccd_gjk},
+    // Ours, but no hierarchy: beside them, on convex meshes.
+    {"gjk", "GJK over all vertices, from scratch; convex solids only", "touching distance",
+     replay_closest_features<ClosestFeatures::gjk>},
+    {"gjk-coherent", "Cameron's GJK: climbs from the last answer; convex solids only",
+     "touching distance", replay_closest_features<ClosestFeatures::gjk_coherent>},
+    {"v-clip", "V-Clip: closest features, from the last answer; convex solids only",
+     "touching distance", replay_closest_features<ClosestFeatures::v_clip>},
 };
 
 }  // namespace
