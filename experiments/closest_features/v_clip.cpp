@@ -234,7 +234,10 @@ bool VClip::certain(const Witness& witness) const {
     const Vec3<double> on = side == 0 ? on_a : on_b,
                        towards = side == 0 ? on_b - on_a : on_a - on_b;
     const auto& corners = witness.corners[static_cast<std::size_t>(side)];
-    for (std::size_t k = 0; k < corners.count; ++k)
+    for (std::size_t k = 0; k < corners.count; ++k) {
+      // No neighbour of a vertex within a flat piece of surface lies beyond it, on either side of
+      // that: the other point must be on the outer one.
+      if (!any_face_sees(side, corners.vertices[k], towards)) return false;
       for (const auto e : of(side).edges_at(corners.vertices[k])) {
         const Vec3<double> x =
             standing_->in_world(side, of(side).other_end(e, corners.vertices[k]));
@@ -244,8 +247,20 @@ bool VClip::certain(const Witness& witness) const {
                             16 * unit_roundoff<double> * distance * (x.norm() + on.norm());
         if (towards.dot(x - on) > room) return false;
       }
+    }
   }
   return true;
+}
+
+bool VClip::any_face_sees(int side, std::uint32_t vertex, const Vec3<double>& towards) const {
+  const Polytope& p = of(side);
+  const Pose& pose = side == 0 ? standing_->pose_a : standing_->pose_b;
+  const Vec3<double> there = pose.rotation.transpose() * towards;
+  const auto edges = p.edges_at(vertex);
+  return std::any_of(edges.begin(), edges.end(), [&](std::uint32_t e) {
+    return there.dot(p.faces()[p.edges()[e].left].normal) > 0 ||
+           there.dot(p.faces()[p.edges()[e].right].normal) > 0;
+  });
 }
 
 Witness VClip::nearest(const Standing& standing, Effort& effort) {

@@ -59,6 +59,8 @@ class VClip {
   template <class Slope>
   bool follow(int side, const Clipped& clipped, const Slope& slope);
   Witness witness(Step last) const;
+  /// Whether a face at the vertex looks in this direction (of the world).
+  bool any_face_sees(int side, std::uint32_t vertex, const Vec3<double>& towards) const;
   bool certain(const Witness& witness) const;
 
   const Standing* standing_ = nullptr;
