@@ -75,9 +75,8 @@ class Adaptive {
     }
     recursion_ = recursion_ == 0 ? cost : 0.75 * recursion_ + 0.25 * cost;
     --until_list_, --until_margins_;
-    // A step of a tenth of the bodies closes most gaps there are, but not those of bodies far
-    // apart.
-    const bool small = step_ < 0.1 * radius || cost < plain.run + 8 * plain.volumes;
+    // Bodies far apart have gaps that no step closes.
+    const bool small = step_ < too_far * radius || cost < plain.run + 8 * plain.volumes;
     if ((until_margins_ <= 0 && small) || step_ < failed_step_ / 2)
       begin(Used::margins);
     else if (until_list_ <= 0)
