@@ -4,13 +4,13 @@
 /// Costs are counted, not timed, so that runs repeat: pairs of volumes and of triangles tested,
 /// each at what it costs in that strategy (`price`; the unit is about a nanosecond with spheres).
 /// What recursion costs is known while it is in use. Another strategy is tried for at most eight
-/// runs: it is given up as soon as one run after its first costs more than recursion, and taken
-/// over if all eight together, its building included, were cheaper. A failed trial of a list costs
-/// a fifth of a run, one of margins about four: so each failure doubles the time until the next
-/// trial, from 16 runs and from 128, and none is made after large steps; but when the motion has
-/// fallen to half of what it was at the failure, margins are tried at once. While a list or margins
-/// are in use, recursion is asked for a run when they have become dearer than it was, and takes
-/// over if it is still cheaper. Both stay valid meanwhile.
+/// runs: it is given up as soon as one run after its first costs twice what recursion does, or all
+/// together, its building included, more than eight runs of that; else it is taken over. Each
+/// failure doubles the time until the next trial, from 16 runs for a list and from 128 for margins,
+/// which are dear to build and not tried after large steps; but when the motion has fallen to half
+/// of what it was at the failure, margins are tried at once. While a list or margins are in use,
+/// recursion is asked for a run when they have become dearer than it was, and takes over if it is
+/// still cheaper. Both stay valid meanwhile.
 #pragma once
 
 #include <algorithm>
@@ -93,8 +93,8 @@ class Adaptive {
     ++runs_;
     if (runs_ <= trial) {
       other_ += cost / trial;
-      if (runs_ > 1 && cost > recursion_) return fail();
-      if (runs_ == trial && other_ > recursion_) return fail();
+      if (runs_ > 1 && cost > 2 * recursion_) return fail();
+      if (other_ > recursion_) return fail();
       if (runs_ == trial) succeed();
       return;
     }
