@@ -47,16 +47,16 @@ constexpr Peer list[] = {
      meeting, replay_embree},
     {"cgal", "CGAL 5.5: Rigid_triangle_mesh_collision_detection", yes_or_no, replay_cgal},
     {"fcl-gjk", "FCL 0.7: its own GJK, from the last direction, to 1e-10; convex solids only",
-     "distance", replay_fcl_gjk},
+     "distance", replay_fcl_gjk, true},
     {"libccd-gjk", "FCL 0.7 on libccd 2.1: GJK from scratch, to 1e-10; convex solids only",
-     "distance", replay_libccd_gjk},
+     "distance", replay_libccd_gjk, true},
     // Ours, but no hierarchy: beside them, on convex meshes.
     {"gjk", "GJK over all vertices, from scratch; convex solids only", "touching distance",
-     replay_closest_features<ClosestFeatures::gjk>},
+     replay_closest_features<ClosestFeatures::gjk>, true},
     {"gjk-coherent", "Cameron's GJK: climbs from the last answer; convex solids only",
-     "touching distance", replay_closest_features<ClosestFeatures::gjk_coherent>},
+     "touching distance", replay_closest_features<ClosestFeatures::gjk_coherent>, true},
     {"v-clip", "V-Clip: closest features, from the last answer; convex solids only",
-     "touching distance", replay_closest_features<ClosestFeatures::v_clip>},
+     "touching distance", replay_closest_features<ClosestFeatures::v_clip>, true},
 };
 
 }  // namespace

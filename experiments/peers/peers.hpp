@@ -19,6 +19,8 @@ struct Peer {
   /// `query` is one of those. Counts stay zero where the library does not tell them.
   ReplayResult (*replay)(std::span<const TriangleMesh> meshes, const Trace& trace,
                          std::string_view query, const ReplayOptions& options);
+  /// It takes convex solids, not surfaces: what is inside another touches it.
+  bool takes_solids = false;
 
   bool answers(std::string_view query) const {
     const std::string padded = " " + std::string(queries) + " ";

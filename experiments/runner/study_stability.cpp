@@ -113,10 +113,12 @@ class Map {
   }
 
   void theirs(const StressCase& stress) {
-    for (const Peer& peer : peers())
+    for (const Peer& peer : peers()) {
+      if (!peer.answers("touching") || peer.takes_solids) continue;
       add(std::string(peer.name), "", "", "", in_a_child(settings_.frames, settings_.seconds, [&] {
             return peer.replay(stress.meshes, stress.trace, "touching", {}).touching;
           }));
+    }
   }
 
   void add(const std::string& source, const std::string& volume, const std::string& strategy,
