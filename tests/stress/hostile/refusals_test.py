@@ -277,6 +277,7 @@ class Values(ProgramTest):
             self.refuse(*self.replay, *given, mentions="--relative-error")
         self.refuse(*self.replay, "--threads=1000000", mentions="--threads")
         self.refuse(*self.replay, "--leaf-size=1000000", mentions="--leaf-size")
+        self.refuse(*self.replay, "--fit=loose", mentions="published, tight")
 
     def test_of_scenes(self):
         scene = ["scene", "random-walk", "--mesh", "mesh.off", "--out", "out.npy", "--frames", "3"]
