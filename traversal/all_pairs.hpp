@@ -31,6 +31,18 @@ struct Shape {
   const Hierarchy<V>* hierarchy;
 };
 
+/// The middle of the box around all translations: float volumes are posed relative to it, so that
+/// their precision does not depend on where in the world the bodies are.
+inline Vec3<double> middle_of(std::span<const Pose> poses) {
+  if (poses.empty()) return Vec3<double>::Zero();
+  Vec3<double> low = poses[0].translation, high = low;
+  for (const auto& pose : poses) {
+    low = low.cwiseMin(pose.translation);
+    high = high.cwiseMax(pose.translation);
+  }
+  return low / 2 + high / 2;
+}
+
 /// B is the scalar or batch in which volumes are tested.
 template <class B, BoundingVolume V, class Strategy>
 class AllPairs {
@@ -47,7 +59,7 @@ class AllPairs {
   /// pair (an index into `pairs()`), `take(pair, query)` gets it back with its answer.
   template <class Counter, class Ask, class Take>
   void frame(std::span<const Pose> poses, Counter& counter, Ask&& ask, Take&& take) {
-    if (!placed_) origin_ = middle(poses), placed_ = true;
+    if (!placed_) origin_ = middle_of(poses), placed_ = true;
     for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].move(poses[i], origin_);
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
       auto query = ask(p);
@@ -70,18 +82,6 @@ class AllPairs {
   }
 
  private:
-  /// The middle of the box around all translations: float volumes are posed relative to it, so that
-  /// their precision does not depend on where in the world the bodies are.
-  static Vec3<double> middle(std::span<const Pose> poses) {
-    if (poses.empty()) return Vec3<double>::Zero();
-    Vec3<double> low = poses[0].translation, high = low;
-    for (const auto& pose : poses) {
-      low = low.cwiseMin(pose.translation);
-      high = high.cwiseMax(pose.translation);
-    }
-    return low / 2 + high / 2;
-  }
-
   std::vector<ObjectPair> pairs_;
   std::vector<Strategy> strategies_;
   std::vector<Body<V>> bodies_;

@@ -27,7 +27,7 @@ namespace detail {
 
 template <BoundingVolume V>
 class RebuildSearch {
-  using B = Batch<typename V::scalar, std::max(native_width<typename V::scalar>, 4)>;
+  using B = NativeBatch<typename V::scalar>;
 
  public:
   RebuildSearch(Body<V>& a, Body<V>& b, bool contacts) : a_(a), b_(b), contacts_(contacts) {}

@@ -48,7 +48,7 @@ inline double motion(const Middle& middle, const Pose& from, const Pose& to) {
 
 template <BoundingVolume V>
 class CoherenceMeter {
-  using B = Batch<typename V::scalar, std::max(native_width<typename V::scalar>, 4)>;
+  using B = NativeBatch<typename V::scalar>;
 
  public:
   CoherenceMeter(std::span<const TriangleMesh> meshes, std::size_t objects, const Variant& variant)

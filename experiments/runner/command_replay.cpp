@@ -52,63 +52,63 @@ nlohmann::ordered_json skipped(const Arguments& arguments, std::span<const Trian
           {"triangle_tests", part(result.n_p, recursive.n_p)}};
 }
 
-nlohmann::ordered_json totals_of(const Arguments& arguments, std::span<const TriangleMesh> meshes,
-                                 const Trace& trace, const ReplayResult& result) {
-  const bool counted = arguments.count == "on";
-  const auto count = [&](auto value) {
-    return counted ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-  };
+/// What every kind of replay begins its totals with.
+template <class Result>
+nlohmann::ordered_json times_of(const Trace& trace, const Result& result) {
   return {{"seconds", result.seconds},
           {"build_seconds", result.build_seconds},
           {"first_seconds", result.first_seconds},
           {"peak_bytes", peak_bytes()},
           {"frames", trace.frames},
           {"objects", trace.objects},
-          {"pairs", trace.pairs()},
-          {arguments.variant.query == "contacts" ? "contacts" : "touching", result.hits},
-          {"n_u", count(result.n_u)},
-          {"n_v", count(result.n_v)},
-          {"n_p", count(result.n_p)},
-          {"front", result.front},
-          {"volume", arguments.variant.volume},
-          {"strategy", arguments.variant.strategy},
-          {"query", arguments.variant.query},
-          {"build", arguments.variant.build},
-          {"leaf_size", arguments.variant.leaf_size},
-          {"fit", arguments.variant.fit},
-          {"precision", arguments.variant.precision},
-          {"threads", arguments.threads},
-          {"skipped", skipped(arguments, meshes, trace, result)}};
+          {"pairs", trace.pairs()}};
+}
+
+/// Null where nothing was counted.
+nlohmann::ordered_json counted(const Arguments& arguments, std::uint64_t value) {
+  if (arguments.count != "on") return nullptr;
+  return value;
+}
+
+nlohmann::ordered_json totals_of(const Arguments& arguments, std::span<const TriangleMesh> meshes,
+                                 const Trace& trace, const ReplayResult& result) {
+  nlohmann::ordered_json totals = times_of(trace, result);
+  totals.update({{arguments.variant.query == "contacts" ? "contacts" : "touching", result.hits},
+                 {"n_u", counted(arguments, result.n_u)},
+                 {"n_v", counted(arguments, result.n_v)},
+                 {"n_p", counted(arguments, result.n_p)},
+                 {"front", result.front},
+                 {"volume", arguments.variant.volume},
+                 {"strategy", arguments.variant.strategy},
+                 {"query", arguments.variant.query},
+                 {"build", arguments.variant.build},
+                 {"leaf_size", arguments.variant.leaf_size},
+                 {"fit", arguments.variant.fit},
+                 {"precision", arguments.variant.precision},
+                 {"threads", arguments.threads},
+                 {"skipped", skipped(arguments, meshes, trace, result)}});
+  return totals;
 }
 
 nlohmann::ordered_json totals_of(const Arguments& arguments, const Trace& trace,
                                  const BudgetedResult& result) {
-  const bool counted = arguments.count == "on";
-  const auto count = [&](auto value) {
-    return counted ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-  };
-  return {{"seconds", result.seconds},
-          {"build_seconds", result.build_seconds},
-          {"first_seconds", result.first_seconds},
-          {"peak_bytes", peak_bytes()},
-          {"frames", trace.frames},
-          {"objects", trace.objects},
-          {"pairs", trace.pairs()},
-          {"budget", *arguments.budget},
-          {"touching", result.touching},
-          {"apart", result.apart},
-          {"unknown", result.unknown},
-          {"deepest", result.deepest},
-          {"mean_deepest", result.mean_deepest},
-          {"n_u", count(result.n_u)},
-          {"n_v", count(result.n_v)},
-          {"n_p", count(result.n_p)},
-          {"volume", arguments.variant.volume},
-          {"query", arguments.variant.query},
-          {"build", arguments.variant.build},
-          {"leaf_size", arguments.variant.leaf_size},
-          {"fit", arguments.variant.fit},
-          {"precision", arguments.variant.precision}};
+  nlohmann::ordered_json totals = times_of(trace, result);
+  totals.update({{"budget", *arguments.budget},
+                 {"touching", result.touching},
+                 {"apart", result.apart},
+                 {"unknown", result.unknown},
+                 {"deepest", result.deepest},
+                 {"mean_deepest", result.mean_deepest},
+                 {"n_u", counted(arguments, result.n_u)},
+                 {"n_v", counted(arguments, result.n_v)},
+                 {"n_p", counted(arguments, result.n_p)},
+                 {"volume", arguments.variant.volume},
+                 {"query", arguments.variant.query},
+                 {"build", arguments.variant.build},
+                 {"leaf_size", arguments.variant.leaf_size},
+                 {"fit", arguments.variant.fit},
+                 {"precision", arguments.variant.precision}});
+  return totals;
 }
 
 void write_answers(const Arguments& arguments, const Trace& trace, const ReplayResult& result) {

@@ -2,6 +2,7 @@
 /// What a variant says of hierarchies, made.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,11 @@
 #include "hierarchies/hierarchy.hpp"
 
 namespace bvlab {
+
+/// What volumes over T are tested in: as many lanes as a register holds, where it holds four or
+/// more.
+template <class T>
+using NativeBatch = Batch<T, std::max(native_width<T>, 4)>;
 
 /// The variant's names have been checked.
 inline Fit fit_of(const Variant& variant) {

@@ -16,10 +16,6 @@
 
 namespace bvlab {
 
-/// As many lanes as a register holds, where registers hold four or more.
-template <class T>
-using NativeBatch = Batch<T, std::max(native_width<T>, 4)>;
-
 namespace detail {
 
 /// How queries are asked.

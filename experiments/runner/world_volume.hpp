@@ -30,7 +30,7 @@ struct Hierarchies {
 
 template <BoundingVolume V, class Strategy>
 class TouchingWorld final : public WorldEngine {
-  using Lanes = Batch<typename V::scalar, std::max(native_width<typename V::scalar>, 4)>;
+  using Lanes = NativeBatch<typename V::scalar>;
 
  public:
   TouchingWorld(Hierarchies<V> hierarchies, const Strategy& strategy, TriangleTest test)
