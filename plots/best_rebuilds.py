@@ -7,13 +7,13 @@ usage: best_rebuilds.py RECORD [--out FOLDER]
 RECORD holds best-rebuilds.csv and best-rebuilds.coherence.csv.
 """
 
-import argparse
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pandas as pd
 
 import style
+from arguments import record_arguments
 
 
 def read(record):
@@ -57,10 +57,7 @@ def draw(rows, out):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record")
-    parser.add_argument("--out")
-    arguments = parser.parse_args()
+    arguments = record_arguments(__doc__)
     rows = read(arguments.record)
     for measure, text in (("ratio", "N_v over a list's with the best rebuilds"),
                           ("slower", "time over the fastest strategy's")):
@@ -68,7 +65,7 @@ def main():
         table = rows.pivot_table(index=["query", "motion"], columns="strategy", values=measure,
                                  sort=False)
         print(table.round(2).to_string())
-    draw(rows, arguments.out or Path(arguments.record) / "figures")
+    draw(rows, arguments.out)
 
 
 if __name__ == "__main__":

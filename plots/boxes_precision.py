@@ -6,14 +6,12 @@ distance from the origin, and time a frame.
 usage: boxes_precision.py RECORD [--out FOLDER]
 """
 
-import argparse
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import matplotlib.pyplot as plt
 
 import style
+from arguments import record_arguments
 
 NUMBERS = {"double": dict(color="#1b1b1b", marker="o", linestyle="-"),
            "float, nearest": dict(color="#d95f0e", marker="s", linestyle="--"),
@@ -58,17 +56,14 @@ def draw(middle, out, name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record")
-    parser.add_argument("--out", help="folder for the figures (default: RECORD/figures)")
-    arguments = parser.parse_args()
-    (table,) = Path(arguments.record).glob("*.csv")
+    arguments = record_arguments(__doc__)
+    (table,) = arguments.record.glob("*.csv")
     middle = middle_of(pd.read_csv(table))
     outward = middle[middle.numbers != "float, nearest"]
     assert (outward.negatives == 0).all(), "a pair was missed that must not be"
     with pd.option_context("display.width", 200):
         print(middle.to_string())
-    print(draw(middle, arguments.out or Path(arguments.record) / "figures", table.stem))
+    print(draw(middle, arguments.out, table.stem))
 
 
 if __name__ == "__main__":

@@ -6,13 +6,13 @@ whether they touch, and how many answers are not known, against tests of volumes
 usage: budget.py RECORD [--out FOLDER]
 """
 
-import argparse
 from pathlib import Path
 
 import pandas as pd
 import matplotlib.pyplot as plt
 
 import style
+from arguments import record_arguments
 
 
 def read(record):
@@ -65,18 +65,13 @@ def draw(middle, out, name):
     axes[-1, 0].set_xlabel("tests of volumes allowed")
     axes[-1, 1].set_xlabel("µs a pair")
     axes[-1, 2].set_xlabel("µs a pair")
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncol=len(labels), frameon=False,
-                  bbox_to_anchor=(0.5, -0.06))
+    style.legend_below(figure, axes[0, 0])
     figure.tight_layout()
     return style.save(figure, out, name)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record")
-    parser.add_argument("--out", help="folder for the figures (default: RECORD/figures)")
-    arguments = parser.parse_args()
+    arguments = record_arguments(__doc__)
     rows, name = read(arguments.record)
     assert (rows.wrong == 0).all(), "an early answer was wrong"
     middle = middle_of(rows)
@@ -84,7 +79,7 @@ def main():
         print(middle.pivot_table(index=["mesh", "volume"], columns="budget",
                                  values="mean").round(4).to_string())
     winners(middle)
-    print(draw(middle, arguments.out or Path(arguments.record) / "figures", name))
+    print(draw(middle, arguments.out, name))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ motion per frame.
 usage: closest_features.py RECORD [--out FOLDER]
 """
 
-import argparse
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +13,7 @@ import pandas as pd
 import matplotlib.pyplot as plt
 
 import style
+from arguments import record_arguments
 
 
 def read(record):
@@ -58,10 +58,7 @@ def draw(rows, out):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record")
-    parser.add_argument("--out", help="folder for the figure (default: RECORD/figures)")
-    arguments = parser.parse_args()
+    arguments = record_arguments(__doc__)
     rows = read(arguments.record)
     for variant, group in rows[rows.differing != 0].groupby("variant"):
         cells = group.drop_duplicates(["mesh", "motion"])
@@ -71,7 +68,7 @@ def main():
             print(f"\n{value} per pair and frame:")
             print(rows.pivot_table(index="variant", columns=["mesh", "degrees"], values=value, aggfunc="median")
                   .round(2).to_string())
-    print(draw(rows, arguments.out or Path(arguments.record) / "figures"))
+    print(draw(rows, arguments.out))
 
 
 if __name__ == "__main__":

@@ -18,7 +18,6 @@ where exp(-lambda) is the stillness (of runs weighted with their ends), and the 
 rebuilt. Only gamma is fitted; R, c, g and lambda are measured from recursive fronts of one frame and the next.
 """
 
-import argparse
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -26,6 +25,7 @@ import numpy as np
 import pandas as pd
 
 import style
+from arguments import record_arguments
 
 MEASURED = ["pair_runs", "near_runs", "moved_runs", "still_runs", "tests", "ends", "kept", "grown",
             "again", "still_ends", "motion_leaf", "motion_gap"]
@@ -237,10 +237,8 @@ def draw_speedup(rows, out):
                  if line[0].get_ylim()[0] <= t <= line[0].get_ylim()[1]]
         line[0].set_yticks(ticks, [f"{t:g}" for t in ticks])
         line[0].minorticks_off()
-    handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.tight_layout()
-    figure.legend(handles, labels, loc="lower center", ncol=len(labels), frameon=False,
-                  bbox_to_anchor=(0.5, -0.06))
+    style.legend_below(figure, axes[0, 0])
     return style.save(figure, out, "coherence-speedup")
 
 
@@ -331,17 +329,13 @@ def draw_margins(rows, out):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record")
-    parser.add_argument("--out", help="folder for the figures (default: RECORD/figures)")
-    parser.add_argument("--table-only", action="store_true", help="print, draw nothing")
-    arguments = parser.parse_args()
+    arguments = record_arguments(__doc__, table_only=True)
     rows = read(arguments.record)
     gamma = fit_gamma(rows)
     print_tables(rows, gamma)
     if arguments.table_only:
         return
-    out = arguments.out or Path(arguments.record) / "figures"
+    out = arguments.out
     print(draw_speedup(rows, out))
     print(draw_law(rows, gamma, out))
     if (rows.strategy == "margins").any():

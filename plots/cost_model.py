@@ -8,7 +8,6 @@ usage: cost_model.py RECORD [--out FOLDER]
 RECORD holds cost-model.csv and unit-costs.json (bench_unit_costs --benchmark_format=json).
 """
 
-import argparse
 import json
 from pathlib import Path
 
@@ -17,6 +16,7 @@ import numpy as np
 import pandas as pd
 
 import style
+from arguments import record_arguments
 
 
 def unit_costs(path):
@@ -109,11 +109,8 @@ def draw_split(rows, out):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record")
-    parser.add_argument("--out")
-    arguments = parser.parse_args()
-    out = arguments.out or Path(arguments.record) / "figures"
+    arguments = record_arguments(__doc__)
+    out = arguments.out
     rows, costs, triangle = read(arguments.record)
     table = pd.DataFrame({v: {"place": c["place"], "C_u": c["pose"], "C_v batched": c["batched"],
                               "C_v alone": c["alone"]} for v, c in costs.items()}).T

@@ -8,7 +8,6 @@ usage: fits.py RECORD [--out FOLDER]
 RECORD holds fits.csv.
 """
 
-import argparse
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -16,6 +15,7 @@ import numpy as np
 import pandas as pd
 
 import style
+from arguments import record_arguments
 
 BASE = ("top-down-principal", "published")
 
@@ -67,10 +67,7 @@ def draw(rows, out):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record")
-    parser.add_argument("--out")
-    arguments = parser.parse_args()
+    arguments = record_arguments(__doc__)
     rows = read(arguments.record)
     print("Over top-down-principal, published (geometric mean over queries and polygons):")
     for measure in ("n_v", "time_ns", "build_ns"):
@@ -78,7 +75,7 @@ def main():
                                                      sort=False).mean()).unstack()
         print(measure)
         print(table.round(2).to_string())
-    draw(rows, arguments.out or Path(arguments.record) / "figures")
+    draw(rows, arguments.out)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ Times are those of all frames but the first, which builds what the others use ag
 differs from the exact one are listed and left out.
 """
 
-import argparse
 import tomllib
 from pathlib import Path
 
@@ -18,6 +17,7 @@ import pandas as pd
 import matplotlib.pyplot as plt
 
 import style
+from arguments import record_arguments
 
 # What may tell one trace from another, where a record has it.
 PLACES = ["query", "polygons", "density", "motion"]
@@ -145,10 +145,7 @@ def print_tests(rows):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record")
-    parser.add_argument("--out", help="folder for the figures (default: RECORD/figures)")
-    arguments = parser.parse_args()
+    arguments = record_arguments(__doc__)
     name, rows = read(arguments.record)
     rows = without_wrong(rows)
     middle = medians(rows)
@@ -160,7 +157,7 @@ def main():
         print(table.round(2).to_string())
         print("\nVolume and triangle tests per pair and frame, mean over scenes and motions:")
         print_tests(rows)
-    out = arguments.out or Path(arguments.record) / "figures"
+    out = arguments.out
     print(draw_best(table, out, name))
     print(draw_variants(middle, out, name))
 

@@ -9,7 +9,6 @@ nine-bunnies-runs (the talk's ten runs), nine-bunnies-tests (N_v per frame), nin
 (length of the front).
 """
 
-import argparse
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +16,7 @@ import pandas as pd
 import matplotlib.pyplot as plt
 
 import style
+from arguments import record_arguments
 
 # Li and Chen's table (li1998incremental): seconds for the recursive algorithm, the separation list
 # and the deferred one, runs 1 to 10.
@@ -183,11 +183,7 @@ def draw_over_time(frames, column, label, out, name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record")
-    parser.add_argument("--out", help="folder for the figures (default: RECORD/figures)")
-    parser.add_argument("--table-only", action="store_true", help="print, draw nothing")
-    arguments = parser.parse_args()
+    arguments = record_arguments(__doc__, table_only=True)
     runs = read(arguments.record)
     print_table(runs)
     (reading, density), average = nearest_reading(runs)
@@ -200,8 +196,8 @@ def main():
               f"{saved['separation-list']:.2f}  {saved['deferred']:.2f}{mark}")
     if arguments.table_only:
         return
-    out = arguments.out or Path(arguments.record) / "figures"
-    frames = pd.read_csv(Path(arguments.record) / "nine-bunnies.frames.csv")
+    out = arguments.out
+    frames = pd.read_csv(arguments.record / "nine-bunnies.frames.csv")
     for path in (draw_table(runs, out), draw_runs(runs, out),
                  draw_over_time(frames, "n_v", "$N_v$ per frame", out, "nine-bunnies-tests"),
                  draw_over_time(frames, "front", "entries of all fronts", out, "nine-bunnies-front")):

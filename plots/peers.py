@@ -5,7 +5,6 @@
 usage: peers.py RECORD [--out FOLDER]
 """
 
-import argparse
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +12,7 @@ import pandas as pd
 import matplotlib.pyplot as plt
 
 import style
+from arguments import record_arguments
 
 
 ORDER = ["sphere recursive", "sphere separation-list", "sphere deferred", "fcl-obb", "fcl-obbrss",
@@ -82,17 +82,14 @@ def draw(rows, out, name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record")
-    parser.add_argument("--out", help="folder for the figures (default: RECORD/figures)")
-    arguments = parser.parse_args()
+    arguments = record_arguments(__doc__)
     rows = read(arguments.record)
     for variant, count in refused(rows).items():
         print(f"{variant}: {count} answers differ from ours; refused")
         rows = rows[rows.variant != variant]
     print_table(rows)
-    (table,) = Path(arguments.record).glob("*.csv")
-    print(draw(rows, arguments.out or Path(arguments.record) / "figures", table.stem))
+    (table,) = arguments.record.glob("*.csv")
+    print(draw(rows, arguments.out, table.stem))
 
 
 if __name__ == "__main__":

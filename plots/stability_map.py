@@ -6,7 +6,6 @@ its strategies) at each precision, and of each peer, under each stressor and lev
 usage: stability_map.py RECORD [--out FOLDER]
 """
 
-import argparse
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +14,7 @@ import matplotlib.pyplot as plt
 from matplotlib.colors import LogNorm, to_rgba
 
 import style
+from arguments import record_arguments
 
 
 def read(record):
@@ -96,13 +96,10 @@ def draw(rows, out, name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record")
-    parser.add_argument("--out", help="folder for the figures (default: RECORD/figures)")
-    arguments = parser.parse_args()
+    arguments = record_arguments(__doc__)
     rows, name = read(arguments.record)
     print_totals(rows)
-    print(draw(rows, arguments.out or Path(arguments.record) / "figures", name))
+    print(draw(rows, arguments.out, name))
 
 
 if __name__ == "__main__":

@@ -97,6 +97,13 @@ def bar_style(name):
     return dict(color=style["color"], hatch=style["hatch"], edgecolor="white", linewidth=0.5)
 
 
+def legend_below(figure, axis):
+    """One row under the whole figure, of what is drawn in one of its axes."""
+    handles, labels = axis.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="lower center", ncol=len(labels), frameon=False,
+                  bbox_to_anchor=(0.5, -0.06))
+
+
 def save(figure, folder, name):
     """Writes <folder>/<name>.pdf and .png, the same bytes for the same record."""
     folder = Path(folder)

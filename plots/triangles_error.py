@@ -6,7 +6,6 @@ per call, one panel for each set, the Pareto front drawn.
 usage: triangles_error.py RECORD [--out FOLDER]
 """
 
-import argparse
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +13,7 @@ import pandas as pd
 import matplotlib.pyplot as plt
 
 import style
+from arguments import record_arguments
 
 NONE = 3  # where zero stands on the logarithmic axis, in pairs per million
 
@@ -102,14 +102,11 @@ def draw(middle, out, name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record")
-    parser.add_argument("--out", help="folder for the figures (default: RECORD/figures)")
-    arguments = parser.parse_args()
+    arguments = record_arguments(__doc__)
     rows, name = read(arguments.record)
     middle = middle_of(rows)
     print_table(middle)
-    print(draw(middle, arguments.out or Path(arguments.record) / "figures", name))
+    print(draw(middle, arguments.out, name))
 
 
 if __name__ == "__main__":

@@ -9,13 +9,13 @@ The two axes are the parameters that vary besides volume and strategy: `step` an
 roots it is; its colour is the strategy's.
 """
 
-import argparse
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pandas as pd
 
 import style
+from arguments import record_arguments
 
 TITLES = {"step": "translation a frame", "degrees": "rotation a frame, degrees", "side": "side of the cube",
           "polygons": "polygons of a body"}
@@ -73,17 +73,13 @@ def draw(rows, across, down, out, name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record")
-    parser.add_argument("--out", help="folder for the figures (default: RECORD/figures)")
-    parser.add_argument("--table-only", action="store_true", help="print, draw nothing")
-    arguments = parser.parse_args()
+    arguments = record_arguments(__doc__, table_only=True)
     rows, across, down, name = read(arguments.record)
     best = winners(rows, across, down)
     print(f"Fastest per field, nanoseconds per pair, and over spheres from the roots ({name}):")
     print(best.drop(columns="ns_base").round(2).to_string(index=False))
     if not arguments.table_only:
-        print(draw(rows, across, down, arguments.out or Path(arguments.record) / "figures", name))
+        print(draw(rows, across, down, arguments.out, name))
 
 
 if __name__ == "__main__":

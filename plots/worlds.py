@@ -6,13 +6,13 @@ share of bodies that move, ours beside other libraries' complete pipelines.
 usage: worlds.py RECORD [--out FOLDER] [--table-only]
 """
 
-import argparse
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pandas as pd
 
 import style
+from arguments import record_arguments
 
 SCENE = ["objects", "room", "step", "degrees", "moving"]
 PEERS = {"fcl-world": "FCL", "bullet-world": "Bullet"}
@@ -94,15 +94,11 @@ def draw(rows, out):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record")
-    parser.add_argument("--out", help="folder for the figures (default: RECORD/figures)")
-    parser.add_argument("--table-only", action="store_true", help="print, draw nothing")
-    arguments = parser.parse_args()
+    arguments = record_arguments(__doc__, table_only=True)
     rows = read(arguments.record)
     print_table(rows)
     if not arguments.table_only:
-        print(draw(rows, arguments.out or Path(arguments.record) / "figures"))
+        print(draw(rows, arguments.out))
 
 
 if __name__ == "__main__":
