@@ -73,14 +73,14 @@ class Approach {
  public:
   /// Begins at zero.
   template <class Body>
-  void restart(const Body& a, const Body& b) {
+  void restart(Body& a, Body& b) {
     base_ = since_ = 0;
     refer(a, b);
   }
 
   /// The bodies have moved.
   template <class Body>
-  void advance(const Body& a, const Body& b) {
+  void advance(Body& a, Body& b) {
     const Stand &to_a = a.stand(), &to_b = b.stand();
     const Vec3<double> shift = (to_a.centre - a_.centre) - (to_b.centre - b_.centre);
     since_ = (shift.norm() + turn_between(a_, to_a) * a.hierarchy().radius() +
@@ -91,7 +91,7 @@ class Approach {
   /// From now on motion is measured from here. What was shown before goes on to hold, but what is
   /// measured later no longer profits from motions that cancel.
   template <class Body>
-  void refer(const Body& a, const Body& b) {
+  void refer(Body& a, Body& b) {
     base_ = now();
     a_ = a.stand(), b_ = b.stand();
     since_ = a_.noise + b_.noise;

@@ -33,13 +33,8 @@ class Body {
     pose_ = pose;
     origin_ = origin;
     placement_ = PlacementOf<V>(pose, origin, hierarchy_->reach());
-    const Stand stand(pose, *hierarchy_);
-    // Rounded up, so that no step is lost in a long way.
-    if (epoch_ > 0)
-      way_ = (way_ + step_between(stand_, stand, hierarchy_->radius())) *
-             (1 + 4 * unit_roundoff<double>);
-    stand_ = stand;
     if (++epoch_ == 0) forget();
+    stands_ = false;
     return true;
   }
 
@@ -47,9 +42,17 @@ class Body {
   const Pose& pose() const { return pose_; }
   /// The same number means that the body has not moved, unless 2^32 - 1 moves lie between.
   std::uint32_t epoch() const { return epoch_; }
-  const Stand& stand() const { return stand_; }
-  /// The way that its points have come, step by step, at most: it grows whenever the body moves.
-  double way() const { return way_; }
+  /// Where it stands. Worked out when it is asked for: a strategy that keeps no margins does not.
+  const Stand& stand() {
+    if (!stands_) follow();
+    return stand_;
+  }
+  /// How far any of its points can have come from each stand that was asked for to the next, all
+  /// together: it grows whenever the body has moved.
+  double way() {
+    if (!stands_) follow();
+    return way_;
+  }
 
   /// Poses the node and its sibling unless that has been done since the body moved.
   template <class Counter>
@@ -81,6 +84,18 @@ class Body {
   }
 
  private:
+  void follow() {
+    const Stand stand(pose_, *hierarchy_);
+    // Rounded up, so that no step is lost in a long way.
+    if (way_ >= 0)
+      way_ = (way_ + step_between(stand_, stand, hierarchy_->radius())) *
+             (1 + 4 * unit_roundoff<double>);
+    else
+      way_ = 0;
+    stand_ = stand;
+    stands_ = true;
+  }
+
   void forget() {
     std::fill(volume_epochs_.begin(), volume_epochs_.end(), 0u);
     std::fill(triangle_epochs_.begin(), triangle_epochs_.end(), 0u);
@@ -93,7 +108,8 @@ class Body {
   Vec3<double> origin_ = Vec3<double>::Zero();
   PlacementOf<V> placement_;
   Stand stand_;
-  double way_ = 0;
+  double way_ = -1;      // before the first stand
+  bool stands_ = false;  // whether `stand_` is where the body is
   std::uint32_t epoch_ = 0;
   std::vector<Posed<V>> volumes_;
   std::vector<std::uint32_t> volume_epochs_;  // one for two siblings

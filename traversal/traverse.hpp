@@ -25,7 +25,8 @@
 namespace bvlab {
 
 /// A query says which pairs of volumes need no further look, and takes the primitives of the rest.
-///   excludes(p, q)        a mask over posed volumes p of body a and q of body b
+///   excludes(p, q)        a mask over posed volumes p of body a and q of body b; where no bound is
+///                         wanted, a matter of the volumes alone
 ///   primitives(pending)   takes one candidate or more; says whether the traversal can end
 ///   patience              so many candidates may be held back before `primitives` must be called
 ///   wants_bound           if there and true: one pair of near leaves is handed over first, near
@@ -42,6 +43,12 @@ concept Query = requires(Q query, const P& p, std::span<const Candidate> pending
   { query.primitives(pending) } -> std::same_as<Outcome>;
   { Q::patience } -> std::convertible_to<std::size_t>;
 };
+
+template <class Q>
+constexpr bool wants_bound() {
+  if constexpr (requires { Q::wants_bound; }) return Q::wants_bound;
+  return false;
+}
 
 /// Pairs waiting to be tested, last in, first out: `reserve` once, then `push` without a check.
 class OpenPairs {
@@ -78,17 +85,22 @@ struct Walked {
 
 /// For `traverse` where no front is kept.
 struct NoFront {
-  static constexpr bool kept = false, margins = false, descends_both = false;
+  static constexpr bool kept = false, margins = false, descends_both = false, below_roots = false;
 };
 struct NoFrontBoth : NoFront {
   static constexpr bool descends_both = true;
 };
-struct KeptFront {
-  static constexpr bool kept = true, margins = false, descends_both = false;
+/// Where somebody else has tested the two roots.
+template <class Roots>
+struct BelowRoots : Roots {
+  static constexpr bool below_roots = true;
+};
+struct KeptFront : NoFront {
+  static constexpr bool kept = true;
   Front& front;
 };
-struct KeptMargins {
-  static constexpr bool kept = true, margins = true, descends_both = false;
+struct KeptMargins : NoFront {
+  static constexpr bool kept = true, margins = true;
   MarginFront& front;
   const Approach& approach;
   double step;  ///< how much nearer the bodies come from run to run, about
@@ -123,6 +135,9 @@ class Traversal {
       stopped = stopped || sweep_due();
     } else if constexpr (Keeping::kept) {
       stopped = stopped || sweep();
+    } else if constexpr (Keeping::below_roots) {
+      open_.reserve(4);
+      enter<false>({0, 0}, Outcome::none);
     } else {
       a_.require(0, counter_);
       b_.require(0, counter_);
@@ -143,10 +158,7 @@ class Traversal {
   }
 
  private:
-  static constexpr bool wants_bound() {
-    if constexpr (requires { Query::wants_bound; }) return Query::wants_bound;
-    return false;
-  }
+  static constexpr bool wants_bound() { return bvlab::wants_bound<Query>(); }
 
   static constexpr bool keeps_gaps() { return Keeping::margins || wants_bound(); }
 
@@ -271,43 +283,49 @@ class Traversal {
             keeping_.front.add({nodes_a_[i], nodes_b_[i]}, deadline);
         }
       }
-    std::array<std::uint8_t, W> order;
-    const int kept = in_order(~excluded & all(count), order);
-    for (int k = 0; k < kept; ++k) {
-      const int i = order[static_cast<std::size_t>(k)];
+    for_each_near(~excluded & all(count), [&](std::size_t i) {
       const NodePair pair{nodes_a_[i], nodes_b_[i]};
-      const auto& a = a_.hierarchy().node(pair.a);
-      const auto& b = b_.hierarchy().node(pair.b);
-      [[maybe_unused]] const auto slot = [&] {
-        return slot_of(first + static_cast<std::size_t>(i));
-      };
-      if (a.count && b.count) {
-        std::size_t from = 0;
-        if constexpr (Keeping::kept) from = kFromFront ? slot() : add_leaves(pair);
-        hold(a, b, from);
-      } else {
-        if constexpr (Keeping::kept && kFromFront) keeping_.front.open(slot());
-        descend(pair, a, b);
-      }
-    }
+      [[maybe_unused]] std::size_t slot = Outcome::none;
+      if constexpr (kFromFront) slot = slot_of(first + i);
+      enter<kFromFront>(pair, slot);
+    });
     // Margins are found for eight at once.
     constexpr std::size_t patience =
         std::max<std::size_t>(Query::patience, Keeping::margins ? 7 : 0);
     return pending_.size() > patience && flush();
   }
 
-  /// The lanes of a mask as they are to be descended: where a bound is wanted the nearest last, so
-  /// that it is the first to be looked at.
-  int in_order(std::uint64_t mask, std::array<std::uint8_t, W>& order) const {
-    std::size_t count = 0;
-    for (; mask; mask &= mask - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(mask));
-      std::size_t at = count++;
-      if constexpr (wants_bound())
-        for (; at > 0 && gaps_[order[at - 1]] < gaps_[lane]; --at) order[at] = order[at - 1];
-      order[at] = static_cast<std::uint8_t>(lane);
+  /// A pair that is not excluded: its triangles are held, or it is descended.
+  template <bool kFromFront>
+  [[gnu::always_inline]] void enter(const NodePair& pair, std::size_t slot) {
+    const Node& a = a_.hierarchy().node(pair.a);
+    const Node& b = b_.hierarchy().node(pair.b);
+    if (a.count && b.count) {
+      if constexpr (Keeping::kept && !kFromFront) slot = add_leaves(pair);
+      hold(a, b, slot);
+    } else {
+      if constexpr (kFromFront) keeping_.front.open(slot);
+      descend(pair, a, b);
     }
-    return static_cast<int>(count);
+  }
+
+  /// The lanes of a mask in the order in which they are to be descended: where a bound is wanted
+  /// the nearest last, so that it is the first to be looked at.
+  template <class Open>
+  [[gnu::always_inline]] void for_each_near(std::uint64_t mask, Open&& open) const {
+    if constexpr (!wants_bound()) {
+      for (; mask; mask &= mask - 1) open(static_cast<std::size_t>(std::countr_zero(mask)));
+    } else {
+      std::array<std::uint8_t, W> order;
+      std::size_t count = 0;
+      for (; mask; mask &= mask - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(mask));
+        std::size_t at = count++;
+        for (; at > 0 && gaps_[order[at - 1]] < gaps_[lane]; --at) order[at] = order[at - 1];
+        order[at] = static_cast<std::uint8_t>(lane);
+      }
+      for (std::size_t k = 0; k < count; ++k) open(order[k]);
+    }
   }
 
   static constexpr std::uint64_t all(int count) { return (std::uint64_t{2} << (count - 1)) - 1; }
@@ -388,14 +406,13 @@ class Traversal {
       open_.push({a.first + 1, b.first});
       open_.push({a.first, b.first + 1});
       open_.push({a.first, b.first});
-    } else if (descends_b(a, b)) {
-      b_.require(b.first, counter_);
-      open_.push({pair.a, b.first + 1});
-      open_.push({pair.a, b.first});
     } else {
-      a_.require(a.first, counter_);
-      open_.push({a.first + 1, pair.b});
-      open_.push({a.first, pair.b});
+      // Which one it is cannot be foreseen: chosen without a branch.
+      const bool second = descends_b(a, b);
+      const std::uint32_t first = second ? b.first : a.first;
+      (second ? b_ : a_).require(first, counter_);
+      open_.push(second ? NodePair{pair.a, first + 1} : NodePair{first + 1, pair.b});
+      open_.push(second ? NodePair{pair.a, first} : NodePair{first, pair.b});
     }
   }
 
@@ -473,7 +490,7 @@ Walked traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspac
 template <class B, class V, class Query, class Counter>
 Walked traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace,
                 Front& front) {
-  return detail::Traversal<B, V, Query, Counter, KeptFront>(a, b, query, counter, {front},
+  return detail::Traversal<B, V, Query, Counter, KeptFront>(a, b, query, counter, {{}, front},
                                                             workspace)
       .run();
 }

@@ -53,8 +53,9 @@ struct Placement {
     constexpr double u = unit_roundoff<double>, e = unit_roundoff<T>;
     const Vec3<double> offset = pose.translation - origin;
     const double defect = defect_of(pose.rotation);
-    const Mat3<double> nearest = orthonormal(pose.rotation, defect);
-    const double turned = defect <= sound_defect ? 0 : (pose.rotation - nearest).norm() + 8 * u;
+    const bool sound = defect <= sound_defect;
+    const Mat3<double> nearest = sound ? pose.rotation : orthonormal(pose.rotation, defect);
+    const double turned = sound ? 0 : (pose.rotation - nearest).norm() + 8 * u;
     rotation = nearest.cast<T>();
     translation = rounded<T>(offset);
     // `grown` rounds twice, and the defect itself is computed with an error below 16u.
@@ -66,7 +67,7 @@ struct Placement {
                            10 * e * (reach + offset.norm()) + (turned > 0 ? turned * reach : 0) +
                            tiny) *
                           room);
-    if (!(defect <= 0.01) || !(defect_of(nearest) <= sound_defect))
+    if (!sound && !(defect <= 0.01 && defect_of(nearest) <= sound_defect))
       slack = std::numeric_limits<T>::infinity();
   }
 

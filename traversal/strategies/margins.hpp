@@ -46,7 +46,7 @@ class Margins {
       return {};
     }
     const Walked walked =
-        traverse<B>(a, b, query, counter, workspace, KeptMargins{front_, approach_, step_});
+        traverse<B>(a, b, query, counter, workspace, KeptMargins{{}, front_, approach_, step_});
     account(walked);
     remember(query);
     return walked;
@@ -65,7 +65,7 @@ class Margins {
 
   /// Follows the bodies. Says whether nothing can have changed, and answers the query then.
   template <class V, class Query>
-  bool unchanged(const Body<V>& a, const Body<V>& b, Query& query) {
+  bool unchanged(Body<V>& a, Body<V>& b, Query& query) {
     const double way = a.way() + b.way();
     const bool moved = way != way_;
     if (moved) {
@@ -87,7 +87,7 @@ class Margins {
   }
 
   template <class V>
-  void follow(const Body<V>& a, const Body<V>& b) {
+  void follow(Body<V>& a, Body<V>& b) {
     approach_.advance(a, b);
     if (!(approach_.now() < std::numeric_limits<float>::max())) {
       front_.expire();
@@ -117,7 +117,7 @@ class Margins {
   }
 
   template <class V>
-  void rebuild(const Body<V>& a, const Body<V>& b) {
+  void rebuild(Body<V>& a, Body<V>& b) {
     if (front_.empty()) way_ = a.way() + b.way();
     front_.restart();
     approach_.restart(a, b);
