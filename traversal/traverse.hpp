@@ -331,15 +331,20 @@ class Traversal {
   static constexpr std::uint64_t all(int count) { return (std::uint64_t{2} << (count - 1)) - 1; }
 
   std::uint64_t test(int count) {
-    // A pair by itself is not worth a batch.
+    // A pair by itself is not worth a batch, and four are not worth a wide one.
+    if constexpr (W > 4)
+      if (count > 1 && count <= 4) return test_as<Batch<Element<B>, 4>>(count);
     if constexpr (W > 1)
-      if (count > 1) {
-        for (int i = count; i < W; ++i) nodes_a_[i] = nodes_a_[0], nodes_b_[i] = nodes_b_[0];
-        return excluded(gather<B>(a_.volumes(), nodes_a_.data()),
-                        gather<B>(b_.volumes(), nodes_b_.data())) &
-               all(count);
-      }
+      if (count > 1) return test_as<B>(count);
     return excluded(a_.volumes()[nodes_a_[0]], b_.volumes()[nodes_b_[0]]);
+  }
+
+  template <class Some>
+  std::uint64_t test_as(int count) {
+    for (int i = count; i < width<Some>(); ++i) nodes_a_[i] = nodes_a_[0], nodes_b_[i] = nodes_b_[0];
+    return excluded(gather<Some>(a_.volumes(), nodes_a_.data()),
+                    gather<Some>(b_.volumes(), nodes_b_.data())) &
+           all(count);
   }
 
   template <class P>
