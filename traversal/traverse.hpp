@@ -4,9 +4,10 @@
 /// node being descended, or by the four pairs of all children.
 ///
 /// Started from the two roots it is the recursive algorithm, depth first up to W - 1 pairs; started
-/// from a front it visits the front's entries in order and keeps the front up to date, raised first
-/// where it is one that rises; from a front with margins only those entries that have to be looked at. Volume, query, counter, width and
-/// what is kept are template parameters; nothing here knows which.
+/// from a front it visits the front's entries in order and keeps the front up to date (one that can
+/// rise is raised first); from a front with margins only those entries that have to be looked at.
+/// Volume, query, counter, width and what is kept are template parameters; nothing here knows
+/// which.
 #pragma once
 
 #include <algorithm>
