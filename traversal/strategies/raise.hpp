@@ -7,15 +7,15 @@
 /// a share h of the parents come apart in a run, trying all in every T-th run costs 1 / T + h T / 2
 /// for each, which is least where as much is spent in vain as is lost by raising late. But h falls
 /// with the time since the parent was last seen to overlap, so it is tried after 1 run, 2, 4, ...
-/// (see rising_front.hpp): of those tried first, one in ten is apart in little motion, nine in ten
-/// in violent motion, and either way what is wasted is little beside what descending had cost.
+/// (see rising_front.hpp): of those tried first, one in seven is apart in little motion, nine in
+/// ten in violent motion, and either way what is wasted is little beside what descending had cost.
 /// Bodies at rest, with n entries, take n tests a run and at most n / 32 for parents.
 ///
 /// A rebuild that finds n ends takes 2n - 1 tests. Where bodies jump, sinking and rising takes more
 /// than that: then the list is dropped and built again in the next run; if no run of the new one is
 /// any cheaper, only after twice as many runs from the roots, up to 16. As the list has more
 /// entries than recursion would find ends, a run is too dear from (2n - 1) / 1.2 tests on, n being
-/// the entries it leaves (with 1 or 1.5 in place of 1.2 more tests were made).
+/// the entries it leaves (with 1 or 1.5 in place of 1.2 more tests were made on the whole).
 ///
 /// Runs cut short: the pair that was hit is tested first in the next run, before any parent, and
 /// a hit there ends that run at once. Else parents come next, so that what was raised stays raised
