@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "hierarchies/bounding_volume.hpp"
@@ -37,6 +38,7 @@ class Hierarchy {
         take_smaller(i, merge(volumes_[node.first], volumes_[node.first + 1]));
       nodes_[i].size = size_of(volumes_[i]);
     }
+    look_up();
     surround(mesh);
     begin_.clear(), end_.clear();
   }
@@ -54,12 +56,18 @@ class Hierarchy {
       }
       nodes_[i].size = size_of(volumes_[i]);
     }
+    look_up();
     surround(mesh);
   }
 
   std::size_t size() const { return nodes_.size(); }
   bool is_leaf(std::uint32_t node) const { return nodes_[node].count > 0; }
   const Node& node(std::uint32_t node) const { return nodes_[node]; }
+  /// Of a node that is not the root.
+  std::uint32_t parent(std::uint32_t node) const { return above_[(node + 1) / 2].parent; }
+  /// The least size of all that the node lies below: of two nodes that make a pair, the parent of
+  /// that for which this is less was descended last, of b where they are equal.
+  typename V::scalar least_above(std::uint32_t node) const { return above_[(node + 1) / 2].least; }
   const V& volume(std::uint32_t node) const { return volumes_[node]; }
   /// The triangle that stands at a place in a leaf's range.
   std::uint32_t primitive(std::uint32_t place) const { return primitives_[place]; }
@@ -71,6 +79,19 @@ class Hierarchy {
   double radius() const { return radius_; }
 
  private:
+  struct Above {
+    std::uint32_t parent;
+    typename V::scalar least;  ///< size of the parent and all above it
+  };
+
+  /// Notes what is above each node, parents first.
+  void look_up() {
+    above_.assign(nodes_.size() / 2 + 1, {0, std::numeric_limits<typename V::scalar>::infinity()});
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i)
+      if (const Node& node = nodes_[i]; node.count == 0)
+        above_[(node.first + 1) / 2] = {i, std::min(above_[(i + 1) / 2].least, node.size)};
+  }
+
   void surround(const TriangleMesh& mesh) {
     reach_ = radius_ = 0;
     for (const auto& v : volumes_) reach_ = std::max(reach_, static_cast<double>(reach_of(v)));
@@ -131,6 +152,7 @@ class Hierarchy {
   std::vector<std::uint32_t> primitives_;
   std::vector<Node> nodes_;
   std::vector<V> volumes_;
+  std::vector<Above> above_;  // one for two siblings
   double reach_ = 0, radius_ = 0;
   Vec3<double> centre_;
   // Only while fitting:

@@ -64,7 +64,7 @@ def read(record):
 
 def strategies_of(rows):
     """All but the recursion, in the order in which they were thought of."""
-    order = ["separation-list", "deferred", "by-cost", "margins", "adaptive"]
+    order = ["separation-list", "deferred", "by-cost", "margins", "adaptive", "raise"]
     present = set(rows.strategy) - {"recursive"}
     return [s for s in order if s in present] + sorted(present - set(order))
 

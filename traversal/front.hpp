@@ -54,9 +54,11 @@ class Front {
   /// Whether entry 0 has been brought forward since the last restart.
   bool witnessed() const { return witnessed_; }
 
- private:
+ protected:
   std::vector<NodePair> entries_;
   bool witnessed_ = false;
+
+ private:
   std::vector<std::uint32_t> holes_;  // empty between runs
 };
 

@@ -13,12 +13,13 @@
 #include "traversal/strategies/adaptive.hpp"
 #include "traversal/strategies/by_cost.hpp"
 #include "traversal/strategies/margins.hpp"
+#include "traversal/strategies/raise.hpp"
 #include "traversal/strategies/recursive.hpp"
 #include "traversal/strategies/separation_list.hpp"
 
 namespace bvlab {
 
 using Strategies =
-    TypeList<Recursive, RecursiveBoth, SeparationList, Deferred, ByCost, Margins, Adaptive>;
+    TypeList<Recursive, RecursiveBoth, SeparationList, Deferred, ByCost, Raise, Margins, Adaptive>;
 
 }  // namespace bvlab

@@ -4,9 +4,10 @@
 /// node being descended, or by the four pairs of all children.
 ///
 /// Started from the two roots it is the recursive algorithm, depth first up to W - 1 pairs; started
-/// from a front it visits the front's entries in order and keeps the front up to date; from a front
-/// with margins only those entries that have to be looked at. Volume, query, counter, width and
-/// what is kept are template parameters; nothing here knows which.
+/// from a front it visits the front's entries in order and keeps the front up to date (one that can
+/// rise is raised first); from a front with margins only those entries that have to be looked at.
+/// Volume, query, counter, width and what is kept are template parameters; nothing here knows
+/// which.
 #pragma once
 
 #include <algorithm>
@@ -21,6 +22,7 @@
 #include "traversal/gather.hpp"
 #include "traversal/margin_front.hpp"
 #include "traversal/queries/candidate.hpp"
+#include "traversal/rising_front.hpp"
 
 namespace bvlab {
 
@@ -74,6 +76,7 @@ struct Workspace {
   std::vector<Candidate> pending;
   std::vector<Verdict> verdicts;
   std::vector<std::uint32_t> due;
+  std::vector<Family> families;
 };
 
 /// What a traversal had to do.
@@ -85,7 +88,8 @@ struct Walked {
 
 /// For `traverse` where no front is kept.
 struct NoFront {
-  static constexpr bool kept = false, margins = false, descends_both = false, below_roots = false;
+  static constexpr bool kept = false, rises = false, margins = false;
+  static constexpr bool descends_both = false, below_roots = false;
 };
 struct NoFrontBoth : NoFront {
   static constexpr bool descends_both = true;
@@ -98,6 +102,10 @@ struct BelowRoots : Roots {
 struct KeptFront : NoFront {
   static constexpr bool kept = true;
   Front& front;
+};
+struct KeptRising : NoFront {
+  static constexpr bool kept = true, rises = true;
+  RisingFront& front;
 };
 struct KeptMargins : NoFront {
   static constexpr bool kept = true, margins = true;
@@ -124,7 +132,8 @@ class Traversal {
         open_(workspace.open),
         pending_(workspace.pending),
         verdicts_(workspace.verdicts),
-        due_(workspace.due) {}
+        due_(workspace.due),
+        families_(workspace.families) {}
 
   Walked run() {
     open_.clear();
@@ -165,14 +174,45 @@ class Traversal {
   /// All entries of the front, the witness by itself.
   bool sweep() requires Keeping::kept {
     bool stopped = false;
-    const std::size_t end = keeping_.front.size();
-    for (std::size_t next = 0; next < end && !stopped;) {
+    std::size_t next = 0, end = keeping_.front.size();
+    if constexpr (Keeping::rises) {
+      if (keeping_.front.witnessed() && (look_at<true>(take_front(0, 1), 0) || flush()))
+        return true;
+      end = raise();
+      next = keeping_.front.witnessed();
+    }
+    for (; next < end && !stopped;) {
       const int count = take_front(next, end);
       stopped = look_at<true>(count, next) || (next == 0 && keeping_.front.witnessed() && flush());
       next += static_cast<std::size_t>(count);
       while (open_.size() >= W && !stopped) stopped = look_at<false>(take_open(), 0);
     }
     return stopped;
+  }
+
+  /// Tries the parents that the front proposes and, where one is apart, its parent after it. Says
+  /// how many entries are still to be looked at: they come first, those just raised last.
+  std::size_t raise() requires Keeping::rises {
+    keeping_.front.propose(a_.hierarchy(), b_.hierarchy(), families_);
+    for (std::size_t next = 0; next < families_.size();) {
+      const int count = static_cast<int>(std::min<std::size_t>(W, families_.size() - next));
+      for (int i = 0; i < count; ++i) {
+        const NodePair& pair = families_[next + static_cast<std::size_t>(i)].parent;
+        nodes_a_[i] = pair.a, nodes_b_[i] = pair.b;
+        a_.require(pair.a, counter_);
+        b_.require(pair.b, counter_);
+      }
+      count_tests(static_cast<std::size_t>(count));
+      std::uint64_t apart = test(count);
+      for (int i = 0; i < count; ++i, ++next, apart >>= 1)
+        if (apart & 1)
+          keeping_.front.raise(a_.hierarchy(), b_.hierarchy(), families_, next);
+        else
+          keeping_.front.refuse(families_[next]);
+    }
+    const std::size_t raised = keeping_.front.settle(families_);
+    if (!keeping_.front.witnessed()) witness_ = Outcome::none;
+    return keeping_.front.size() - raised;
   }
 
   /// The entries whose deadlines have passed, the witness first where it is one of them or a bound
@@ -475,6 +515,7 @@ class Traversal {
   std::vector<Candidate>& pending_;
   std::vector<Verdict>& verdicts_;
   std::vector<std::uint32_t>& due_;  // slots to be looked at, where margins are kept
+  std::vector<Family>& families_;    // siblings tried, where the front rises
   std::array<std::uint32_t, W> nodes_a_, nodes_b_;
   std::array<Element<B>, keeps_gaps() ? W : 0> gaps_;
   Walked walked_;
@@ -497,6 +538,16 @@ Walked traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspac
                 Front& front) {
   return detail::Traversal<B, V, Query, Counter, KeptFront>(a, b, query, counter, {{}, front},
                                                             workspace)
+      .run();
+}
+
+/// The same from a front that rises where it can, which the strategy decides: parents are tried
+/// when the witness has been looked at and did not settle the matter, before all other entries.
+template <class B, class V, class Query, class Counter>
+Walked traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace,
+                RisingFront& front) {
+  return detail::Traversal<B, V, Query, Counter, KeptRising>(a, b, query, counter, {{}, front},
+                                                             workspace)
       .run();
 }
 

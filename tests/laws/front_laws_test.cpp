@@ -121,6 +121,73 @@ TYPED_TEST(FrontLaws, TheFrontStaysAPartitionWhateverCutsARunShort) {
   EXPECT_LT(hits, 550);
 }
 
+TYPED_TEST(FrontLaws, ARisingFrontStaysAPartitionWhateverIsRaised) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> anywhere(-2, 2), step(-0.02, 0.02);
+  Raise raise;
+  NotCounting counter;
+  std::vector<Contact> found;
+  int partial = 0;
+  double x = 0, angle = 0;
+  for (int frame = 0; frame < 400; ++frame) {
+    // Small steps and, now and then, a jump.
+    x = frame % 40 ? x + step(random) : anywhere(random);
+    angle += step(random);
+    this->place(Pose{}, at(x, angle));
+    Touching touching;
+    Contacts contacts(found);
+    if (frame % 3)
+      raise.run<typename TestFixture::B>(this->a_, this->b_, touching, counter, this->workspace_);
+    else
+      raise.run<typename TestFixture::B>(this->a_, this->b_, contacts, counter, this->workspace_);
+    if (raise.front().empty()) continue;  // dropped: it does not pay now
+    this->expect_partition(raise.front());
+    partial += touching.touching();
+  }
+  EXPECT_GT(partial, 20);
+}
+
+TYPED_TEST(FrontLaws, AFrontAtRestTriesParentsLessAndLess) {
+  for (const double x : {0.0, 1.3, 1.6}) {
+    this->place(Pose{}, at(x, 0.7));
+    std::vector<Contact> found;
+    Contacts query(found);
+    Raise raise;
+    Counting first;
+    raise.run<typename TestFixture::B>(this->a_, this->b_, query, first, this->workspace_);
+    const std::uint64_t n = raise.front_size();
+    EXPECT_EQ(first.n_v, 2 * n - 1);
+    for (int run = 1; run <= 96; ++run) {
+      Counting still;
+      raise.run<typename TestFixture::B>(this->a_, this->b_, query, still, this->workspace_);
+      EXPECT_EQ(still.n_p, first.n_p);
+      EXPECT_LE(still.n_v, n + n / 2);
+      EXPECT_GE(still.n_v, n);
+      // From then on all wait for the longest time.
+      if (run > 32 && (run + 1) % 16) {
+        EXPECT_EQ(still.n_v, n);
+      }
+    }
+    EXPECT_EQ(raise.front_size(), n);
+  }
+}
+
+TYPED_TEST(FrontLaws, AFrontRisesToTheRootsWhenBodiesPart) {
+  NotCounting counter;
+  std::vector<Contact> found;
+  Contacts query(found);
+  Raise raise;
+  this->place(Pose{}, at(1.3, 0.7));
+  for (int run = 0; run < 10; ++run)
+    raise.run<typename TestFixture::B>(this->a_, this->b_, query, counter, this->workspace_);
+  EXPECT_GT(raise.front_size(), 10u);
+  for (int run = 0; run < 400; ++run) {
+    this->place(Pose{}, at(1.3 + 0.02 * run, 0.7));
+    raise.run<typename TestFixture::B>(this->a_, this->b_, query, counter, this->workspace_);
+  }
+  EXPECT_EQ(raise.front_size(), 1u);
+}
+
 TYPED_TEST(FrontLaws, AHitIsTheFirstToBeTestedNextTime) {
   this->place(Pose{}, at(0.2, 0.5));
   Deferred deferred(1);

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A separation list that rises again where the bodies have come apart, so that it need not be
+/// rebuilt from the roots (li1998incremental; ehmann2001accurate raises its fronts, too).
+///
+/// The law of cost: two siblings whose parent is apart cost one test too many in every run, and a
+/// parent tried in vain costs one test; one that is apart takes the place of two and saves one. If
+/// a share h of the parents come apart in a run, trying all in every T-th run costs 1 / T + h T / 2
+/// for each, which is least where as much is spent in vain as is lost by raising late. But h falls
+/// with the time since the parent was last seen to overlap, so it is tried after 1 run, 2, 4, ...
+/// (see rising_front.hpp): of those tried first, one in seven is apart in little motion, nine in
+/// ten in violent motion, and either way what is wasted is little beside what descending had cost.
+/// Bodies at rest, with n entries, take n tests a run and at most n / 32 for parents.
+///
+/// A rebuild that finds n ends takes 2n - 1 tests. Where bodies jump, sinking and rising takes more
+/// than that: then the list is dropped and built again in the next run; if no run of the new one is
+/// any cheaper, only after twice as many runs from the roots, up to 16. As the list has more
+/// entries than recursion would find ends, a run is too dear from (2n - 1) / 1.2 tests on, n being
+/// the entries it leaves (with 1 or 1.5 in place of 1.2 more tests were made on the whole).
+///
+/// Runs cut short: the pair that was hit is tested first in the next run, before any parent, and
+/// a hit there ends that run at once. Else parents come next, so that what was raised stays raised
+/// when a hit then cuts the run short; pairs that were pushed but not reached stay in the list, and
+/// are tried like all others. Such a run does not count for or against the list. For distances
+/// parents are tried against the bound that the witness, or else one way down, has given.
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+
+#include "traversal/rising_front.hpp"
+#include "traversal/traverse.hpp"
+
+namespace bvlab {
+
+class Raise {
+ public:
+  static constexpr std::string_view name = "raise";
+  static constexpr std::string_view description =
+      "separation list that is raised where the parent of two entries is apart again";
+
+  template <class B, class V, class Query, class Counter>
+  Walked run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
+    if (recursions_ > 0) {
+      --recursions_;
+      return traverse<B>(a, b, query, counter, workspace);
+    }
+    const std::size_t longest = room * (a.hierarchy().size() + b.hierarchy().size());
+    const bool rebuild = front_.empty() || front_.size() > longest;
+    if (rebuild) {
+      front_.restart();
+      paid_ = false;
+      a.require(0, counter);
+      b.require(0, counter);
+    }
+    const Walked walked = traverse<B>(a, b, query, counter, workspace, front_);
+    if (!rebuild && walked.everything) judge(static_cast<double>(walked.volumes));
+    return walked;
+  }
+
+  const Front& front() const { return front_; }
+  std::size_t front_size() const { return front_.size(); }
+
+ private:
+  /// So many entries for each node are the most: runs that hits cut short can let the list grow.
+  static constexpr std::size_t room = 16;
+  static constexpr unsigned longest_pause = 16;
+  static constexpr double surplus = 1.2;
+  static constexpr std::size_t few = 8;  // entries that are not worth a judgement
+
+  /// Drops the list if recursion would have been cheaper than the run just made through it.
+  void judge(double tests) {
+    if (front_.size() < few) return;
+    const double recursion = 2 * static_cast<double>(front_.size()) - 1;
+    if (surplus * tests < recursion) {
+      paid_ = true;
+      return;
+    }
+    pause_ = paid_ ? 1 : std::min(2 * pause_, longest_pause);
+    recursions_ = pause_ - 1;
+    front_.clear();
+  }
+
+  RisingFront front_;
+  bool paid_ = false;        // some run since the list was last built
+  unsigned recursions_ = 0;  // that are left before it is built again
+  unsigned pause_ = 1;       // runs from when it was dropped to when that is done
+};
+
+}  // namespace bvlab
