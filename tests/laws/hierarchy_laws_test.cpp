@@ -124,6 +124,41 @@ TEST(TightBoxes, AreSmallerThanThoseOfPrincipalAxes) {
   }
 }
 
+TEST(TightRectangles, AreSmallerThanThoseOfPrincipalAxes) {
+  const auto surface = [](const Hierarchy<Rss<float>>& h) {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < h.size(); ++i) {
+      const auto& [centre, side, half, radius] = h.volume(i);
+      const double across = half[0] + half[1];
+      sum += 8.0 * half[0] * half[1] + 4 * M_PI * radius * (across + radius);
+    }
+    return sum;
+  };
+  for (const char* name : {"star", "torus", "knot"}) {
+    const TriangleMesh mesh = formula_mesh(name, 500);
+    const Topology topology = builds::TopDownPrincipal::topology(mesh, 1);
+    EXPECT_LT(surface(Hierarchy<Rss<float>>(mesh, topology, Fit::tight)),
+              0.9 * surface(Hierarchy<Rss<float>>(mesh, topology)))
+        << name;
+  }
+}
+
+TEST(TightRectangles, AreNeverWorse) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (int round = 0; round < 200; ++round) {
+    const Vec3<double> stretch(1, std::exp(normal(random)), std::exp(normal(random)));
+    std::vector<Vec3<double>> points;
+    for (int i = 0; i < 30; ++i) {
+      Vec3<double> p(normal(random), normal(random), normal(random));
+      points.push_back(p.normalized().cwiseProduct(stretch));
+    }
+    const Mat3<double> axes = principal_axes(points);
+    EXPECT_LE(tight_swept_rectangle(axes, points).surface(),
+              swept_rectangle(axes, points).surface());
+  }
+}
+
 /// A turned box is found again: to its edges from principal axes that are not its own.
 TEST(TightBoxes, FindATurnedBox) {
   const Eigen::Matrix3d turn =
