@@ -159,6 +159,32 @@ TEST(TightRectangles, AreNeverWorse) {
   }
 }
 
+/// Of the caps and the cone between them, the tight one has less or as much.
+TEST(TightShells, AreSmallerThanPublishedOnes) {
+  const auto surface = [](const Shell<double>& s) {
+    const double caps = s.outer * s.outer + s.inner * s.inner, c = std::max(s.cosine, -1.0);
+    return (1 - c) * caps +
+           (c > 0 ? std::sqrt(1 - c * c) : 0) * (s.outer * s.outer - s.inner * s.inner) / 2;
+  };
+  for (const char* name : {"star", "torus", "knot"}) {
+    const TriangleMesh mesh = formula_mesh(name, 500);
+    double tight = 0, published = 0;
+    for (std::size_t first = 0; first + 20 <= mesh.triangles.size(); first += 10) {
+      std::vector<Vec3<double>> points;
+      std::vector<Triangle> triangles;
+      for (std::size_t i = first; i < first + 20; ++i) {
+        triangles.push_back(mesh.corners(i));
+        points.insert(points.end(), triangles.back().begin(), triangles.back().end());
+      }
+      const double before = surface(Shell<double>::enclosing(points, triangles)),
+                   after = surface(Shell<double>::tight(points, triangles));
+      EXPECT_LE(after, before * (1 + 1e-9));
+      published += before, tight += after;
+    }
+    EXPECT_LT(tight, 0.95 * published) << name;
+  }
+}
+
 /// A turned box is found again: to its edges from principal axes that are not its own.
 TEST(TightBoxes, FindATurnedBox) {
   const Eigen::Matrix3d turn =
