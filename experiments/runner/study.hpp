@@ -80,6 +80,7 @@ extern const StudyKind boxes;
 extern const StudyKind budget;
 extern const StudyKind distance;
 extern const StudyKind stability;
+extern const StudyKind tightness;
 extern const StudyKind triangles;
 extern const StudyKind worlds;
 

@@ -2,6 +2,9 @@
 /// A ball: the cheapest volume to pose (one point) and to test (one distance), and the one of the
 /// talk (quinlan1994efficient, hubbard1993interactive).
 ///
+/// There is no tighter construction: `enclosing` gives the smallest ball (gartner1999miniball), and
+/// it is `merge`, the smallest around two balls (quinlan1994efficient), that is the looser one.
+///
 /// One N_u is 15 multiplications and additions, one N_v is 9.
 #pragma once
 

@@ -124,6 +124,67 @@ TEST(TightBoxes, AreSmallerThanThoseOfPrincipalAxes) {
   }
 }
 
+TEST(TightRectangles, AreSmallerThanThoseOfPrincipalAxes) {
+  const auto surface = [](const Hierarchy<Rss<float>>& h) {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < h.size(); ++i) {
+      const auto& [centre, side, half, radius] = h.volume(i);
+      const double across = half[0] + half[1];
+      sum += 8.0 * half[0] * half[1] + 4 * M_PI * radius * (across + radius);
+    }
+    return sum;
+  };
+  for (const char* name : {"star", "torus", "knot"}) {
+    const TriangleMesh mesh = formula_mesh(name, 500);
+    const Topology topology = builds::TopDownPrincipal::topology(mesh, 1);
+    EXPECT_LT(surface(Hierarchy<Rss<float>>(mesh, topology, Fit::tight)),
+              0.9 * surface(Hierarchy<Rss<float>>(mesh, topology)))
+        << name;
+  }
+}
+
+TEST(TightRectangles, AreNeverWorse) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (int round = 0; round < 200; ++round) {
+    const Vec3<double> stretch(1, std::exp(normal(random)), std::exp(normal(random)));
+    std::vector<Vec3<double>> points;
+    for (int i = 0; i < 30; ++i) {
+      Vec3<double> p(normal(random), normal(random), normal(random));
+      points.push_back(p.normalized().cwiseProduct(stretch));
+    }
+    const Mat3<double> axes = principal_axes(points);
+    EXPECT_LE(tight_swept_rectangle(axes, points).surface(),
+              swept_rectangle(axes, points).surface());
+  }
+}
+
+/// Of the caps and the cone between them, the tight one has less or as much.
+TEST(TightShells, AreSmallerThanPublishedOnes) {
+  const auto surface = [](const Shell<double>& s) {
+    const double caps = s.outer * s.outer + s.inner * s.inner, c = std::max(s.cosine, -1.0);
+    return (1 - c) * caps +
+           (c > 0 ? std::sqrt(1 - c * c) : 0) * (s.outer * s.outer - s.inner * s.inner) / 2;
+  };
+  for (const char* name : {"star", "torus", "knot"}) {
+    const TriangleMesh mesh = formula_mesh(name, 500);
+    double tight = 0, published = 0;
+    for (std::size_t first = 0; first + 20 <= mesh.triangles.size(); first += 10) {
+      std::vector<Vec3<double>> points;
+      std::vector<Triangle> triangles;
+      for (std::size_t i = first; i < first + 20; ++i) {
+        triangles.push_back(mesh.corners(i));
+        points.insert(points.end(), triangles.back().begin(), triangles.back().end());
+      }
+      const double before = surface(Shell<double>::enclosing(points, triangles)),
+                   after = surface(Shell<double>::tight(points, triangles));
+      EXPECT_LE(after, before * (1 + 1e-9));
+      published += before, tight += after;
+    }
+    EXPECT_LT(tight, 0.95 * published) << name;
+  }
+}
+
 /// A turned box is found again: to its edges from principal axes that are not its own.
 TEST(TightBoxes, FindATurnedBox) {
   const Eigen::Matrix3d turn =

@@ -99,7 +99,9 @@ TEST_F(Shells, TrianglesLieWhereTheyAreFittedToBe) {
       if (round % 5 == 0) triangles.back()[2] = triangles.back()[1];
       for (const auto& c : triangles.back()) corners.push_back(c);
     }
-    const Shell<float> s = posed(Shell<float>::enclosing(corners, triangles), Placement<float>());
+    const Shell<float> s = posed(round % 2 ? Shell<float>::tight(corners, triangles)
+                                           : Shell<float>::enclosing(corners, triangles),
+                                 Placement<float>());
     for (const auto& [p, q, r] : triangles)
       for (int i = 0; i < 50; ++i) {
         double u = uniform(0, 1), v = uniform(0, 1);

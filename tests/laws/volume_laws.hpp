@@ -119,6 +119,33 @@ TYPED_TEST_P(VolumeLaws, WhatIsGivenIsInsideAndMergingKeepsItSo) {
   }
 }
 
+/// The tighter construction, where there is one, around a fan of triangles over the same clouds:
+/// corners, and points between them that are off by no more than rounding.
+TYPED_TEST_P(VolumeLaws, WhatIsFittedTightlyHoldsItsTriangles) {
+  if constexpr (FittedTightly<TypeParam>) {
+    Hostile hostile(6);
+    for (int round = 0; round < rounds / 10; ++round) {
+      const Points points = hostile.cloud();
+      std::vector<Triangle> triangles;
+      for (std::size_t i = 0; i < points.size(); ++i)
+        triangles.push_back({points[0], points[i], points[(i + 1) % points.size()]});
+      const auto volume = TypeParam::tight(points, triangles);
+      const Pose pose = hostile.pose(reach_of(points));
+      const double reach =
+          std::max<double>(reach_of(points), static_cast<double>(bvlab::reach(volume)));
+      const auto moved =
+          posed(volume, PlacementOf<TypeParam>(pose, pose.translation, reach * (1 + 1e-6)));
+      const auto here = posed(volume, PlacementOf<TypeParam>());
+      for (const auto& p : points)
+        ASSERT_TRUE(contains(moved, wide(pose(p)) - wide(pose.translation))) << "round " << round;
+      for (const auto& [a, b, c] : triangles)
+        for (const auto& p : {wide(a), wide(b), wide(c), Vec3<long double>((wide(b) + wide(c)) / 2),
+                              Vec3<long double>((wide(a) + (wide(b) + wide(c)) / 2) / 2)})
+          ASSERT_TRUE(contains(here, p)) << "round " << round;
+    }
+  }
+}
+
 TYPED_TEST_P(VolumeLaws, PosingKeepsVerticesInside) {
   Hostile hostile(2);
   for (int round = 0; round < rounds; ++round) {
@@ -238,9 +265,9 @@ TYPED_TEST_P(VolumeLaws, BatchesSayWhatTheScalarSays) {
 }
 
 REGISTER_TYPED_TEST_SUITE_P(VolumeLaws, SatisfiesTheConcept, WhatIsGivenIsInsideAndMergingKeepsItSo,
-                            PosingKeepsVerticesInside, VolumesThatShareAPointAreNotDisjoint,
-                            TheGapIsAtMostTheDistance, OverflowIsNotDisjoint,
-                            BatchesSayWhatTheScalarSays);
+                            WhatIsFittedTightlyHoldsItsTriangles, PosingKeepsVerticesInside,
+                            VolumesThatShareAPointAreNotDisjoint, TheGapIsAtMostTheDistance,
+                            OverflowIsNotDisjoint, BatchesSayWhatTheScalarSays);
 
 }  // namespace
 }  // namespace bvlab

@@ -130,13 +130,15 @@ struct Hunted {
   V local;
   double reach = 0;
 
-  explicit Hunted(const Patch& patch) {
+  Hunted(const Patch& patch, Fit fit) {
     std::vector<Vec3<double>> points;
     for (const auto& t : patch) points.insert(points.end(), t.begin(), t.end());
     if constexpr (FittedToTriangles<V>)
       local = V::enclosing(points, patch);
     else
       local = V::enclosing(points);
+    if constexpr (FittedTightly<V>)
+      if (fit == Fit::tight) local = V::tight(points, patch);
     for (const auto& p : points) reach = std::max(reach, p.stableNorm());
     reach = std::max(reach, static_cast<double>(reach_of(local)));
     reach *= 1 + 8 * unit_roundoff<typename V::scalar>;
@@ -192,7 +194,8 @@ void hunt(std::uint64_t seed) {
     for (const auto& s : world_a)
       for (const auto& t : world_b) share = share || intersect(s, t);
     const Vec3<double> origins[] = {Vec3<double>::Zero(), pose_a.translation, pose_b.translation};
-    const Hunted<V> hunted_a(a), hunted_b(b);
+    const Fit fit = round % 2 ? Fit::tight : Fit::published;
+    const Hunted<V> hunted_a(a, fit), hunted_b(b, fit);
     for (const auto& origin : origins) {
       const auto p = hunted_a.at(pose_a, origin), q = hunted_b.at(pose_b, origin);
       const bool said = disjoint(p, q);
