@@ -15,9 +15,9 @@ namespace bvlab {
 namespace {
 
 /// THE list of kinds.
-const StudyKind* const kinds[] = {&studies::boxes,    &studies::box_precision, &studies::budget,
-                                  &studies::distance, &studies::stability,     &studies::triangles,
-                                  &studies::worlds};
+const StudyKind* const kinds[] = {&studies::boxes,     &studies::box_precision, &studies::budget,
+                                  &studies::distance,  &studies::posing,        &studies::stability,
+                                  &studies::triangles, &studies::worlds};
 
 const StudyKind& kind_of(const StudyDefinition& definition) {
   std::string names;
