@@ -40,6 +40,10 @@ STYLES = {
     "kdop26": dict(color="#238b45", marker="v", linestyle=":", hatch="xx"),
     "rss": dict(color="#8c6bb1", marker="D", linestyle="--", hatch="oo"),
     "shell": dict(color="#fdae6b", marker="P", linestyle=":", hatch="++"),
+    # How K-DOPs are posed.
+    "realigned": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
+    "corners": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
+    "hull": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
     # Precisions, and tests of two triangles.
     "exact": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
     "float64": dict(color="#2b7bba", marker="s", linestyle="--", hatch="///"),

@@ -79,6 +79,7 @@ extern const StudyKind box_precision;
 extern const StudyKind boxes;
 extern const StudyKind budget;
 extern const StudyKind distance;
+extern const StudyKind posing;
 extern const StudyKind stability;
 extern const StudyKind tightness;
 extern const StudyKind triangles;

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// K-DOPs that are posed by their vertices (klosowski1998efficient): the vertices are turned and
+/// bounded again, which is the optimum of the programme of which Realignment takes one dual basis.
+///
+/// Vertices are found once, when a volume is fitted (see kdop_vertices.hpp), and what is turned is
+/// not they but the directions, so that one vertex is bounded along all of them side by side. One
+/// N_u is 3 K/2 multiplications and 4 K/2 additions and comparisons for each vertex, of which there
+/// are at most 2K - 4; a volume takes K + 3(2K - 4) + 2 numbers.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+#include <span>
+#include <string_view>
+
+#include "hierarchies/geometry/placement.hpp"
+#include "hierarchies/volumes/kdop.hpp"
+#include "hierarchies/volumes/kdop_vertices.hpp"
+
+namespace bvlab {
+
+/// A pose made ready for corners: n = R'd for each direction d, lane by lane, and offsets as in
+/// Realignment: d.(t - o) plus all that rounding can do. With |v| and every corner at most reach,
+///   8u (reach + |t|) |d|     for the vertex in the world, see Placement
+///   (1.01e + 16u) reach |d|  for n, rounded to T
+///   3.1e reach |d|           for its product with a corner: three products, two sums
+///   2.1e (reach + |t - o| + this) |d|  for the grain and the offset that are added
+/// is less than 2 |d| slack, with `slack` that of Placement.
+template <class T, int K>
+struct TurnedDirections {
+  static constexpr int lanes =
+      std::min(native_width<T>, static_cast<int>(std::bit_ceil(unsigned{K / 2})));
+  static constexpr int padded = (K / 2 + lanes - 1) / lanes * lanes;
+
+  std::array<std::array<T, padded>, 3> normal{};  ///< component by component
+  std::array<T, padded> offset{}, opposite_offset{};
+
+  TurnedDirections() {
+    for (int k = 0; k < K / 2; ++k)
+      for (int i = 0; i < 3; ++i) normal[i][k] = Directions::direction(k)[i];
+  }
+
+  TurnedDirections(const Pose& pose, const Vec3<double>& origin, double reach) {
+    const KdopOffsets<T, K> offsets(pose, origin, reach);
+    for (int k = 0; k < K / 2; ++k) {
+      const auto* d = Directions::direction(k);
+      const Vec3<double> n = pose.rotation.transpose() * Vec3<double>(d[0], d[1], d[2]);
+      for (int i = 0; i < 3; ++i) normal[i][k] = static_cast<T>(n[i]);
+      offset[k] = offsets.along[k];
+      opposite_offset[k] = offsets.opposite[k];
+    }
+  }
+
+ private:
+  using Directions = detail::KdopDirections<K>;
+};
+
+/// The policy of a K-DOP that is bounded again by its vertices.
+struct ByCorners {
+  template <class T, int K>
+  using placement = TurnedDirections<T, K>;
+};
+
+/// What is posed is the hull of the corners, `grain` wider in every direction: that holds all that
+/// the bounds hold, see KdopVertices.
+template <Scalar S, int K>
+struct Kdop<S, K, ByCorners> {
+  static constexpr std::string_view name = K == 6    ? "aabb-corners"
+                                           : K == 14 ? "kdop14-corners"
+                                           : K == 18 ? "kdop18-corners"
+                                                     : "kdop26-corners";
+  static constexpr std::string_view description =
+      "slabs along fixed directions, posed by the vertices they make (Klosowski et al. 1998)";
+  using scalar = S;
+  template <class Other>
+  using over = Kdop<Other, K, ByCorners>;
+  using placement = TurnedDirections<Element<S>, K>;
+  static constexpr int room = detail::KdopVertices<K>::room;
+
+  // Nothing but scalars S: a batch of them has the same members over batches.
+  std::array<S, K> bounds;
+  std::array<std::array<S, 3>, room> corners;  ///< beyond `count` the first one again
+  S count, grain;
+
+  static Kdop enclosing(std::span<const Vec3<double>> points) requires(!Batched<S>) {
+    return around(Kdop<S, K>::enclosing(points).bounds);
+  }
+
+  static Kdop around(const std::array<S, K>& bounds) requires(!Batched<S>) {
+    constexpr double e = unit_roundoff<S>;
+    std::array<double, K> wide;
+    double scale = 0;
+    for (int m = 0; m < K; ++m) {
+      wide[m] = static_cast<double>(bounds[m]);
+      scale = std::max(scale, std::abs(wide[m]));
+    }
+    // Bounds rounded to S split a vertex where many planes meet into several, so far apart.
+    const detail::KdopVertices<K> vertices(wide, scale, 4 * e * scale);
+    Kdop result;
+    result.bounds = bounds;
+    result.count = static_cast<S>(vertices.count);
+    // A corner is off by `error` and by being rounded, in each component; times 3 |R'd| / |d| along
+    // any direction. The rest is for sums of three components and for this one.
+    result.grain = rounded_up<S>(3.1 * (vertices.error + e * scale) + 8 * e * scale +
+                                 8 * static_cast<double>(std::numeric_limits<S>::min()));
+    for (int i = 0; i < room; ++i) {
+      const Vec3<S> corner = rounded<S>(vertices.at[i < vertices.count ? i : 0]);
+      result.corners[i] = {corner[0], corner[1], corner[2]};
+    }
+    return result;
+  }
+};
+
+template <class S, int K>
+Kdop<S, K, ByCorners> merge(const Kdop<S, K, ByCorners>& a, const Kdop<S, K, ByCorners>& b) {
+  return Kdop<S, K, ByCorners>::around(merge(Kdop<S, K>{a.bounds}, Kdop<S, K>{b.bounds}).bounds);
+}
+
+/// One N_u: a batch holds directions.
+template <class S, int K>
+requires(!Batched<S>) Kdop<S, K> posed(const Kdop<S, K, ByCorners>& volume,
+                                       const TurnedDirections<S, K>& pose) {
+  using Turned = TurnedDirections<S, K>;
+  using B = Batch<S, Turned::lanes>;
+  constexpr auto anywhere = stdx::element_aligned;
+  std::array<S, Turned::padded> above, below;
+  const int count = static_cast<int>(volume.count);
+  for (int k = 0; k < K / 2; k += Turned::lanes) {
+    const B x(&pose.normal[0][k], anywhere), y(&pose.normal[1][k], anywhere),
+        z(&pose.normal[2][k], anywhere);
+    const auto along = [&](int i) {
+      const auto& corner = volume.corners[i];
+      return (x * B(corner[0]) + y * B(corner[1])) + z * B(corner[2]);
+    };
+    B most = along(0), least = most;
+    for (int i = 1; i < count; ++i) {
+      const B at = along(i);
+      most = stdx::max(most, at), least = stdx::min(least, at);
+    }
+    const B grain(volume.grain);
+    ((most + grain) + B(&pose.offset[k], anywhere)).copy_to(&above[k], anywhere);
+    ((grain - least) + B(&pose.opposite_offset[k], anywhere)).copy_to(&below[k], anywhere);
+  }
+  Kdop<S, K> result;
+  for (int k = 0; k < K / 2; ++k)
+    result.bounds[2 * k] = above[k], result.bounds[2 * k + 1] = below[k];
+  return result;
+}
+
+/// A batch holds volumes: lane by lane the same.
+template <Batched S, int K>
+Kdop<S, K> posed(const Kdop<S, K, ByCorners>& volume, const TurnedDirections<Element<S>, K>& pose) {
+  Kdop<S, K> result;
+  const int count = static_cast<int>(stdx::hmax(volume.count));
+  for (int k = 0; k < K / 2; ++k) {
+    const auto along = [&](int i) {
+      const auto& corner = volume.corners[i];
+      return (S(pose.normal[0][k]) * corner[0] + S(pose.normal[1][k]) * corner[1]) +
+             S(pose.normal[2][k]) * corner[2];
+    };
+    S most = along(0), least = most;
+    for (int i = 1; i < count; ++i) {
+      const S at = along(i);
+      most = stdx::max(most, at), least = stdx::min(least, at);
+    }
+    result.bounds[2 * k] = (most + volume.grain) + S(pose.offset[k]);
+    result.bounds[2 * k + 1] = (volume.grain - least) + S(pose.opposite_offset[k]);
+  }
+  return result;
+}
+
+}  // namespace bvlab
