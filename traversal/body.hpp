@@ -32,9 +32,8 @@ class Body {
     if (epoch_ > 0 && pose == pose_ && origin == origin_) return false;
     pose_ = pose;
     origin_ = origin;
-    placement_ = PlacementOf<V>(pose, origin, hierarchy_->reach());
     if (++epoch_ == 0) forget();
-    stands_ = false;
+    placed_ = stands_ = false;
     return true;
   }
 
@@ -60,6 +59,7 @@ class Body {
     const std::uint32_t siblings = (node + 1) / 2;
     if (volume_epochs_[siblings] == epoch_) return;
     volume_epochs_[siblings] = epoch_;
+    if (!placed_) place();
     if (siblings == 0) {
       volumes_[0] = posed(hierarchy_->volume(0), placement_);
       counter.posed(1);
@@ -84,6 +84,11 @@ class Body {
   }
 
  private:
+  void place() {
+    placement_ = PlacementOf<V>(pose_, origin_, hierarchy_->reach());
+    placed_ = true;
+  }
+
   void follow() {
     const Stand stand(pose_, *hierarchy_);
     // Rounded up, so that no step is lost in a long way.
@@ -107,6 +112,7 @@ class Body {
   Pose pose_;
   Vec3<double> origin_ = Vec3<double>::Zero();
   PlacementOf<V> placement_;
+  bool placed_ = false;  // whether `placement_` is of `pose_`: not where no volume was asked for
   Stand stand_;
   double way_ = -1;      // before the first stand
   bool stands_ = false;  // whether `stand_` is where the body is
