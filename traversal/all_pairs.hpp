@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -46,6 +47,16 @@ inline Vec3<double> middle_of(std::span<const Pose> poses) {
   return low / 2 + high / 2;
 }
 
+/// A strategy of which somebody else may test the two roots, for many pairs at once:
+///   starts_at_roots()     whether the next run begins with that
+///   roots_are_apart()     it did, and there was nothing more to do
+///   run_below_roots(...)  like `run`, where they are not apart
+template <class S>
+concept RootsFirst = requires(S strategy) {
+  { strategy.starts_at_roots() } -> std::same_as<bool>;
+  strategy.roots_are_apart();
+};
+
 /// B is the scalar or batch in which volumes are tested.
 template <class B, BoundingVolume V, class Strategy>
 class AllPairs {
@@ -57,9 +68,9 @@ class AllPairs {
     bodies_.reserve(shapes.size());
     for (const auto& shape : shapes) bodies_.emplace_back(*shape.mesh, *shape.hierarchy);
     if constexpr (roots_as_batches) {
-      for (const auto& [i, j] : pairs_) asked_.push_back(i), asked_.push_back(j);
-      std::sort(asked_.begin(), asked_.end());
-      asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
+      fresh_.resize(pairs_.size());
+      apart_.resize(pairs_.size());
+      wanted_.resize(bodies_.size());
       roots_.resize(bodies_.size());
     }
   }
@@ -70,18 +81,25 @@ class AllPairs {
   void frame(std::span<const Pose> poses, Counter& counter, Ask&& ask, Take&& take) {
     if (!placed_) origin_ = middle_of(poses), placed_ = true;
     for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].move(poses[i], origin_);
-    using Query = decltype(ask(std::size_t{0}));
-    if constexpr (roots_as_batches && !wants_bound<Query>()) {
-      frame_from_roots(counter, ask, take);
-    } else {
-      for (std::size_t p = 0; p < pairs_.size(); ++p) {
-        auto query = ask(p);
-        const std::uint64_t tested = counter.n_v + counter.n_p;
-        strategies_[p].template run<B>(bodies_[pairs_[p].i], bodies_[pairs_[p].j], query, counter,
-                                       workspace_);
-        counter.asked(tested);
-        take(p, query);
+    constexpr bool roots_first = roots_as_batches && !wants_bound<decltype(ask(std::size_t{0}))>();
+    if constexpr (roots_first) find_roots_apart(counter, ask);
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+      auto query = ask(p);
+      const std::uint64_t tested = counter.n_v + counter.n_p;
+      Body<V>&a = bodies_[pairs_[p].i], &b = bodies_[pairs_[p].j];
+      if constexpr (roots_first) {
+        if (!strategies_[p].starts_at_roots()) {
+          strategies_[p].template run<B>(a, b, query, counter, workspace_);
+        } else if (counter.tested(1); apart_[p]) {
+          strategies_[p].roots_are_apart();
+        } else {
+          strategies_[p].template run_below_roots<B>(a, b, query, counter, workspace_);
+        }
+      } else {
+        strategies_[p].template run<B>(a, b, query, counter, workspace_);
       }
+      counter.asked(tested);
+      take(p, query);
     }
   }
 
@@ -97,47 +115,46 @@ class AllPairs {
 
  private:
   static constexpr int W = width<B>();
-  static constexpr bool roots_as_batches = W > 1 && requires { typename Strategy::from_roots; };
+  static constexpr bool roots_as_batches = W > 1 && RootsFirst<Strategy>;
 
-  /// What is told apart at the roots is most of what there is where bodies are sparse, and costs a
-  /// fraction if done for W pairs at once.
-  template <class Counter, class Ask, class Take>
-  void frame_from_roots(Counter& counter, Ask& ask, Take& take) {
-    for (const std::uint32_t i : asked_) {
+  /// Of the pairs whose next run starts at the roots: which roots are apart. That is most of what
+  /// there is to do where bodies are sparse, and costs a fraction if done for W pairs at once.
+  template <class Counter, class Ask>
+  void find_roots_apart(Counter& counter, Ask& ask) {
+    std::size_t count = 0;
+    for (std::uint32_t p = 0; p < pairs_.size(); ++p) {
+      if (!strategies_[p].starts_at_roots()) continue;
+      fresh_[count++] = p;
+      wanted_[pairs_[p].i] = wanted_[pairs_[p].j] = 1;
+    }
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (!wanted_[i]) continue;
       bodies_[i].require(0, counter);
       roots_[i] = bodies_[i].volumes()[0];
+      wanted_[i] = 0;
     }
-    std::uint64_t apart = 0;
-    for (std::size_t p = 0; p < pairs_.size(); ++p) {
-      auto query = ask(p);
-      if (p % W == 0) apart = roots_apart(p, query);
-      const std::uint64_t tested = counter.n_v + counter.n_p;
-      counter.tested(1);
-      if (!(apart >> p % W & 1))
-        traverse<B, BelowRoots<typename Strategy::from_roots>>(
-            bodies_[pairs_[p].i], bodies_[pairs_[p].j], query, counter, workspace_);
-      counter.asked(tested);
-      take(p, query);
+    for (std::size_t first = 0; first < count; first += W) {
+      const auto query = ask(fresh_[first]);
+      std::array<std::uint32_t, W> a, b;
+      for (std::size_t k = 0; k < W; ++k) {
+        const ObjectPair& pair = pairs_[fresh_[std::min(first + k, count - 1)]];
+        a[k] = pair.i, b[k] = pair.j;
+      }
+      const std::uint64_t apart = bits(query.excludes(gather<B>(roots_.data(), a.data()),
+                                                      gather<B>(roots_.data(), b.data())));
+      for (std::size_t k = 0; k < W && first + k < count; ++k)
+        apart_[fresh_[first + k]] = apart >> k & 1;
     }
-  }
-
-  /// Of the pairs from `first` on, as many as there are in a batch.
-  template <class Query>
-  std::uint64_t roots_apart(std::size_t first, const Query& query) const {
-    std::array<std::uint32_t, W> a, b;
-    for (std::size_t k = 0; k < W; ++k) {
-      const ObjectPair& pair = pairs_[std::min(first + k, pairs_.size() - 1)];
-      a[k] = pair.i, b[k] = pair.j;
-    }
-    return bits(query.excludes(gather<B>(roots_.data(), a.data()),
-                               gather<B>(roots_.data(), b.data())));
   }
 
   std::vector<ObjectPair> pairs_;
   std::vector<Strategy> strategies_;
   std::vector<Body<V>> bodies_;
-  std::vector<std::uint32_t> asked_;  // the bodies that are in a pair
-  std::vector<Posed<V>> roots_;       // of all bodies, side by side; only from roots
+  // Only where roots are tested first:
+  std::vector<std::uint32_t> fresh_;  // the pairs for which that is done
+  std::vector<std::uint8_t> apart_;   // for each pair
+  std::vector<std::uint8_t> wanted_;  // for each body, whether it is in one of them
+  std::vector<Posed<V>> roots_;       // of all bodies, side by side
   Workspace workspace_;
   Vec3<double> origin_ = Vec3<double>::Zero();
   bool placed_ = false;

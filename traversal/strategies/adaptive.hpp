@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Recursion, a list or margins, whichever has been cheapest lately for this pair.
+/// Recursion (both nodes of a pair descended at once), a list or margins, whichever has been
+/// cheapest lately for this pair.
 ///
 /// Costs are counted, not timed, so that runs repeat: pairs of volumes and of triangles tested,
 /// each at what it costs in that strategy (`price`; the unit is about a nanosecond with spheres).
@@ -29,20 +30,33 @@ class Adaptive {
 
   template <class B, class V, class Query, class Counter>
   void run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
-    const double way = a.way() + b.way();
-    const double radius = (a.hierarchy().radius() + b.hierarchy().radius()) / 2;
-    // Before the first motion all that is known is that it may be large.
-    step_ = way_ < 0 ? radius : way - way_;
-    way_ = way;
+    const double radius = follow(a, b);
     if (!(step_ < hopeless * radius) && used_ != Used::recursion) drop();
     switch (used_) {
       case Used::recursion:
-        return after_recursion(price(traverse<B>(a, b, query, counter, workspace), plain), radius);
+        return after_recursion(
+            price(traverse<B, NoFrontBoth>(a, b, query, counter, workspace), broad), radius);
       case Used::list:
         return after_other(price(list_.run<B>(a, b, query, counter, workspace), plain));
       case Used::margins:
         return after_other(price(margins_.run<B>(a, b, query, counter, workspace), careful));
     }
+  }
+
+  bool starts_at_roots() const { return used_ == Used::recursion; }
+  void roots_are_apart() {
+    // Nothing is cheaper, and how far the bodies have come is not worth finding out.
+    way_ = -1;
+    probing_ = false;
+    settle(apart);
+  }
+  template <class B, class V, class Query, class Counter>
+  void run_below_roots(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
+                       Workspace& workspace) {
+    const double radius = follow(a, b);
+    Walked walked = traverse<B, BelowRoots<NoFrontBoth>>(a, b, query, counter, workspace);
+    ++walked.volumes;
+    after_recursion(price(walked, broad), radius);
   }
 
   std::size_t front_size() const { return list_.front_size() + margins_.front_size(); }
@@ -52,11 +66,23 @@ class Adaptive {
   struct Prices {
     double run, volumes, triangles;
   };
-  static constexpr Prices plain{20, 12, 25}, careful{15, 35, 100};
+  static constexpr Prices broad{20, 9, 25}, plain{20, 12, 25}, careful{15, 35, 100};
+  static constexpr double apart = 10;  // a run that roots tested as a batch save
   static constexpr int trial = 8, probe_every = 8;
   /// Steps of a tenth of the bodies close most gaps there are; after steps of a third of them
   /// nothing is where it was.
   static constexpr double too_far = 0.1, hopeless = 0.3;
+
+  /// Finds the last step; gives the mean radius of the bodies.
+  template <class V>
+  double follow(Body<V>& a, Body<V>& b) {
+    const double way = a.way() + b.way();
+    const double radius = (a.hierarchy().radius() + b.hierarchy().radius()) / 2;
+    // Before the first motion all that is known is that it may be large.
+    step_ = way_ < 0 ? radius : way - way_;
+    way_ = way;
+    return radius;
+  }
 
   static double price(const Walked& walked, const Prices& prices) {
     return prices.run + prices.volumes * static_cast<double>(walked.volumes) +
@@ -73,14 +99,18 @@ class Adaptive {
         drop();
       return;
     }
-    recursion_ = recursion_ == 0 ? cost : 0.75 * recursion_ + 0.25 * cost;
-    --until_list_, --until_margins_;
+    settle(cost);
     // Bodies far apart have gaps that no step closes.
-    const bool small = step_ < too_far * radius || cost < plain.run + 8 * plain.volumes;
+    const bool small = step_ < too_far * radius || cost < broad.run + 8 * broad.volumes;
     if ((until_margins_ <= 0 && small) || step_ < failed_step_ / 2)
       begin(Used::margins);
     else if (until_list_ <= 0)
       begin(Used::list);
+  }
+
+  void settle(double cost) {
+    recursion_ = recursion_ == 0 ? cost : 0.75 * recursion_ + 0.25 * cost;
+    until_list_ -= until_list_ > 0, until_margins_ -= until_margins_ > 0;
   }
 
   void begin(Used other) {

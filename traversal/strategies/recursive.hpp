@@ -9,34 +9,40 @@
 
 namespace bvlab {
 
-struct Recursive {
-  using from_roots = NoFront;  // whoever has many pairs may test their roots as batches
-  static constexpr std::string_view name = "recursive";
-  static constexpr std::string_view description = "from the roots in every run";
+namespace detail {
 
+template <class Roots>
+struct FromTheRoots {
   template <class B, class V, class Query, class Counter>
   void run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
-    traverse<B, from_roots>(a, b, query, counter, workspace);
+    traverse<B, Roots>(a, b, query, counter, workspace);
+  }
+
+  static bool starts_at_roots() { return true; }
+  static void roots_are_apart() {}
+  template <class B, class V, class Query, class Counter>
+  void run_below_roots(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
+                       Workspace& workspace) {
+    traverse<B, BelowRoots<Roots>>(a, b, query, counter, workspace);
   }
 
   std::size_t front_size() const { return 0; }
 };
 
+}  // namespace detail
+
+struct Recursive : detail::FromTheRoots<NoFront> {
+  static constexpr std::string_view name = "recursive";
+  static constexpr std::string_view description = "from the roots in every run";
+};
+
 /// The same, but a pair of inner nodes is replaced by the four pairs of their children. With
 /// batches that is what one wants: half as many steps that wait for each other, and where most
 /// pairs that overlap have children that do, up to a third fewer tests ((4n - 1) / 3 for n ends).
-struct RecursiveBoth {
-  using from_roots = NoFrontBoth;
+struct RecursiveBoth : detail::FromTheRoots<NoFrontBoth> {
   static constexpr std::string_view name = "recursive-both";
   static constexpr std::string_view description =
       "from the roots in every run, both nodes of a pair descended at once";
-
-  template <class B, class V, class Query, class Counter>
-  void run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
-    traverse<B, from_roots>(a, b, query, counter, workspace);
-  }
-
-  std::size_t front_size() const { return 0; }
 };
 
 }  // namespace bvlab
