@@ -140,8 +140,8 @@ class AllPairs {
         const ObjectPair& pair = pairs_[fresh_[std::min(first + k, count - 1)]];
         a[k] = pair.i, b[k] = pair.j;
       }
-      const std::uint64_t apart = bits(query.excludes(gather<B>(roots_.data(), a.data()),
-                                                      gather<B>(roots_.data(), b.data())));
+      const std::uint64_t apart = bits(
+          query.excludes(gather<B>(roots_.data(), a.data()), gather<B>(roots_.data(), b.data())));
       for (std::size_t k = 0; k < W && first + k < count; ++k)
         apart_[fresh_[first + k]] = apart >> k & 1;
     }

@@ -381,7 +381,8 @@ class Traversal {
 
   template <class Some>
   std::uint64_t test_as(int count) {
-    for (int i = count; i < width<Some>(); ++i) nodes_a_[i] = nodes_a_[0], nodes_b_[i] = nodes_b_[0];
+    for (int i = count; i < width<Some>(); ++i)
+      nodes_a_[i] = nodes_a_[0], nodes_b_[i] = nodes_b_[0];
     return excluded(gather<Some>(a_.volumes(), nodes_a_.data()),
                     gather<Some>(b_.volumes(), nodes_b_.data())) &
            all(count);
