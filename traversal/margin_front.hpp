@@ -143,6 +143,11 @@ class MarginFront {
   bool witnessed() const { return witness_ != nowhere; }
   std::uint32_t witness() const { return witness_; }
 
+  /// Whether its margin is used up soon: then it is only looked at, some times, before it is
+  /// measured again.
+  void expect(bool soon) { brief_looks_ = soon ? most_brief_looks : 0; }
+  bool take_brief_look() { return brief_looks_ > 0 && brief_looks_-- > 0; }
+
   std::vector<KnownHit>& hits() { return hits_; }
   const std::vector<KnownHit>& hits() const { return hits_; }
   void add_hit(std::size_t slot, double deadline, std::uint32_t a, std::uint32_t b) {
@@ -155,6 +160,8 @@ class MarginFront {
   std::vector<KnownHit> hits_;
   float earliest_ = passed;
   std::uint32_t witness_ = nowhere;
+  static constexpr int most_brief_looks = 32;
+  int brief_looks_ = 0;
   std::vector<std::uint32_t> holes_;  // empty between runs
 };
 

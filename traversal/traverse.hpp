@@ -224,7 +224,9 @@ class Traversal {
         keeping_.front.witnessed() && (wants_bound() || !(keeping_.front.deadline(witness) > now));
     if (first) {
       const NodePair& pair = keeping_.front[witness];
-      hold(a_.hierarchy().node(pair.a), b_.hierarchy().node(pair.b), witness);
+      const Node &a = a_.hierarchy().node(pair.a), &b = b_.hierarchy().node(pair.b);
+      if (keeping_.front.take_brief_look() && hits_still(a, b, witness)) return true;
+      hold(a, b, witness);
       if (flush()) return true;
     }
     auto& due = due_;
@@ -240,6 +242,19 @@ class Traversal {
     }
     if (still_due) keeping_.front.leave_rest();
     return stopped;
+  }
+
+  /// Whether a witness that never lasts long is one still, found without its margin, which is as
+  /// dear as ten such looks.
+  bool hits_still(const Node& a, const Node& b, std::uint32_t witness) requires Keeping::margins {
+    if constexpr (Query::one_hit_is_enough && !wants_bound()) {
+      hold(a, b, witness);
+      const Outcome outcome = query_.primitives(pending_);
+      if (outcome.enough) witness_ = witness;
+      count_primitives(outcome);
+      return outcome.enough;
+    }
+    return false;
   }
 
   /// The slot of the i-th entry of this sweep.
@@ -479,12 +494,20 @@ class Traversal {
     } else {
       outcome = query_.primitives(pending_);
     }
-    if (outcome.witness != Outcome::none) witness_ = pending_[outcome.witness].slot;
+    if (outcome.witness != Outcome::none) {
+      witness_ = pending_[outcome.witness].slot;
+      if constexpr (Keeping::margins)
+        keeping_.front.expect(verdicts_[outcome.witness].margin < lasting * keeping_.step);
+    }
+    count_primitives(outcome);
+    return outcome.enough;
+  }
+
+  void count_primitives(const Outcome& outcome) {
     const std::size_t tested = outcome.enough ? outcome.witness + 1 : pending_.size();
     walked_.triangles += tested;
     counter_.primitives(tested);
     pending_.clear();
-    return outcome.enough;
   }
 
   /// A pair of leaves is next looked at when the first of its verdicts can change.
@@ -506,6 +529,8 @@ class Traversal {
       first = i;
     }
   }
+
+  static constexpr double lasting = 8;  // runs for which a witness is worth its margin
 
   Body<V>& a_;
   Body<V>& b_;
