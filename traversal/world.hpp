@@ -62,7 +62,7 @@ class World {
   /// parted: nothing of the two bodies meets.
   template <class Counter, class Ask, class Take, class Leave>
   void update(Counter& counter, Ask&& ask, Take&& take, Leave&& leave) {
-    if (!placed_) origin_ = middle();
+    if (!placed_) origin_ = middle_of(poses_);
     placed_ = true;
     for (const auto i : movers_) boxes_[i] = turned_boxes_[box_of_[i]](poses_[i], origin_);
     if (!movers_.empty()) find_near(leave);
@@ -106,16 +106,6 @@ class World {
   struct Neighbour {
     std::uint32_t other, slot;
   };
-
-  Vec3<double> middle() const {
-    if (poses_.empty()) return Vec3<double>::Zero();
-    Vec3<double> low = poses_[0].translation, high = low;
-    for (const auto& pose : poses_) {
-      low = low.cwiseMin(pose.translation);
-      high = high.cwiseMax(pose.translation);
-    }
-    return low / 2 + high / 2;
-  }
 
   template <class Leave>
   void find_near(Leave&& leave) {

@@ -74,6 +74,9 @@ Settings settings_of(const StudyDefinition& definition) {
     for (const auto& strategy : definition.strings("strategies", {"recursive"})) {
       Variant variant;
       variant.volume = volume, variant.strategy = strategy;
+      variant.build = definition.strings("build", {variant.build}).at(0);
+      variant.fit = definition.strings("fit", {variant.fit}).at(0);
+      variant.leaf_size = static_cast<std::uint32_t>(number("leaf_size", variant.leaf_size, 1, 64));
       check(variant);
       settings.contestants.push_back({variant, ""});
     }
