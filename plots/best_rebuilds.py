@@ -51,8 +51,8 @@ def draw(rows, out):
     axes[0, 0].set_ylabel("tests of volumes over a list's\nwith the best rebuilds")
     axes[1, 0].set_ylabel("time over that of the\nfastest strategy")
     handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncols=6, frameon=False)
-    figure.tight_layout(rect=(0, 0.06, 1, 1))
+    figure.legend(handles, labels, loc="lower center", ncols=4, frameon=False)
+    figure.tight_layout(rect=(0, 0.1, 1, 1))
     style.save(figure, out, "best-rebuilds")
 
 
