@@ -29,7 +29,7 @@ struct PlacementOf<V> {
 }  // namespace detail
 
 /// What V is posed by. A volume that needs more of a pose than `Placement` declares a `placement`
-/// of its own; it is made from the same things, once whenever a body moves.
+/// of its own; it is made from the same things, at most once whenever a body moves.
 template <class V>
 using PlacementOf = typename detail::PlacementOf<V>::type;
 

@@ -8,6 +8,8 @@
 #include <concepts>
 #include <cstdint>
 #include <span>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "traversal/body.hpp"
@@ -51,6 +53,7 @@ inline Vec3<double> middle_of(std::span<const Pose> poses) {
 ///   starts_at_roots()     whether the next run begins with that
 ///   roots_are_apart()     it did, and there was nothing more to do
 ///   run_below_roots(...)  like `run`, where they are not apart
+/// One query says for all pairs of a batch whether roots are apart.
 template <class S>
 concept RootsFirst = requires(S strategy) {
   { strategy.starts_at_roots() } -> std::same_as<bool>;
@@ -76,12 +79,14 @@ class AllPairs {
   }
 
   /// Puts every body where its pose says, and asks every pair: `ask(pair)` makes the query for a
-  /// pair (an index into `pairs()`), `take(pair, query)` gets it back with its answer.
+  /// pair (an index into `pairs()`), `take(pair, query)` gets it back with its answer; one is made
+  /// for each batch of roots besides, of which nothing is taken.
   template <class Counter, class Ask, class Take>
   void frame(std::span<const Pose> poses, Counter& counter, Ask&& ask, Take&& take) {
     if (!placed_) origin_ = middle_of(poses), placed_ = true;
     for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].move(poses[i], origin_);
-    constexpr bool roots_first = roots_as_batches && !wants_bound<decltype(ask(std::size_t{0}))>();
+    constexpr bool roots_first =
+        roots_as_batches && !wants_bound<std::remove_cvref_t<decltype(ask(0))>>();
     if constexpr (roots_first) find_roots_apart(counter, ask);
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
       auto query = ask(p);
@@ -134,7 +139,7 @@ class AllPairs {
       wanted_[i] = 0;
     }
     for (std::size_t first = 0; first < count; first += W) {
-      const auto query = ask(fresh_[first]);
+      auto query = ask(fresh_[first]);
       std::array<std::uint32_t, W> a, b;
       for (std::size_t k = 0; k < W; ++k) {
         const ObjectPair& pair = pairs_[fresh_[std::min(first + k, count - 1)]];

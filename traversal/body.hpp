@@ -92,11 +92,11 @@ class Body {
   void follow() {
     const Stand stand(pose_, *hierarchy_);
     // Rounded up, so that no step is lost in a long way.
-    if (way_ >= 0)
+    if (way_ < 0)
+      way_ = 0;
+    else  // what is no number stays none
       way_ = (way_ + step_between(stand_, stand, hierarchy_->radius())) *
              (1 + 4 * unit_roundoff<double>);
-    else
-      way_ = 0;
     stand_ = stand;
     stands_ = true;
   }

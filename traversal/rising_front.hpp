@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "traversal/front.hpp"
@@ -42,7 +43,8 @@ class SlotTable {
     return slots_[place_of(pair, entries)];
   }
 
-  /// The entry in `slot` is there now, wherever it was before.
+  /// The entry in `slot` is there now. Of an entry that was in another slot before only the pair
+  /// may have stayed the same; one whose pair is to change is erased before it does.
   void set(std::size_t slot, const Entries& entries) {
     if (2 * entries.size() > slots_.size()) grow(entries);
     slots_[place_of(entries[slot], entries)] = static_cast<std::uint32_t>(slot);
@@ -94,6 +96,12 @@ class RisingFront : public Front {
     table_.set(0, entries_);
   }
 
+  void clear() {
+    Front::clear();
+    failures_.clear();
+    table_.clear();
+  }
+
   void open(std::size_t slot) {
     table_.erase(entries_[slot], entries_);
     Front::open(slot);
@@ -108,10 +116,11 @@ class RisingFront : public Front {
   }
 
   void bring_forward(std::size_t slot) {
+    // They are found by what they are, so they leave the table before they are exchanged.
+    if (slot != 0) table_.erase(entries_[0], entries_), table_.erase(entries_[slot], entries_);
     Front::bring_forward(slot);
     std::swap(failures_[0], failures_[slot]);
-    table_.set(slot, entries_);
-    table_.set(0, entries_);
+    if (slot != 0) table_.set(slot, entries_), table_.set(0, entries_);
   }
 
   /// The families that are due. Each run asks once, when its witness did not settle the matter.
@@ -135,7 +144,8 @@ class RisingFront : public Front {
   template <class H>
   void raise(const H& a, const H& b, std::vector<Family>& families, std::size_t i) {
     families[i].raised = true;
-    const auto [parent, first, second, raised, stays] = families[i];
+    const auto [parent, first, second] =
+        std::tuple(families[i].parent, families[i].first, families[i].second);
     table_.erase(entries_[first], entries_);
     table_.erase(entries_[second], entries_);
     entries_[first] = parent;
@@ -196,17 +206,18 @@ class RisingFront : public Front {
 
   /// Moves the last entry that there is into a slot where there is none.
   void fill(std::size_t slot) {
-    while (!failures_.empty() && failures_.back() == gone) move_last_to(size() - 1);
-    if (slot < size() && failures_[slot] == gone) {
-      move_last_to(slot);
-      table_.set(slot, entries_);
-    }
-  }
-
-  void move_last_to(std::size_t slot) {
+    while (!failures_.empty() && failures_.back() == gone) drop_last();
+    if (!(slot < size() && failures_[slot] == gone)) return;
     if (slot == 0) witnessed_ = false;
+    table_.erase(entries_.back(), entries_);
     entries_[slot] = entries_.back();
     failures_[slot] = failures_.back();
+    drop_last();
+    table_.set(slot, entries_);
+  }
+
+  void drop_last() {
+    if (size() == 1) witnessed_ = false;
     entries_.pop_back();
     failures_.pop_back();
   }

@@ -13,7 +13,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <concepts>
 #include <cstdint>
+#include <limits>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "traversal/approach.hpp"
@@ -250,7 +254,12 @@ class Traversal {
     if constexpr (Query::one_hit_is_enough && !wants_bound()) {
       hold(a, b, witness);
       const Outcome outcome = query_.primitives(pending_);
-      if (outcome.enough) witness_ = witness;
+      if (outcome.enough) {
+        // Known to bodies that stay where they are; when they have moved it is looked at again.
+        const Candidate& hit = pending_[outcome.witness];
+        keeping_.front.add_hit(witness, MarginFront::passed, hit.a, hit.b);
+        witness_ = witness;
+      }
       count_primitives(outcome);
       return outcome.enough;
     }
@@ -344,7 +353,7 @@ class Traversal {
       if constexpr (kFromFront) slot = slot_of(first + i);
       enter<kFromFront>(pair, slot);
     });
-    // Margins are found for eight at once.
+    // Margins are found for a batch at once.
     constexpr std::size_t patience =
         std::max<std::size_t>(Query::patience, Keeping::margins ? 7 : 0);
     return pending_.size() > patience && flush();

@@ -7,6 +7,7 @@
 /// (goldsmith1987automatic).
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>

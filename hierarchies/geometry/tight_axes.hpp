@@ -5,6 +5,7 @@
 /// what it gains over principal axes depends on the points. O(n log n) a turn for n points.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <span>

@@ -200,6 +200,35 @@ TYPED_TEST(FrontLaws, AHitIsTheFirstToBeTestedNextTime) {
   EXPECT_EQ(again.n_v, 1u);
 }
 
+/// Entries are found by their pairs whichever was a witness: siblings are proposed as often as in a
+/// front in which nothing ever moved, and a table that lost track would fill up.
+TEST(RisingFronts, WitnessesComeAndGo) {
+  const TriangleMesh mesh = formula_mesh("star", 400);
+  const Hierarchy<Sphere<float>> hierarchy(mesh, builds::TopDownPrincipal::topology(mesh, 1));
+  RisingFront front;
+  front.restart();
+  // All children of all inner nodes of b, with the root of a: a front as deep as the tree.
+  for (std::size_t slot = 0; slot < front.size(); ++slot) {
+    const auto node = hierarchy.node(front[slot].b);
+    if (node.count > 0 || front.size() > 200) continue;
+    front.open(slot);
+    front.add({0, node.first});
+    front.add({0, node.first + 1});
+    --slot;
+  }
+  const std::size_t n = front.size();
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 20000; ++i) front.bring_forward(random() % n);
+  std::vector<Family> families;
+  front.propose(hierarchy, hierarchy, families);
+  std::size_t siblings = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n; ++j)
+      siblings += (front[i].b + 1) / 2 == (front[j].b + 1) / 2;
+  EXPECT_GT(siblings, 50u);
+  EXPECT_EQ(families.size(), siblings);
+}
+
 /// Every slot once and no other, however full the last register is: also where all are due for
 /// ever, as they are to a query without a limit.
 TEST(MarginFronts, CollectWhatIsDue) {

@@ -66,6 +66,32 @@ TEST(Strategies, GiveTheRecursiveAnswerForEveryVolume) {
   expect_recursive_answers(1000, [](std::string_view) { return true; });
 }
 
+/// Whoever is asked again where he stood finds what he found, however little of it was written
+/// down.
+TEST(Strategies, AnswersLastWhileBodiesRest) {
+  for (const auto& setting : settings(600)) {
+    Played scene = played(setting);
+    const std::size_t values = 7 * scene.trace.objects;
+    std::vector<double> halting;
+    for (std::size_t frame = 0; frame < scene.trace.frames; ++frame) {
+      const auto first = scene.trace.values.begin() + static_cast<std::ptrdiff_t>(frame * values);
+      // Now and then two frames more in the same place.
+      for (int copies = frame % 4 == 3 ? 3 : 1; copies > 0; --copies)
+        halting.insert(halting.end(), first, first + static_cast<std::ptrdiff_t>(values));
+    }
+    scene.trace.frames = halting.size() / values;
+    scene.trace.values = std::move(halting);
+    const auto touching = answer(scene, "recursive", "touching").touching;
+    const auto contacts = answer(scene, "recursive", "contacts").contacts;
+    for (const std::string& strategy : all_strategies()) {
+      EXPECT_EQ(answer(scene, strategy, "touching").touching, touching)
+          << setting.name << ' ' << strategy;
+      EXPECT_EQ(answer(scene, strategy, "contacts").contacts, contacts)
+          << setting.name << ' ' << strategy;
+    }
+  }
+}
+
 bool boxes_meet(const Triangle& a, const Triangle& b) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto [la, ha] = std::minmax({a[0][axis], a[1][axis], a[2][axis]});

@@ -103,7 +103,8 @@ class Distance {
       const double d = bvlab::distance(*candidate.triangle_a, *candidate.triangle_b).distance;
       if (!(d < distance_)) continue;
       distance_ = d;
-      limit_ = d / (1 + relative_error_) * (1 - alike);
+      limit_ = std::max(d / (1 + relative_error_) * (1 - alike),
+                        std::numeric_limits<double>::denorm_min());
       outcome = {.witness = first + i, .enough = d == 0};
     }
   }

@@ -47,6 +47,7 @@ class Adaptive {
   void roots_are_apart() {
     // Nothing is cheaper, and how far the bodies have come is not worth finding out.
     way_ = -1;
+    if (probing_) drop();
     probing_ = false;
     settle(apart);
   }

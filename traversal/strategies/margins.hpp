@@ -20,6 +20,9 @@
 /// the query is another than last time, all is due; the parameters of a query are to stay.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <string_view>
 
 #include "traversal/approach.hpp"
@@ -67,7 +70,9 @@ class Margins {
   template <class V, class Query>
   bool unchanged(Body<V>& a, Body<V>& b, Query& query) {
     const double way = a.way() + b.way();
-    const bool moved = way != way_;
+    // By epochs: a short step can be lost in the sum of two long ways.
+    const bool moved = a.epoch() != epoch_a_ || b.epoch() != epoch_b_;
+    epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
     if (moved) {
       // The ways are sums of many steps, rounded up; what is wrong with their own sum is added.
       step_ = way - way_ + 4 * unit_roundoff<double> * way;
@@ -118,7 +123,10 @@ class Margins {
 
   template <class V>
   void rebuild(Body<V>& a, Body<V>& b) {
-    if (front_.empty()) way_ = a.way() + b.way();
+    if (front_.empty()) {
+      way_ = a.way() + b.way();
+      epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
+    }
     front_.restart();
     approach_.restart(a, b);
     shown_ = approach_.now();
@@ -147,10 +155,11 @@ class Margins {
 
   MarginFront front_;
   Approach approach_;
-  double way_ = 0;          // of both bodies, when they were last looked at
-  double step_ = 0;         // how far they have moved since the time before
-  double shown_ = 0;        // at least what the clock shows
-  double quiet_until_ = 0;  // the answer is what it was while the clock shows less
+  std::uint32_t epoch_a_ = 0, epoch_b_ = 0;  // when they were last looked at
+  double way_ = 0;                           // of both bodies, when they were last looked at
+  double step_ = 0;                          // how far they have moved since the time before
+  double shown_ = 0;                         // at least what the clock shows
+  double quiet_until_ = 0;                   // the answer is what it was while the clock shows less
   double distance_ = 0;
   double upkeep_ = 0, cost_ = 0, runs_ = 0;  // of a run, smoothed; since the last rebuild
   bool worn_out_ = false;
