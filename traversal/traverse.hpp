@@ -90,18 +90,16 @@ struct Walked {
   std::size_t triangles = 0;  ///< pairs of primitives tested
 };
 
+/// Whether the two roots are still to be tested, or overlap as somebody else has found.
+enum class Start { roots, below_roots };
+
 /// For `traverse` where no front is kept.
 struct NoFront {
   static constexpr bool kept = false, rises = false, margins = false;
-  static constexpr bool descends_both = false, below_roots = false;
+  static constexpr bool descends_both = false;
 };
 struct NoFrontBoth : NoFront {
   static constexpr bool descends_both = true;
-};
-/// Where somebody else has tested the two roots.
-template <class Roots>
-struct BelowRoots : Roots {
-  static constexpr bool below_roots = true;
 };
 struct KeptFront : NoFront {
   static constexpr bool kept = true;
@@ -119,6 +117,29 @@ struct KeptMargins : NoFront {
 };
 
 namespace detail {
+
+/// Which pairs of volumes the query excludes, as bits; the gaps to `gaps` where they are wanted.
+template <bool kGaps, class P, class Query, class T>
+[[gnu::always_inline]] inline std::uint64_t excluded(const P& p, const P& q, Query& query,
+                                                     [[maybe_unused]] T* gaps) {
+  if constexpr (kGaps) {
+    const auto apart = gap(p, q);
+    if constexpr (Batched<std::remove_const_t<decltype(apart)>>)
+      apart.copy_to(gaps, stdx::element_aligned);
+    else
+      gaps[0] = apart;
+    if constexpr (wants_bound<Query>()) return bits(query.excludes(apart));
+  }
+  return bits(query.excludes(p, q));
+}
+
+/// The same of as many nodes as there are lanes. By itself, so that it is compiled once for all
+/// strategies and counters.
+template <class Some, bool kGaps, class P, class Query, class T>
+[[gnu::noinline]] std::uint64_t excluded_of(const P* a, const std::uint32_t* nodes_a, const P* b,
+                                            const std::uint32_t* nodes_b, Query& query, T* gaps) {
+  return excluded<kGaps>(gather<Some>(a, nodes_a), gather<Some>(b, nodes_b), query, gaps);
+}
 
 template <class B, class V, class Query, class Counter, class Keeping>
 class Traversal {
@@ -139,7 +160,8 @@ class Traversal {
         due_(workspace.due),
         families_(workspace.families) {}
 
-  Walked run() {
+  /// From the roots where no front is kept, or from what is below them.
+  Walked run(Start start = Start::roots) {
     open_.clear();
     pending_.clear();
     bool stopped = false;
@@ -148,7 +170,7 @@ class Traversal {
       stopped = stopped || sweep_due();
     } else if constexpr (Keeping::kept) {
       stopped = stopped || sweep();
-    } else if constexpr (Keeping::below_roots) {
+    } else if (start == Start::below_roots) {
       open_.reserve(4);
       enter<false>({0, 0}, Outcome::none);
     } else {
@@ -400,29 +422,17 @@ class Traversal {
       if (count > 1 && count <= 4) return test_as<Batch<Element<B>, 4>>(count);
     if constexpr (W > 1)
       if (count > 1) return test_as<B>(count);
-    return excluded(a_.volumes()[nodes_a_[0]], b_.volumes()[nodes_b_[0]]);
+    return excluded<keeps_gaps()>(a_.volumes()[nodes_a_[0]], b_.volumes()[nodes_b_[0]], query_,
+                                  gaps_.data());
   }
 
   template <class Some>
   std::uint64_t test_as(int count) {
     for (int i = count; i < width<Some>(); ++i)
       nodes_a_[i] = nodes_a_[0], nodes_b_[i] = nodes_b_[0];
-    return excluded(gather<Some>(a_.volumes(), nodes_a_.data()),
-                    gather<Some>(b_.volumes(), nodes_b_.data())) &
+    return excluded_of<Some, keeps_gaps()>(a_.volumes(), nodes_a_.data(), b_.volumes(),
+                                           nodes_b_.data(), query_, gaps_.data()) &
            all(count);
-  }
-
-  template <class P>
-  [[gnu::always_inline]] std::uint64_t excluded(const P& p, const P& q) {
-    if constexpr (keeps_gaps()) {
-      const auto apart = gap(p, q);
-      if constexpr (Batched<std::remove_const_t<decltype(apart)>>)
-        apart.copy_to(gaps_.data(), stdx::element_aligned);
-      else
-        gaps_[0] = apart;
-      if constexpr (wants_bound()) return bits(query_.excludes(apart));
-    }
-    return bits(query_.excludes(p, q));
   }
 
   /// Which of the pairs that need no further look are given one all the same, for wider gaps.
@@ -564,6 +574,14 @@ class Traversal {
 template <class B, class Roots = NoFront, class V, class Query, class Counter>
 Walked traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
   return detail::Traversal<B, V, Query, Counter, Roots>(a, b, query, counter, {}, workspace).run();
+}
+
+/// The same for bodies whose roots have been tested, and are not excluded.
+template <class B, class Roots, class V, class Query, class Counter>
+Walked traverse_below_roots(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
+                            Workspace& workspace) {
+  return detail::Traversal<B, V, Query, Counter, Roots>(a, b, query, counter, {}, workspace)
+      .run(Start::below_roots);
 }
 
 /// The same from a front, which is kept up to date: it never shrinks, and stays a partition also

@@ -55,7 +55,7 @@ class Adaptive {
   void run_below_roots(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
                        Workspace& workspace) {
     const double radius = follow(a, b);
-    Walked walked = traverse<B, BelowRoots<NoFrontBoth>>(a, b, query, counter, workspace);
+    Walked walked = traverse_below_roots<B, NoFrontBoth>(a, b, query, counter, workspace);
     ++walked.volumes;
     after_recursion(price(walked, broad), radius);
   }

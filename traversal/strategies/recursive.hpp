@@ -23,7 +23,7 @@ struct FromTheRoots {
   template <class B, class V, class Query, class Counter>
   void run_below_roots(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
                        Workspace& workspace) {
-    traverse<B, BelowRoots<Roots>>(a, b, query, counter, workspace);
+    traverse_below_roots<B, Roots>(a, b, query, counter, workspace);
   }
 
   std::size_t front_size() const { return 0; }
