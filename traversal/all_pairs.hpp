@@ -93,13 +93,16 @@ class AllPairs {
       const std::uint64_t tested = counter.n_v + counter.n_p;
       Body<V>&a = bodies_[pairs_[p].i], &b = bodies_[pairs_[p].j];
       if constexpr (roots_first) {
-        if (!strategies_[p].starts_at_roots()) {
-          strategies_[p].template run<B>(a, b, query, counter, workspace_);
-        } else if (counter.tested(1); apart_[p]) {
-          strategies_[p].roots_are_apart();
-        } else {
-          strategies_[p].template run_below_roots<B>(a, b, query, counter, workspace_);
+        const bool from_roots = strategies_[p].starts_at_roots();
+        if (from_roots) {
+          counter.tested(1);
         }
+        if (!from_roots)
+          strategies_[p].template run<B>(a, b, query, counter, workspace_);
+        else if (apart_[p])
+          strategies_[p].roots_are_apart();
+        else
+          strategies_[p].template run_below_roots<B>(a, b, query, counter, workspace_);
       } else {
         strategies_[p].template run<B>(a, b, query, counter, workspace_);
       }
