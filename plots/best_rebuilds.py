@@ -46,7 +46,7 @@ def draw(rows, out):
                 axis.plot(line.motion.str.replace(" / ", "\n"), line[measure], label=strategy, markersize=4, **look)
         axes[0, column].set(title=query, yscale="log")
         axes[0, column].axhline(1, color="#8f8f8f", lw=0.8)
-        axes[1, column].set(yscale="log", xlabel="motion a frame: radii, degrees")
+        axes[1, column].set(yscale="log", yticks=[1, 2, 5], yticklabels=["1", "2", "5"], xlabel="motion a frame: radii, degrees")
         axes[1, column].axhline(1, color="#8f8f8f", lw=0.8)
     axes[0, 0].set_ylabel("tests of volumes over a list's\nwith the best rebuilds")
     axes[1, 0].set_ylabel("time over that of the\nfastest strategy")

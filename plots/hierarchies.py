@@ -85,7 +85,7 @@ def draw_best(table, out, name):
                      **style.bar_style(look))
         for place, (_, row) in enumerate(group.iterrows()):
             axis.text(place + 0.27, row["best us"], f"{row['best: times faster']:.1f}×", ha="center", va="bottom",
-                      fontsize=6)
+                      fontsize=6, bbox=dict(facecolor="white", edgecolor="none", pad=0.5, alpha=0.85))
         axis.set_yscale("log")
         axis.set_ylim(group[["peer us", "recursive us", "best us"]].min().min() / 2)
         axis.set_title(panel_name(*key))

@@ -207,7 +207,7 @@ class Traversal {
       end = raise();
       next = keeping_.front.witnessed();
     }
-    for (; next < end && !stopped;) {
+    while (next < end && !stopped) {
       const int count = take_front(next, end);
       stopped = look_at<true>(count, next) || (next == 0 && keeping_.front.witnessed() && flush());
       next += static_cast<std::size_t>(count);
@@ -487,7 +487,6 @@ class Traversal {
       open_.push({a.first, b.first + 1});
       open_.push({a.first, b.first});
     } else {
-      // Which one it is cannot be foreseen: chosen without a branch.
       const bool second = descends_b(a, b);
       const std::uint32_t first = second ? b.first : a.first;
       (second ? b_ : a_).require(first, counter_);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hierarchies/geometry/enclosing_ball.hpp"
+#include "hierarchies/geometry/pattern_search.hpp"
 #include "hierarchies/geometry/principal_axes.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
@@ -101,8 +102,7 @@ inline Vec3<double> narrowest_axis(const Vec3<double>& centre,
 template <class Better>
 void improve_centre(Vec3<double>& centre, const Ball& ball, Better&& better) {
   const double radius = std::sqrt(std::max(0.0, ball.squared_radius));
-  double step = 0.2;
-  for (int round = 0, halved = 0; round < 20 && halved < 4; ++round) {
+  pattern_search([&](double step) {
     bool gained = false;
     const Vec3<double> offset = centre - ball.centre;
     const double length = step * std::max(offset.norm(), radius);
@@ -116,8 +116,8 @@ void improve_centre(Vec3<double>& centre, const Ball& ball, Better&& better) {
         centre = other, gained = true;
         break;
       }
-    if (!gained) step /= 2, ++halved;
-  }
+    return gained;
+  });
 }
 
 }  // namespace bvlab

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "hierarchies/geometry/pattern_search.hpp"
 #include "hierarchies/geometry/scalar.hpp"
 
 namespace bvlab {
@@ -123,16 +124,14 @@ inline SweptRectangle tight_swept_rectangle(const Mat3<double>& start,
     axes.row(j) = axes.row(k).cross(axes.row(i)).normalized();
     return axes;
   };
-  constexpr int halvings = 4, most_rounds = 20;
-  double step = 0.2;
-  for (int round = 0, halved = 0; round < most_rounds && halved < halvings; ++round) {
+  pattern_search([&](double step) {
     bool gained = false;
     for (int k = 0; k < 3; ++k)
       gained |= better(turned(k, step), wider) || better(turned(k, -step), wider);
     const double more = step / 4 * size;
     gained |= better(best.axes, wider + more) || better(best.axes, std::max(0.0, wider - more));
-    if (!gained) step /= 2, ++halved;
-  }
+    return gained;
+  });
   return best;
 }
 

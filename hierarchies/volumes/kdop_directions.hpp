@@ -22,7 +22,6 @@ template <int K>
 struct KdopDirections {
   static_assert(K == 6 || K == 14 || K == 18 || K == 26);
   static constexpr int slabs = K / 2;
-  static constexpr bool has_corners = K == 14 || K == 26, has_edges = K == 18 || K == 26;
 
   static constexpr const std::int8_t* direction(int slab) {
     return cube_directions[K == 18 && slab >= 3 ? slab + 4 : slab];

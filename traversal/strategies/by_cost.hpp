@@ -27,8 +27,6 @@ class ByCost {
     if (front_.empty() || worn_out_ || front_.size() > longest) {
       front_.restart();
       cost_ = runs_ = 0;
-      a.require(0, counter);
-      b.require(0, counter);
     }
     const Walked walked = traverse<B>(a, b, query, counter, workspace, front_);
     const auto tests = static_cast<double>(walked.volumes);

@@ -49,8 +49,6 @@ class Raise {
     if (rebuild) {
       front_.restart();
       paid_ = false;
-      a.require(0, counter);
-      b.require(0, counter);
     }
     const Walked walked = traverse<B>(a, b, query, counter, workspace, front_);
     if (!rebuild && walked.everything) judge(static_cast<double>(walked.volumes));

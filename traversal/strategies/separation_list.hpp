@@ -39,8 +39,6 @@ class Deferred {
     if (rebuild) {
       front_.restart();
       still_ = 0;
-      a.require(0, counter);
-      b.require(0, counter);
     }
     const std::size_t before = front_.size();
     traverse<B>(a, b, query, counter, workspace, front_);
