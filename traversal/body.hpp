@@ -61,11 +61,11 @@ class Body {
     volume_epochs_[siblings] = epoch_;
     if (!placed_) place();
     if (siblings == 0) {
-      volumes_[0] = posed(hierarchy_->volume(0), placement_);
+      put(0);
       counter.posed(1);
     } else {
-      for (const std::uint32_t i : {2 * siblings - 1, 2 * siblings})
-        volumes_[i] = posed(hierarchy_->volume(i), placement_);
+      put(2 * siblings - 1);
+      put(2 * siblings);
       counter.posed(2);
     }
   }
@@ -84,6 +84,11 @@ class Body {
   }
 
  private:
+  /// Made where it is to stand: an assignment would write it, wait for that and copy it.
+  void put(std::uint32_t node) {
+    ::new (&volumes_[node]) Posed<V>(posed(hierarchy_->volume(node), placement_));
+  }
+
   void place() {
     placement_ = PlacementOf<V>(pose_, origin_, hierarchy_->reach());
     placed_ = true;

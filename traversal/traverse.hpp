@@ -66,11 +66,18 @@ class OpenPairs {
   void reserve(std::size_t more) {
     if (pairs_.size() < size_ + more) pairs_.resize(2 * (size_ + more));
   }
-  void push(const NodePair& pair) { pairs_[size_++] = pair; }
-  const NodePair& pop() { return pairs_[--size_]; }
+  void push(const NodePair& pair) {
+    pairs_[size_++] = static_cast<std::uint64_t>(pair.b) << 32 | pair.a;
+  }
+  NodePair pop() {
+    const std::uint64_t pair = pairs_[--size_];
+    return {static_cast<std::uint32_t>(pair), static_cast<std::uint32_t>(pair >> 32)};
+  }
 
  private:
-  std::vector<NodePair> pairs_;
+  // Each pair is written as it is read, at once: a read that spans two writes waits until both
+  // have reached the cache, and so for all volumes posed before.
+  std::vector<std::uint64_t> pairs_;
   std::size_t size_ = 0;
 };
 

@@ -17,9 +17,11 @@
 #include <numeric>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "broadphase/methods/auto.hpp"
+#include "hierarchies/geometry/morton.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/turned_box.hpp"
 
@@ -66,11 +68,12 @@ class World {
     placed_ = true;
     for (const auto i : movers_) boxes_[i] = turned_boxes_[box_of_[i]](poses_[i], origin_);
     if (!movers_.empty()) find_near(leave);
+    order_movers();
     asked_ = 0;
-    for (const auto i : movers_)
+    for (const auto i : movers_) {
       for (const auto& [other, slot] : neighbours_[i]) {
         // A pair of which both have moved is asked once.
-        if (moved_[other] == Moved::yes && other < i) continue;
+        if (moved_[other] == Moved::done) continue;
         const ObjectPair& pair = near_[slot].pair;
         auto query = ask(pair);
         near_[slot].strategy.template run<B>(body(pair.i), body(pair.j), query, counter,
@@ -78,6 +81,8 @@ class World {
         take(slot, pair, query);
         ++asked_;
       }
+      moved_[i] = Moved::done;
+    }
     for (const auto i : movers_) moved_[i] = Moved::no;
     movers_.clear();
   }
@@ -96,7 +101,7 @@ class World {
   }
 
  private:
-  enum class Moved : std::uint8_t { no, yes };
+  enum class Moved : std::uint8_t { no, yes, done };  ///< done: its pairs have been asked
   struct Near {
     ObjectPair pair;
     std::uint32_t place_of_i, place_of_j;  ///< in the lists of neighbours
@@ -106,6 +111,18 @@ class World {
   struct Neighbour {
     std::uint32_t other, slot;
   };
+
+  /// Neighbours one after the other: what one pair has posed is still in the cache when the next
+  /// one asks for it.
+  void order_movers() {
+    Eigen::AlignedBox3d all;
+    for (const auto i : movers_) all.extend(poses_[i].translation);
+    ordered_.clear();
+    for (const auto i : movers_) ordered_.emplace_back(morton_code(poses_[i].translation, all), i);
+    std::sort(ordered_.begin(), ordered_.end());
+    std::transform(ordered_.begin(), ordered_.end(), movers_.begin(),
+                   [](const auto& coded) { return coded.second; });
+  }
 
   template <class Leave>
   void find_near(Leave&& leave) {
@@ -180,8 +197,9 @@ class World {
   std::vector<Box<float>> boxes_;
   std::vector<std::vector<Neighbour>> neighbours_;
   std::vector<Near> near_;
-  std::vector<std::uint32_t> free_;    // slots that no pair has
-  std::vector<std::uint32_t> movers_;  // since the last update
+  std::vector<std::uint32_t> free_;                               // slots that no pair has
+  std::vector<std::uint32_t> movers_;                             // since the last update
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> ordered_;  // they, with their codes
   std::vector<Moved> moved_;
   Workspace workspace_;
   Vec3<double> origin_ = Vec3<double>::Zero();

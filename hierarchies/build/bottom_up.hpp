@@ -14,6 +14,7 @@
 #include <numeric>
 
 #include "hierarchies/build/topology.hpp"
+#include "hierarchies/geometry/morton.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
 namespace bvlab {
@@ -40,7 +41,7 @@ class Clustering {
     active_.resize(count);
     std::iota(active_.begin(), active_.end(), 0u);
     std::vector<std::uint64_t> codes(count);
-    for (std::size_t i = 0; i < count; ++i) codes[i] = morton(boxes_[i].center(), all);
+    for (std::size_t i = 0; i < count; ++i) codes[i] = morton_code(boxes_[i].center(), all);
     std::stable_sort(active_.begin(), active_.end(),
                      [&](auto i, auto j) { return codes[i] < codes[j]; });
     children_.resize(count);
@@ -56,17 +57,6 @@ class Clustering {
   struct Children {
     std::uint32_t left = 0, right = 0;
   };
-
-  static std::uint64_t morton(const Vec3<double>& p, const Eigen::AlignedBox3d& all) {
-    std::uint64_t code = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double length = all.max()[axis] - all.min()[axis];
-      const double t = length > 0 ? (p[axis] - all.min()[axis]) / length : 0;
-      const auto cell = static_cast<std::uint64_t>(std::clamp(t, 0.0, 1.0) * ((1 << 21) - 1));
-      for (int bit = 0; bit < 21; ++bit) code |= (cell >> bit & 1) << (3 * bit + axis);
-    }
-    return code;
-  }
 
   double cost(std::uint32_t i, std::uint32_t j) const {
     const Vec3<double> d = boxes_[i].merged(boxes_[j]).sizes();
