@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+
 #include "experiments/peers/triangle_oracle.hpp"
 #include "hierarchies/volumes.hpp"
 #include "tests/oracles/settings.hpp"
@@ -88,6 +91,35 @@ TEST(Strategies, AnswersLastWhileBodiesRest) {
           << setting.name << ' ' << strategy;
       EXPECT_EQ(answer(scene, strategy, "contacts").contacts, contacts)
           << setting.name << ' ' << strategy;
+    }
+  }
+}
+
+/// Who comes back to where he stood finds what he found, though deadlines that had passed have then
+/// not passed again.
+TEST(Strategies, AnswersAreTheSameWhereBodiesReturn) {
+  for (const std::size_t moving : {0u, 1u}) {
+    Setting setting{"to and fro", {{"star", 240}}, walk(4, 40, 2.5, 0.01, 1, 0, moving)};
+    setting.walk.freedoms = moving ? "one" : "all";
+    Played scene = played(setting);
+    const std::size_t values = 7 * scene.trace.objects;
+    std::mt19937 random(20260101);
+    std::vector<double> roaming;
+    std::ptrdiff_t at = 0;
+    for (int frame = 0; frame < 600; ++frame) {
+      const auto first = scene.trace.values.begin() + at * static_cast<std::ptrdiff_t>(values);
+      roaming.insert(roaming.end(), first, first + static_cast<std::ptrdiff_t>(values));
+      at = std::clamp<std::ptrdiff_t>(at + std::uniform_int_distribution(-3, 3)(random), 0, 39);
+    }
+    scene.trace.frames = 600;
+    scene.trace.values = std::move(roaming);
+    for (const char* volume : {"sphere", "obb"}) {
+      const auto touching = answer(scene, "recursive", "touching", volume).touching;
+      const auto contacts = answer(scene, "recursive", "contacts", volume).contacts;
+      for (const std::string& strategy : all_strategies()) {
+        EXPECT_EQ(answer(scene, strategy, "touching", volume).touching, touching) << strategy;
+        EXPECT_EQ(answer(scene, strategy, "contacts", volume).contacts, contacts) << strategy;
+      }
     }
   }
 }

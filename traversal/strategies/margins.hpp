@@ -111,7 +111,13 @@ class Margins {
   bool repeat_hits(Query& query) {
     auto& hits = front_.hits();
     if constexpr (Query::one_hit_is_enough)
-      std::erase_if(hits, [&](const KnownHit& hit) { return !(hit.deadline > shown_); });
+      // The entry is to be looked at again, also where the run ends before its turn comes and the
+      // bodies have gone back by the next one, to where its deadline has not passed.
+      std::erase_if(hits, [&](const KnownHit& hit) {
+        const bool over = !(hit.deadline > shown_);
+        if (over) front_.expire_at(hit.slot, MarginFront::passed);
+        return over;
+      });
     else
       std::erase_if(hits, [&](const KnownHit& hit) {
         return !(front_.deadline(hit.slot) > just_above(shown_));
