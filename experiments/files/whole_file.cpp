@@ -2,10 +2,12 @@
 #include "experiments/files/whole_file.hpp"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -61,9 +63,22 @@ void write_through(const std::filesystem::path& path, std::span<const std::strin
   if (!file || !file.write(parts) || !file.close()) fail(path, errno);
 }
 
-/// A name beside `path` that is free now.
-std::string name_beside(const std::filesystem::path& path, int attempt) {
-  return path.string() + ".partial-" + std::to_string(::getpid()) + "." + std::to_string(attempt);
+constexpr std::string_view partial = ".partial-";
+
+/// A name beside `path` that says whose it is.
+std::string name_beside(const std::filesystem::path& path, std::string_view ending) {
+  return path.string().append(partial) + std::to_string(::getpid()) + "." + std::string(ending);
+}
+
+/// Whether it is such a name, of a process that is no more.
+bool left_behind(const std::string& name) {
+  const auto at = name.rfind(partial);
+  if (at == name.npos) return false;
+  pid_t process = 0;
+  const char* const first = name.data() + at + partial.size();
+  const auto [end, error] = std::from_chars(first, name.data() + name.size(), process);
+  return error == std::errc() && *end == '.' && process > 0 && ::kill(process, 0) != 0 &&
+         errno == ESRCH;
 }
 
 /// Gives the nameless file its name. A name that is taken can only be replaced by renaming, so the
@@ -76,7 +91,7 @@ bool give_name(const Descriptor& file, const std::filesystem::path& path) {
   if (link(path.c_str())) return true;
   if (errno != EEXIST) return false;
   for (int attempt = 0; attempt < 100; ++attempt) {
-    const std::string beside = name_beside(path, attempt);
+    const std::string beside = name_beside(path, std::to_string(attempt));
     if (!link(beside.c_str())) {
       if (errno == EEXIST) continue;
       return false;
@@ -103,7 +118,7 @@ bool write_nameless(const std::filesystem::path& path, std::span<const std::stri
 
 void write_beside(const std::filesystem::path& path, std::span<const std::string_view> parts,
                   mode_t mode) {
-  std::string beside = path.string() + ".partial-XXXXXX";
+  std::string beside = name_beside(path, "XXXXXX");
   Descriptor file(::mkostemp(beside.data(), O_CLOEXEC));
   if (!file) fail(path, errno);
   if (file.finish(parts, mode) && file.close() && ::rename(beside.c_str(), path.c_str()) == 0)
@@ -148,6 +163,13 @@ void write_whole(const std::filesystem::path& path, std::span<const std::string_
   ::umask(mask);
   const mode_t mode = exists ? (status.st_mode & 07777) : (0666 & ~mask);
   if (!write_nameless(place, parts, mode)) write_beside(place, parts, mode);
+}
+
+void clear_left_behind(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (left_behind(entry.path().filename().string()))
+      std::filesystem::remove(entry.path(), ignored);
 }
 
 void require_place(const std::string& option, const std::filesystem::path& path) {

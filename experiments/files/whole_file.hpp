@@ -23,6 +23,9 @@ inline void write_whole(const std::filesystem::path& path, std::string_view text
   write_whole(path, std::span(&text, 1));
 }
 
+/// Removes what processes that were killed while they wrote into `folder` have left there.
+void clear_left_behind(const std::filesystem::path& folder);
+
 /// Throws Unusable, naming the option and the path, if nothing can be written at `path`: its folder
 /// is missing or read-only, or it is a folder itself. Asked before the work is done, not after.
 /// An empty path asks for nothing.

@@ -138,6 +138,7 @@ void open_record(const std::filesystem::path& record, const std::string& definit
   std::error_code error;
   std::filesystem::create_directories(record, error);
   if (error) throw Unusable(record.string(), "cannot be made: " + error.message());
+  clear_left_behind(record);
   const auto held = record / "definition.toml";
   if (std::filesystem::exists(held)) {
     if (contents(held) != definition)

@@ -140,6 +140,17 @@ class Runs(ProgramTest):
         names = {path.name for path in (self.folder / "killed").iterdir()}
         self.assertEqual(names, {path.name for path in (self.folder / "undisturbed").iterdir()})
 
+    def test_what_a_killed_writer_left_is_removed(self):
+        self.take("run", "parts.toml", "--record", "left")
+        dead = subprocess.Popen(["true"])
+        dead.wait()
+        stale, busy = (self.folder / "left" / f"parts.csv.partial-{pid}.0" for pid in (dead.pid, os.getpid()))
+        stale.touch()
+        busy.touch()
+        self.take("run", "parts.toml", "--record", "left")
+        self.assertFalse(stale.exists())
+        self.assertTrue(busy.exists())
+
     def test_a_finished_run_does_nothing(self):
         self.take("run", "parts.toml", "--record", "record")
         before = {path: path.stat() for path in (self.folder / "record").iterdir()}
