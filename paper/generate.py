@@ -148,17 +148,17 @@ def write_coherence(paper):
     if not record:
         return
     rows = coherence.read(record)
-    gamma = coherence.fit_gamma(rows)
-    errors = coherence.errors(rows, gamma)
+    kappa = coherence.fit_kappa(rows)
+    errors = coherence.errors(rows, kappa)
     constant = coherence.constant_errors(rows)
     lists = rows[rows.strategy.isin(coherence.LISTS)]
     best = lists.loc[lists.tests_saved.idxmax()]
     left_out = errors.get("left out", (float("nan"), float("nan"), 0))
     paper.numbers.update(
-        lawGamma=f"{gamma:.2f}", lawCells=str(len(lists)), lawErrorFitted=percent(errors["fitted"][0]),
+        lawKappa=f"{kappa:.2f}", lawCells=str(len(lists)), lawErrorFitted=percent(errors["fitted"][0]),
         lawErrorLeftOut=percent(left_out[0]))
     text = (f"Fitted on {' and '.join(coherence.FITTED_MESHES)} when all bodies move or one does, "
-            f"$\\gamma = {gamma:.2f}$. The law is off by {percent(errors['fitted'][0])} (median; 95\\,\\% of cells within "
+            f"$\\kappa = {kappa:.2f}$. The law is off by {percent(errors['fitted'][0])} (median; 95\\,\\% of cells within "
             f"{percent(errors['fitted'][1])}) on the {errors['fitted'][2]} cells fitted")
     if left_out[2]:
         unseen = lists[~coherence.fitted(lists)]

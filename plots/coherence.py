@@ -11,11 +11,16 @@ against the motion in leaf sizes).
 
 The law (the talk's 2n, n, n argument, carried on). A recursion that ends in n pairs makes 2n - 1 tests (R;
 fewer where a hit ends it), a run through the front that it leaves makes c: n, 2 more for every entry gained,
-and fewer where a hit found again ends it. From then on the list never shrinks. In its a-th run it gains the
-share g a^-gamma of n, where g is what it gains in the first: a list that has been about knows most of where the
-bodies go. A run takes c times its length over n. It gains nothing with probability exp(-lambda a^-gamma),
-where exp(-lambda) is the stillness (of runs weighted with their ends), and the talk's rules say when it is
-rebuilt. Only gamma is fitted; R, c, g and lambda are measured from recursive fronts of one frame and the next.
+and fewer where a hit found again ends it. From then on the list never shrinks. In its first run it gains the
+share g of n. It gains more as the bodies come farther from where it was built than they have been: in its a-th
+run g (D(a) - D(a - 1))^kappa, where D(a) is how far a walk gets in a steps, of which each is the last one again
+with the probability p that the scene calls persistence (root mean square, D(1) = 1):
+
+    D(a)^2 = a (1 + p) / (1 - p) - 2 p (1 - p^a) / (1 - p)^2.
+
+A run takes c times its length over n. Where exp(-lambda) is the stillness (of runs weighted with their ends), it
+gains nothing with probability exp(-lambda (D(a) - D(a - 1))^kappa), and the talk's rules say when it is rebuilt. Only
+kappa is fitted; R, c, g and lambda are measured from recursive fronts of one frame and the next.
 """
 
 from pathlib import Path
@@ -27,8 +32,6 @@ import pandas as pd
 import style
 from arguments import record_arguments
 
-MEASURED = ["pair_runs", "near_runs", "moved_runs", "still_runs", "tests", "ends", "kept", "grown",
-            "again", "still_ends", "motion_leaf", "motion_gap"]
 LISTS = {"separation-list": 0, "deferred": 1}
 # The fit sees the bunny and the knot, when all bodies move or one does. Everything else is left out of it.
 FITTED_MESHES = ["bunny", "knot"]
@@ -42,7 +45,7 @@ def read(record):
     coherence = pd.read_csv(table.with_suffix(".coherence.csv"), keep_default_na=False)
     if (rows.differing != 0).any():
         raise SystemExit("a variant's answers differ from the reference: refused")
-    trace = [c for c in coherence.columns if c not in MEASURED]
+    trace = [c for c in coherence.columns if c in rows]
     labels = [c for c in ("motion", "manner", "density", "workload") if c in rows]
     rows = rows.groupby(trace + labels + ["strategy"], sort=False).agg(
         time_ns=("time_ns", "median"), pairs=("pairs", "first"), n_u=("n_u", "first"),
@@ -79,18 +82,25 @@ def fitted(rows):
     return seen
 
 
-def list_over_recursion(rows, defer, gamma):
+def way_out(persistence, steps):
+    """How far a walk gets in so many steps, in steps."""
+    p = np.minimum(persistence, 1 - 1e-4)
+    return np.sqrt(np.maximum(steps * (1 + p) / (1 - p) - 2 * p * (1 - p**steps) / (1 - p) ** 2, 0))
+
+
+def list_over_recursion(rows, defer, kappa):
     """Tests of a list over those of the recursion, near pairs only, by the law."""
     near = rows.near_runs.to_numpy(float)
     full = rows.tests.to_numpy() / near
     once = rows.again.to_numpy() / near
     gain = rows.growth.to_numpy()
     rate = -np.log(np.clip(rows.stillness.to_numpy(), 1e-12, 1))
+    persistence = rows.persistence.to_numpy(float)
     states = [np.ones(len(rows))] + [np.zeros(len(rows)) for _ in range(defer)]
     cost, runs, length = full.copy(), np.ones(len(rows)), np.ones(len(rows))
     for age in range(1, int(rows.frames.max())):
         alive = sum(states) * (age < rows.frames.to_numpy())
-        fresh = age ** -gamma
+        fresh = (way_out(persistence, age) - way_out(persistence, age - 1)) ** kappa
         cost += alive * once * length
         runs += alive
         length = length + gain * fresh
@@ -99,30 +109,30 @@ def list_over_recursion(rows, defer, gamma):
     return cost / runs / full
 
 
-def predicted(rows, gamma):
+def predicted(rows, kappa):
     """The speedup in tests by the law; pairs that are not near take one test either way."""
     result = np.full(len(rows), np.nan)
     for name, defer in LISTS.items():
         of_list = (rows.strategy == name).to_numpy()
         part = rows[of_list]
         far = part.pair_runs - part.near_runs
-        ratio = list_over_recursion(part, defer, gamma)
+        ratio = list_over_recursion(part, defer, kappa)
         result[of_list] = (far + part.tests) / (far + part.tests * ratio)
     return result
 
 
-def fit_gamma(rows):
-    """The gamma with the least squared error of log speedup, to two digits."""
+def fit_kappa(rows):
+    """The kappa with the least squared error of log speedup, to two digits."""
     seen = rows[fitted(rows) & rows.strategy.isin(LISTS)]
     candidates = np.arange(0, 2.001, 0.02)
     errors = [np.mean(np.log(predicted(seen, g) / seen.tests_saved) ** 2) for g in candidates]
     return candidates[int(np.argmin(errors))]
 
 
-def errors(rows, gamma):
+def errors(rows, kappa):
     """Median and 95th percentile of |predicted / measured - 1|, fitted and left out."""
     rows = rows[rows.strategy.isin(LISTS)]
-    off = np.abs(predicted(rows, gamma) / rows.tests_saved - 1)
+    off = np.abs(predicted(rows, kappa) / rows.tests_saved - 1)
     table = {}
     for label, part in (("fitted", fitted(rows)), ("left out", ~fitted(rows))):
         if part.any():
@@ -181,16 +191,16 @@ def margins_errors(rows, law):
             (("fitted", fitted(group)), ("left out", ~fitted(group))) if part.any()}
 
 
-def print_tables(rows, gamma):
+def print_tables(rows, kappa):
     print(f"{len(rows)} cells, of {len(rows.groupby(['mesh', 'volume']))} pairs of mesh and volume.\n")
     print("Rank correlation with what is saved (tests; for others than the talk's lists, tests of volumes "
           "and triangles):")
     print(rank_correlations(rows).round(2).to_string(), "\n")
-    print(f"The law's gamma = {gamma:.2f}; error of the predicted speedup, median and 95 %:")
-    for label, (middle, most, count) in errors(rows, gamma).items():
+    print(f"The law's kappa = {kappa:.2f}; error of the predicted speedup, median and 95 %:")
+    for label, (middle, most, count) in errors(rows, kappa).items():
         print(f"  {label:9} {100 * middle:5.1f} %  {100 * most:5.1f} %   of {count} cells")
     for query, part in rows.groupby("query", sort=False):
-        for label, (middle, most, count) in errors(part, gamma).items():
+        for label, (middle, most, count) in errors(part, kappa).items():
             print(f"  {query}, {label}: {100 * middle:.1f} %  {100 * most:.1f} %   of {count} cells")
     middle, most = constant_errors(rows)
     print(f"  talk's constants 4/3, 3/2: {100 * middle:.1f} %  {100 * most:.1f} %\n")
@@ -242,10 +252,10 @@ def draw_speedup(rows, out):
     return style.save(figure, out, "coherence-speedup")
 
 
-def draw_law(rows, gamma, out):
+def draw_law(rows, kappa, out):
     """Predicted against measured, and residuals against survival."""
     rows = rows[rows.strategy.isin(LISTS)].copy()
-    rows["predicted"] = predicted(rows, gamma)
+    rows["predicted"] = predicted(rows, kappa)
     seen = fitted(rows)
     figure, axes = plt.subplots(1, 3, figsize=(9.2, 3.1))
     low, high = (f * x for f, x in ((0.8, rows[["predicted", "tests_saved"]].min().min()),
@@ -278,20 +288,20 @@ def draw_law(rows, gamma, out):
     axes[1].set_xlim(left=0)
     axes[1].set_xticks([0, 0.01, 0.1, 1], ["0", "1%", "10%", "all"])
     axes[1].minorticks_off()
-    draw_curve(axes[2], gamma)
+    draw_curve(axes[2], kappa)
     figure.tight_layout()
     return style.save(figure, out, "coherence-law")
 
 
-def draw_curve(axis, gamma):
+def draw_curve(axis, kappa):
     """What the law says of a pair with 100 ends, of which a run opens more and more."""
     opened = np.concatenate([[0], np.geomspace(1e-3, 0.3, 60)])
     ends, frames = 100, 1000
     model = pd.DataFrame({"near_runs": 1, "tests": 2 * ends - 1, "ends": ends, "grown": opened * ends,
-                          "stillness": np.exp(-opened * ends), "frames": frames, "growth": opened,
+                          "stillness": np.exp(-opened * ends), "frames": frames, "growth": opened, "persistence": 0.0,
                           "again": ends * (1 + 2 * opened)})
     for name, defer in LISTS.items():
-        axis.plot(opened, 1 / list_over_recursion(model, defer, gamma), linewidth=1.5, label=name,
+        axis.plot(opened, 1 / list_over_recursion(model, defer, kappa), linewidth=1.5, label=name,
                   **style.line_style(name))
     axis.axhline(1, color="black", linewidth=0.8)
     axis.axhline(2, color="black", linewidth=0.8, linestyle=":")
@@ -331,13 +341,13 @@ def draw_margins(rows, out):
 def main():
     arguments = record_arguments(__doc__, table_only=True)
     rows = read(arguments.record)
-    gamma = fit_gamma(rows)
-    print_tables(rows, gamma)
+    kappa = fit_kappa(rows)
+    print_tables(rows, kappa)
     if arguments.table_only:
         return
     out = arguments.out
     print(draw_speedup(rows, out))
-    print(draw_law(rows, gamma, out))
+    print(draw_law(rows, kappa, out))
     if (rows.strategy == "margins").any():
         print(draw_margins(rows, out))
 
