@@ -70,8 +70,9 @@ class Adaptive {
   static constexpr Prices broad{20, 9, 25}, plain{20, 12, 25}, careful{15, 35, 100};
   static constexpr double apart = 10;  // a run that roots tested as a batch save
   static constexpr int trial = 8, probe_every = 8;
-  /// After steps of a twenty-fifth of the bodies margins have not been cheapest anywhere yet; after
-  /// steps of a third nothing is where it was.
+  /// Where all bodies make steps of a twenty-fifth of their radius margins have not been cheapest
+  /// yet; after steps of a third nothing is where it was. Where few bodies move at a time margins
+  /// stand larger steps than that, and are tried later than they might be.
   static constexpr double too_far = 0.04, hopeless = 0.3;
 
   /// Finds the last step; gives the mean radius of the bodies.
