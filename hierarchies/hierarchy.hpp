@@ -12,6 +12,7 @@
 #include "hierarchies/bounding_volume.hpp"
 #include "hierarchies/build/topology.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
+#include "hierarchies/hierarchy_extent.hpp"
 
 namespace bvlab {
 
@@ -72,11 +73,7 @@ class Hierarchy {
   /// The triangle that stands at a place in a leaf's range.
   std::uint32_t primitive(std::uint32_t place) const { return primitives_[place]; }
   std::size_t primitives() const { return primitives_.size(); }
-  /// No vertex and no volume's reference point is farther than this from the mesh's own origin.
-  double reach() const { return reach_; }
-  /// The middle of the mesh, in its frame, and how far from there its farthest corner is at most.
-  const Vec3<double>& centre() const { return centre_; }
-  double radius() const { return radius_; }
+  const HierarchyExtent& extent() const { return extent_; }
 
  private:
   struct Above {
@@ -93,19 +90,20 @@ class Hierarchy {
   }
 
   void surround(const TriangleMesh& mesh) {
-    reach_ = radius_ = 0;
-    for (const auto& v : volumes_) reach_ = std::max(reach_, static_cast<double>(reach_of(v)));
-    for (const auto& v : mesh.vertices) reach_ = std::max(reach_, v.stableNorm());
-    reach_ *= 1 + 8 * unit_roundoff<typename V::scalar>;
+    double reach = 0, radius = 0;
+    for (const auto& v : volumes_) reach = std::max(reach, static_cast<double>(reach_of(v)));
+    for (const auto& v : mesh.vertices) reach = std::max(reach, v.stableNorm());
+    reach *= 1 + 8 * unit_roundoff<typename V::scalar>;
     Vec3<double> low = mesh.corners(0)[0], high = low;
     for (const auto& triangle : mesh.triangles)
       for (const auto v : triangle)
         low = low.cwiseMin(mesh.vertices[v]), high = high.cwiseMax(mesh.vertices[v]);
-    centre_ = low / 2 + high / 2;
+    const Vec3<double> centre = low / 2 + high / 2;
     for (const auto& triangle : mesh.triangles)
       for (const auto v : triangle)
-        radius_ = std::max(radius_, (mesh.vertices[v] - centre_).stableNorm());
-    radius_ *= 1 + 16 * unit_roundoff<double>;
+        radius = std::max(radius, (mesh.vertices[v] - centre).stableNorm());
+    radius *= 1 + 16 * unit_roundoff<double>;
+    extent_ = {centre, radius, reach, nodes_.size()};
   }
 
   /// The range of primitives below each node: children come after their parent, leaf by leaf.
@@ -153,8 +151,7 @@ class Hierarchy {
   std::vector<Node> nodes_;
   std::vector<V> volumes_;
   std::vector<Above> above_;  // one for two siblings
-  double reach_ = 0, radius_ = 0;
-  Vec3<double> centre_;
+  HierarchyExtent extent_;
   // Only while fitting:
   std::vector<std::uint32_t> begin_, end_, corners_;
   std::vector<Vec3<double>> points_;

@@ -7,7 +7,8 @@
 /// patch's diameter, as it stands in the world. If the patches share a point, no point of that
 /// patch is farther than D from it, so none has gone deeper than D past the other surface there.
 /// The pairs
-/// in question are kept in the order of D and the largest is looked at first: its D bounds them all.
+/// in question are kept in the order of D and the largest is looked at first: its D bounds them
+/// all.
 #pragma once
 
 #include <algorithm>
@@ -155,8 +156,8 @@ class Budgeted {
   double deepest(const Body<V>& a, const Body<V>& b) const {
     const double stretch = std::max(stretch_of(a.pose()), stretch_of(b.pose()));
     const double grain = 16 * unit_roundoff<double> *
-                         (a.pose().translation.norm() + a.hierarchy().reach() +
-                          b.pose().translation.norm() + b.hierarchy().reach());
+                         (a.pose().translation.norm() + a.extent().reach +
+                          b.pose().translation.norm() + b.extent().reach);
     return static_cast<double>(queue_.front().size) * stretch + grain;
   }
   /// |R x| <= |x| sqrt(1 + |R'R - I|), the defect computed with an error below 16 u.

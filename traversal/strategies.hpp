@@ -3,8 +3,8 @@
 ///
 /// A strategy belongs to one pair of bodies and lives as long as the pair. It is default
 /// constructible, and
-///   run<B>(a, b, query, counter, workspace)   answers the query for the bodies as they stand now;
-///   front_size()                              the entries it keeps.
+///   run(pair)      answers the pair's query for its bodies as they stand now (see body_pair.hpp);
+///   front_size()   the entries it keeps.
 /// Law: in every run, whatever happened between runs, the query ends up with the answer that
 /// `Recursive` gives; a distance within 2^-45 of it (distance.hpp).
 #pragma once

@@ -20,13 +20,10 @@
 #include <string_view>
 #include <vector>
 
-#include "traversal/approach.hpp"
 #include "traversal/body.hpp"
-#include "traversal/front.hpp"
+#include "traversal/fronts.hpp"
 #include "traversal/gather.hpp"
-#include "traversal/margin_front.hpp"
 #include "traversal/queries/candidate.hpp"
-#include "traversal/rising_front.hpp"
 
 namespace bvlab {
 
@@ -37,7 +34,9 @@ namespace bvlab {
 ///   patience              so many candidates may be held back before `primitives` must be called
 ///   wants_bound           if there and true: one pair of near leaves is handed over first, near
 ///                         pairs are looked at before far ones, and `excludes(gap)` says the same
-/// and for strategies that keep margins:
+/// The bvlab program makes it by `asked(options)` and takes `answer()`, true or false or a number;
+/// or makes it by `asked(options, found)`, and it appends pairs of primitives to `found`. And for
+/// strategies that keep margins:
 ///   primitives(pending, verdicts)   the same, saying of each candidate what was found
 ///   limit()                         surfaces farther apart than this matter to the query no more
 ///   known(a, b)                     two triangles still share a point; says whether that is enough
@@ -90,39 +89,6 @@ struct Workspace {
   std::vector<Family> families;
 };
 
-/// What a traversal had to do.
-struct Walked {
-  bool everything = true;     ///< false where the query stopped it
-  std::size_t volumes = 0;    ///< pairs of volumes tested
-  std::size_t triangles = 0;  ///< pairs of primitives tested
-};
-
-/// Whether the two roots are still to be tested, or overlap as somebody else has found.
-enum class Start { roots, below_roots };
-
-/// For `traverse` where no front is kept.
-struct NoFront {
-  static constexpr bool kept = false, rises = false, margins = false;
-  static constexpr bool descends_both = false;
-};
-struct NoFrontBoth : NoFront {
-  static constexpr bool descends_both = true;
-};
-struct KeptFront : NoFront {
-  static constexpr bool kept = true;
-  Front& front;
-};
-struct KeptRising : NoFront {
-  static constexpr bool kept = true, rises = true;
-  RisingFront& front;
-};
-struct KeptMargins : NoFront {
-  static constexpr bool kept = true, margins = true;
-  MarginFront& front;
-  const Approach& approach;
-  double step;  ///< how much nearer the bodies come from run to run, about
-};
-
 namespace detail {
 
 /// Which pairs of volumes the query excludes, as bits; the gaps to `gaps` where they are wanted.
@@ -140,8 +106,17 @@ template <bool kGaps, class P, class Query, class T>
   return bits(query.excludes(p, q));
 }
 
-/// The same of as many nodes as there are lanes. By itself, so that it is compiled once for all
-/// strategies and counters.
+/// The same by itself, so that it is compiled once for all strategies and counters.
+template <bool kGaps, class P, class Query, class T>
+[[gnu::noinline]] std::uint64_t excluded_one(const P& p, const P& q, Query& query, T* gaps) {
+  return excluded<kGaps>(p, q, query, gaps);
+}
+template <class P>
+[[gnu::noinline]] auto gap_between(const P& p, const P& q) {
+  return gap(p, q);
+}
+
+/// And of as many nodes as there are lanes.
 template <class Some, bool kGaps, class P, class Query, class T>
 [[gnu::noinline]] std::uint64_t excluded_of(const P* a, const std::uint32_t* nodes_a, const P* b,
                                             const std::uint32_t* nodes_b, Query& query, T* gaps) {
@@ -251,7 +226,7 @@ class Traversal {
   /// The entries whose deadlines have passed, the witness first where it is one of them or a bound
   /// is wanted.
   bool sweep_due() requires Keeping::margins {
-    const double now = keeping_.approach.now();
+    const double now = keeping_.clock.now();
     const std::uint32_t witness = keeping_.front.witness();
     const bool first =
         keeping_.front.witnessed() && (wants_bound() || !(keeping_.front.deadline(witness) > now));
@@ -330,7 +305,7 @@ class Traversal {
   }
 
   auto gap_of(std::uint32_t a, std::uint32_t b) const {
-    return gap(a_.volumes()[a], b_.volumes()[b]);
+    return gap_between(a_.volumes()[a], b_.volumes()[b]);
   }
 
   int take_open() {
@@ -369,7 +344,7 @@ class Traversal {
         if constexpr (!Keeping::margins) {
           keeping_.front.add({nodes_a_[i], nodes_b_[i]});
         } else {
-          const double deadline = keeping_.approach.deadline(static_cast<double>(gaps_[i]));
+          const double deadline = keeping_.clock.deadline(static_cast<double>(gaps_[i]));
           if constexpr (kFromFront)
             keeping_.front.expire_at(slot_of(first + static_cast<std::size_t>(i)), deadline);
           else
@@ -429,8 +404,8 @@ class Traversal {
       if (count > 1 && count <= 4) return test_as<Batch<Element<B>, 4>>(count);
     if constexpr (W > 1)
       if (count > 1) return test_as<B>(count);
-    return excluded<keeps_gaps()>(a_.volumes()[nodes_a_[0]], b_.volumes()[nodes_b_[0]], query_,
-                                  gaps_.data());
+    return excluded_one<keeps_gaps()>(a_.volumes()[nodes_a_[0]], b_.volumes()[nodes_b_[0]], query_,
+                                      gaps_.data());
   }
 
   template <class Some>
@@ -545,12 +520,12 @@ class Traversal {
         const Verdict& verdict = verdicts_[i];
         least = std::min(least, verdict.margin);
         if (verdict.hit && slot != Outcome::none)
-          keeping_.front.add_hit(slot, keeping_.approach.deadline(verdict.margin), pending_[i].a,
+          keeping_.front.add_hit(slot, keeping_.clock.deadline(verdict.margin), pending_[i].a,
                                  pending_[i].b);
       }
       if (slot != Outcome::none)
-        keeping_.front.expire_at(
-            slot, least < 0 ? MarginFront::passed : keeping_.approach.deadline(least));
+        keeping_.front.expire_at(slot,
+                                 least < 0 ? MarginFront::passed : keeping_.clock.deadline(least));
       first = i;
     }
   }
@@ -578,16 +553,10 @@ class Traversal {
 /// Runs the query over two bodies from their roots. B is the scalar or batch that volumes are
 /// tested in. Says whether everything was seen: false where the query stopped it.
 template <class B, class Roots = NoFront, class V, class Query, class Counter>
-Walked traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
-  return detail::Traversal<B, V, Query, Counter, Roots>(a, b, query, counter, {}, workspace).run();
-}
-
-/// The same for bodies whose roots have been tested, and are not excluded.
-template <class B, class Roots, class V, class Query, class Counter>
-Walked traverse_below_roots(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
-                            Workspace& workspace) {
+Walked traverse_from_roots(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
+                           Workspace& workspace, Start start = Start::roots) {
   return detail::Traversal<B, V, Query, Counter, Roots>(a, b, query, counter, {}, workspace)
-      .run(Start::below_roots);
+      .run(start);
 }
 
 /// The same from a front, which is kept up to date: it never shrinks, and stays a partition also

@@ -4,7 +4,7 @@
 /// apart. Their counts are vertices looked at (n_v) and features or simplices tried (n_p).
 #pragma once
 
-#include "experiments/runner/replay.hpp"
+#include "experiments/replay/replay.hpp"
 
 namespace bvlab {
 

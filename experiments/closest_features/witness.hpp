@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "experiments/closest_features/polytope.hpp"
-#include "traversal/primitives/triangle_distance.hpp"
+#include "experiments/replay/triangle_test.hpp"
 
 namespace bvlab::closest_features {
 

@@ -1,32 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/peers/disagreements.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/intersections.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
 
+#include "experiments/peers/triangle_oracle.hpp"
+#include "experiments/replay/triangle_test.hpp"
 #include "traversal/all_pairs.hpp"
-#include "traversal/primitives/triangle_distance.hpp"
-#include "traversal/primitives/triangle_intersection.hpp"
 
 namespace bvlab {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-/// CGAL's predicates ask for triangles with area; the others are left to ours.
+/// In rational numbers, where CGAL is there to say; by our own integers elsewhere.
 bool exactly_touching(const Triangle& a, const Triangle& b) {
-  const auto solid = [](const Triangle& t) {
-    const auto point = [](const Vec3<double>& p) { return Kernel::Point_3(p[0], p[1], p[2]); };
-    return Kernel::Triangle_3(point(t[0]), point(t[1]), point(t[2]));
-  };
-  const Kernel::Triangle_3 one = solid(a), other = solid(b);
-  if (one.is_degenerate() || other.is_degenerate()) return intersect<Exact>(a, b);
-  return CGAL::do_intersect(one, other);
+#if BVLAB_CGAL
+  return oracle::intersect(a, b);
+#else
+  return intersect<Exact>(a, b);
+#endif
 }
 
 std::vector<Triangle> standing(const TriangleMesh& mesh, const Pose& pose) {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/runner/replay.hpp"
+#include "experiments/replay/replay.hpp"
 
 namespace bvlab {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "experiments/peers/play_peer.hpp"
-#include "traversal/primitives/triangle_intersection.hpp"
+#include "experiments/replay/triangle_test.hpp"
 
 namespace bvlab {
 namespace {

@@ -18,6 +18,7 @@ constexpr std::string_view all_three = "touching contacts distance", yes_or_no =
 // The libraries are Debian's, compiled for plain x86-64 (-O2); what they have in headers is
 // compiled as we are. Settings are the libraries' own, but for what a description names.
 constexpr Peer list[] = {
+#if BVLAB_FCL
     {"fcl-obb", "FCL 0.7: oriented boxes, recursive", meeting, replay_fcl<FclModel::obb>},
     {"fcl-obbrss",
      "FCL 0.7: oriented boxes and swept rectangles, recursive; distances without error", all_three,
@@ -37,19 +38,30 @@ constexpr Peer list[] = {
      replay_fcl<FclModel::kdop18>},
     {"fcl-kdop24", "FCL 0.7: 24-DOPs; copies both meshes at every question", meeting,
      replay_fcl<FclModel::kdop24>},
+#endif
+#if BVLAB_BULLET
     {"bullet", "Bullet 3.24: GImpact, float32, margins 0; looks for all contacts", yes_or_no,
      replay_bullet},
+#endif
+#if BVLAB_ODE
     {"ode", "ODE 0.16.2: trimesh (OPCODE), boxes in float32; one contact, not refined", yes_or_no,
      replay_ode},
+#endif
+#if BVLAB_EMBREE
     {"embree",
      "Embree 3.13.5: rtcCollide, one thread, with our exact test of triangles; the scene of a body "
      "that moved is refitted",
      meeting, replay_embree},
+#endif
+#if BVLAB_CGAL
     {"cgal", "CGAL 5.5: Rigid_triangle_mesh_collision_detection", yes_or_no, replay_cgal},
+#endif
+#if BVLAB_FCL
     {"fcl-gjk", "FCL 0.7: its own GJK, from the last direction, to 1e-10; convex solids only",
      "distance", replay_fcl_gjk, true},
     {"libccd-gjk", "FCL 0.7 on libccd 2.1: GJK from scratch, to 1e-10; convex solids only",
      "distance", replay_libccd_gjk, true},
+#endif
     // Ours, but no hierarchy: beside them, on convex meshes.
     {"gjk", "GJK over all vertices, from scratch; convex solids only", "touching distance",
      replay_closest_features<ClosestFeatures::gjk>, true},
@@ -62,6 +74,8 @@ constexpr Peer list[] = {
 }  // namespace
 
 std::span<const Peer> peers() { return list; }
+
+std::string_view absent_peer_libraries() { return BVLAB_ABSENT_PEERS; }
 
 std::string peer_names() {
   std::string names;

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "experiments/runner/replay.hpp"
+#include "experiments/replay/replay.hpp"
 
 namespace bvlab {
 
@@ -29,6 +29,10 @@ struct Peer {
 };
 
 std::span<const Peer> peers();
+
+/// The libraries that were absent when the program was built, with blanks between: their peers are
+/// left out.
+std::string_view absent_peer_libraries();
 
 /// "fcl-obb, ..."
 std::string peer_names();

@@ -8,7 +8,7 @@
 #include <concepts>
 #include <memory>
 
-#include "experiments/runner/replay.hpp"
+#include "experiments/replay/replay.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/queries/contacts.hpp"
 

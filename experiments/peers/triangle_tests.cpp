@@ -5,14 +5,22 @@ namespace bvlab {
 namespace {
 
 constexpr TriangleTestPeer list[] = {
+#if BVLAB_CGAL
     {"cgal", "CGAL's do_intersect with filtered exact predicates", peers::decide_cgal, false},
     {"guigue-devillers", "Guigue and Devillers' test in float64 (CGAL's, with inexact signs)",
      peers::decide_guigue_devillers, false},
+#endif
+#if BVLAB_FCL
     {"fcl", "separating axes in float64, after PQP", peers::decide_fcl},
+#endif
     {"moller", "Moller's interval test in float64, signs below 1e-6 taken as zero",
      peers::decide_moller},
+#if BVLAB_BULLET
     {"bullet", "GImpact's clipping in float32", peers::decide_bullet},
+#endif
+#if BVLAB_ODE
     {"ode", "OPCODE in float32; time includes making a mesh of each triangle", peers::decide_ode},
+#endif
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "experiments/peers/world_peers.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace bvlab {
 namespace {
@@ -11,9 +12,13 @@ struct Entry {
   std::unique_ptr<WorldEngine> (*make)(std::span<const TriangleMesh>, std::size_t);
 };
 
-constexpr Entry list[] = {
-    {"fcl-world", make_fcl_world},        // dynamic tree of boxes, OBB trees
-    {"bullet-world", make_bullet_world},  // dynamic trees of boxes, GImpact
+const std::vector<Entry> list {
+#if BVLAB_FCL
+  {"fcl-world", make_fcl_world},  // dynamic tree of boxes, OBB trees
+#endif
+#if BVLAB_BULLET
+      {"bullet-world", make_bullet_world},  // dynamic trees of boxes, GImpact
+#endif
 };
 
 }  // namespace

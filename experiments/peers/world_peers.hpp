@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "experiments/runner/world_frames.hpp"
+#include "experiments/replay/world_frames.hpp"
 
 namespace bvlab {
 

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/scenes/named_mesh.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Surface_mesh.h>
-#include <CGAL/convex_hull_3.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -12,6 +8,7 @@
 #include <sstream>
 
 #include "experiments/files/unusable.hpp"
+#include "experiments/scenes/convex_hull.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 #include "experiments/scenes/simplify_mesh.hpp"
@@ -27,28 +24,6 @@ bool is_formula(const std::string& name) {
 }
 
 constexpr std::string_view hull_suffix = "-hull";
-
-TriangleMesh hull_of(const TriangleMesh& mesh) {
-  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-  std::vector<Kernel::Point_3> points;
-  for (const auto& [i, j, k] : mesh.triangles)
-    for (const auto v : {i, j, k})
-      points.emplace_back(mesh.vertices[v][0], mesh.vertices[v][1], mesh.vertices[v][2]);
-  CGAL::Surface_mesh<Kernel::Point_3> hull;
-  CGAL::convex_hull_3(points.begin(), points.end(), hull);
-  TriangleMesh result;
-  for (const auto v : hull.vertices()) {
-    const auto& p = hull.point(v);
-    result.vertices.emplace_back(p.x(), p.y(), p.z());
-  }
-  for (const auto f : hull.faces()) {
-    auto& triangle = result.triangles.emplace_back();
-    std::size_t corner = 0;
-    for (const auto v : hull.vertices_around_face(hull.halfedge(f)))
-      triangle[corner++] = static_cast<std::uint32_t>(v.idx());
-  }
-  return result;
-}
 
 template <class T>
 T number(std::string_view text, const std::string& whole) {
@@ -95,7 +70,7 @@ NamedMesh named_mesh(const std::string& name, std::size_t polygons,
   if (name.ends_with(hull_suffix)) {
     const auto [whole, mesh] =
         named_mesh(name.substr(0, name.size() - hull_suffix.size()), polygons, directory);
-    return {whole + std::string(hull_suffix), hull_of(mesh)};
+    return {whole + std::string(hull_suffix), convex_hull(mesh)};
   }
   if (is_formula(name)) return {name, formula_mesh(name, polygons)};
   if (polygons < 4 || polygons > most_polygons)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Bodies wandering about a closed cube: in every frame some of them make one step, of a fixed
-/// length and a fixed angle. This is the talk's experiment [li1998incremental], whose "moving randomly"
-/// leaves open all that is an option here.
+/// length and a fixed angle. This is the talk's experiment [li1998incremental], whose "moving
+/// randomly" leaves open all that is an option here.
 ///
 /// - A body's centre (Extent::centre) stays in the cube, which stands round the world's origin;
 /// where

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A number kept as the unevaluated sum of two doubles: about 104 correct binary digits, so long
-/// as nothing over- or underflows. Sums and products after [dekker1971floating]; each operation is right to
-/// 2^-102 of its result for products and quotients, and of the larger operand for sums.
+/// as nothing over- or underflows. Sums and products after [dekker1971floating]; each operation is
+/// right to 2^-102 of its result for products and quotients, and of the larger operand for sums.
 #pragma once
 
 #include <cmath>

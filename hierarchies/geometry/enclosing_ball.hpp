@@ -25,7 +25,9 @@ namespace detail {
 
 /// The smallest ball with all the points (at most four) on its boundary; nothing of use where they
 /// are affinely dependent, which `basis_ball` notices because that ball misses a point.
-inline Ball circumscribed(std::span<const Vec3<double>> points) {
+// Templates, so that only those who call them compile them.
+template <class = double>
+Ball circumscribed(std::span<const Vec3<double>> points) {
   if (points.empty()) return {};
   const auto edge = [&](std::size_t i) -> Vec3<double> { return points[i] - points[0]; };
   Vec3<double> offset = Vec3<double>::Zero();
@@ -49,7 +51,8 @@ inline Ball circumscribed(std::span<const Vec3<double>> points) {
 /// The smallest ball around the points, up to rounding: its centre is what counts, and a caller
 /// who needs enclosure takes the largest distance from it. Any number of points, repeated and
 /// dependent ones included; none gives a negative squared radius.
-inline Ball enclosing_ball(std::span<const Vec3<double>> points) {
+template <class = double>
+Ball enclosing_ball(std::span<const Vec3<double>> points) {
   if (points.empty()) return {};
   std::array<Vec3<double>, 5> support;  // the last one is the newcomer
   std::size_t supports = 1;

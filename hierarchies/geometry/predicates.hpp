@@ -172,9 +172,10 @@ static_assert(33 * 64 - 3 >= 1074 + 1024);
 /// Filter: each difference carries one rounding (factor 1+u), each of the six triple products two
 /// more and the subtraction inside its minor one, the two last sums two: in all at most 7u + O(u^2)
 /// of the sum P of the magnitudes of the six products, and P as computed is at most 7u + O(u^2)
-/// of itself too small, so that (7 + 56 u) u P bounds the error [shewchuk1997adaptive, orient3d's bound A].
-/// Underflow adds at most 2^-1075 to each product: to a minor's products, where it is multiplied
-/// by a difference below 2^340, and to the three last ones; 2^-700 bounds that, in P too.
+/// of itself too small, so that (7 + 56 u) u P bounds the error [shewchuk1997adaptive, orient3d's
+/// bound A]. Underflow adds at most 2^-1075 to each product: to a minor's products, where it is
+/// multiplied by a difference below 2^340, and to the three last ones; 2^-700 bounds that, in P
+/// too.
 inline int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c,
                        const Vec3<double>& d) {
   constexpr double u = unit_roundoff<double>;
@@ -194,8 +195,8 @@ inline int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<
 }
 
 /// The same in the plane of the coordinates i and j: 1 where a, b, c turn counterclockwise.
-/// Filter: (3 + 16 u) u times the magnitudes [shewchuk1997adaptive, orient2d's bound A], and 2^-1000 for
-/// what may underflow.
+/// Filter: (3 + 16 u) u times the magnitudes [shewchuk1997adaptive, orient2d's bound A], and
+/// 2^-1000 for what may underflow.
 inline int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c, int i,
                        int j) {
   constexpr double u = unit_roundoff<double>;

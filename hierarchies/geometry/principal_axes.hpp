@@ -17,7 +17,9 @@ namespace detail {
 
 /// Orthonormal to a few roundings, in rows, by decreasing spread; the identity where the covariance
 /// says nothing.
-inline Mat3<double> axes_of(const Mat3<double>& covariance) {
+// Templates, so that only those who call them compile them.
+template <class = double>
+Mat3<double> axes_of(const Mat3<double>& covariance) {
   if (!covariance.allFinite()) return Mat3<double>::Identity();
   const Eigen::SelfAdjointEigenSolver<Mat3<double>> solver(covariance);
   Vec3<double> a = solver.eigenvectors().col(2), b = solver.eigenvectors().col(1);
@@ -39,7 +41,8 @@ double extent_about(const Vec3<double>& origin, const Points& points) {
 }  // namespace detail
 
 /// Of one point or more.
-inline Mat3<double> principal_axes(std::span<const Vec3<double>> points) {
+template <class = double>
+Mat3<double> principal_axes(std::span<const Vec3<double>> points) {
   const Vec3<double> origin = points[0];
   const double extent = detail::extent_about(origin, points);
   if (!(extent > 0)) return Mat3<double>::Identity();
@@ -56,8 +59,9 @@ inline Mat3<double> principal_axes(std::span<const Vec3<double>> points) {
 
 /// Of the surface: the second moment of a triangle with corners p, q, r and mean m is
 /// area / 12 (9 mm' + pp' + qq' + rr'). Of the corners where the surface has no area.
-inline Mat3<double> principal_axes(std::span<const Vec3<double>> points,
-                                   std::span<const Triangle> triangles) {
+template <class = double>
+Mat3<double> principal_axes(std::span<const Vec3<double>> points,
+                            std::span<const Triangle> triangles) {
   const Vec3<double> origin = points[0];
   const double extent = detail::extent_about(origin, points);
   if (!(extent > 0)) return Mat3<double>::Identity();

@@ -21,7 +21,9 @@ namespace detail {
 
 /// At most the distance from `o` to the triangle. For any vector m the triangle is beyond the plane
 /// m.(x - o) = min m.(corner - o); m leads to its nearest point as far as that was found.
-inline double distance_below(const Vec3<double>& o, const Triangle& triangle) {
+// Templates, so that only those who call them compile them.
+template <class = double>
+double distance_below(const Vec3<double>& o, const Triangle& triangle) {
   const Vec3<double> a = triangle[0] - o, b = triangle[1] - o, c = triangle[2] - o;
   const auto bound = [&](const Vec3<double>& m) {
     const double length = m.norm();
@@ -41,8 +43,9 @@ inline double distance_below(const Vec3<double>& o, const Triangle& triangle) {
 }
 
 /// The centre c that minimises sum (|p - c|^2 - r^2)^2 over c and r: linear in c and r^2 - |c|^2.
-inline std::optional<Vec3<double>> fitted_sphere(const Vec3<double>& middle, double radius,
-                                                 std::span<const Vec3<double>> points) {
+template <class = double>
+std::optional<Vec3<double>> fitted_sphere(const Vec3<double>& middle, double radius,
+                                          std::span<const Vec3<double>> points) {
   if (points.size() < 4) return std::nullopt;
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
   Eigen::Vector4d right = Eigen::Vector4d::Zero();
@@ -57,8 +60,9 @@ inline std::optional<Vec3<double>> fitted_sphere(const Vec3<double>& middle, dou
   return Vec3<double>(middle + radius * solution.head<3>());
 }
 
-inline Vec3<double> thin_direction(const Vec3<double>& middle, double radius,
-                                   std::span<const Vec3<double>> points) {
+template <class = double>
+Vec3<double> thin_direction(const Vec3<double>& middle, double radius,
+                            std::span<const Vec3<double>> points) {
   std::vector<Vec3<double>> scaled;
   scaled.reserve(points.size());
   for (const auto& p : points) scaled.push_back((p - middle) / radius);
@@ -69,8 +73,8 @@ inline Vec3<double> thin_direction(const Vec3<double>& middle, double radius,
 
 /// The centre of the sphere that fits the points best, if it is near, and centres on both sides of
 /// the surface at 1.5 to 12 radii of the ball around it. None where that is a point or not finite.
-inline std::vector<Vec3<double>> shell_centres(const Ball& ball,
-                                               std::span<const Vec3<double>> points) {
+template <class = double>
+std::vector<Vec3<double>> shell_centres(const Ball& ball, std::span<const Vec3<double>> points) {
   std::vector<Vec3<double>> centres;
   const double radius = std::sqrt(std::max(0.0, ball.squared_radius));
   if (!(radius > 0) || !std::isfinite(radius)) return centres;
@@ -87,8 +91,8 @@ inline std::vector<Vec3<double>> shell_centres(const Ball& ball,
 
 /// Of the narrowest cone from the centre around the points, where they are all within a half space:
 /// the smallest ball around their directions is centred on it. Elsewhere any direction, or none.
-inline Vec3<double> narrowest_axis(const Vec3<double>& centre,
-                                   std::span<const Vec3<double>> points) {
+template <class = double>
+Vec3<double> narrowest_axis(const Vec3<double>& centre, std::span<const Vec3<double>> points) {
   std::vector<Vec3<double>> directions;
   directions.reserve(points.size());
   for (const auto& p : points) directions.push_back((p - centre).stableNormalized());

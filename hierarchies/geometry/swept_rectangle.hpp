@@ -42,12 +42,15 @@ struct SweptRectangle {
 namespace detail {
 
 /// How far beside a point, at this height over the rectangle, the rectangle may end.
-inline double beside(double radius, double height) {
+// Templates, so that only those who call them compile them.
+template <class = double>
+double beside(double radius, double height) {
   return std::sqrt(std::max(0.0, radius * radius - height * height));
 }
 
 /// Pushes corners outward along the diagonal until no point is beyond the radius.
-inline void push_corners(SweptRectangle& rectangle, std::span<const Vec3<double>> along) {
+template <class = double>
+void push_corners(SweptRectangle& rectangle, std::span<const Vec3<double>> along) {
   Eigen::Matrix2d& ends = rectangle.ends;
   for (const auto& x : along) {
     int corner[2];
@@ -70,8 +73,9 @@ inline void push_corners(SweptRectangle& rectangle, std::span<const Vec3<double>
 
 /// In the plane of the first two axes, halfway through the points; around it what they need there,
 /// and `wider` more, by which the rectangle may be smaller. Sides first, then corners.
-inline SweptRectangle swept_rectangle(const Mat3<double>& axes,
-                                      std::span<const Vec3<double>> points, double wider = 0) {
+template <class = double>
+SweptRectangle swept_rectangle(const Mat3<double>& axes, std::span<const Vec3<double>> points,
+                               double wider = 0) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   SweptRectangle rectangle;
   rectangle.axes = axes, rectangle.origin = points[0];
@@ -101,8 +105,9 @@ inline SweptRectangle swept_rectangle(const Mat3<double>& axes,
 /// normal, then turned and widened a little this way and that while it helps, by steps that halve
 /// where it does not. A local minimum, no worse than `start` has; where numbers are too large or
 /// too small to tell, that of `start`.
-inline SweptRectangle tight_swept_rectangle(const Mat3<double>& start,
-                                            std::span<const Vec3<double>> points) {
+template <class = double>
+SweptRectangle tight_swept_rectangle(const Mat3<double>& start,
+                                     std::span<const Vec3<double>> points) {
   SweptRectangle best = swept_rectangle(start, points);
   const double size = best.half(0) + best.half(1) + best.radius;
   double surface = best.surface(), wider = 0;

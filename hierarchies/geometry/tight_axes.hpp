@@ -18,7 +18,9 @@ namespace bvlab {
 namespace detail {
 
 /// In counterclockwise order, without points on edges but for rounding (Andrew's monotone chain).
-inline std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
+// Templates, so that only those who call them compile them.
+template <class = double>
+std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
     return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
   });
@@ -41,11 +43,13 @@ inline std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> poi
   return hull;
 }
 
-inline double half_surface(const Vec3<double>& sides) {
+template <class = double>
+double half_surface(const Vec3<double>& sides) {
   return sides[0] * sides[1] + sides[1] * sides[2] + sides[2] * sides[0];
 }
 
-inline Vec3<double> sides_along(const Mat3<double>& axes, std::span<const Vec3<double>> points) {
+template <class = double>
+Vec3<double> sides_along(const Mat3<double>& axes, std::span<const Vec3<double>> points) {
   Vec3<double> low = Vec3<double>::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const auto& p : points) {
     const Vec3<double> x = axes * p;
@@ -55,8 +59,9 @@ inline Vec3<double> sides_along(const Mat3<double>& axes, std::span<const Vec3<d
 }
 
 /// Turns the axes about the k-th of them.
-inline Mat3<double> turned_about(int k, const Mat3<double>& axes, double height,
-                                 std::span<const Vec3<double>> points) {
+template <class = double>
+Mat3<double> turned_about(int k, const Mat3<double>& axes, double height,
+                          std::span<const Vec3<double>> points) {
   const int i = (k + 1) % 3, j = (k + 2) % 3;
   std::vector<Eigen::Vector2d> flat;
   flat.reserve(points.size());
@@ -88,7 +93,8 @@ inline Mat3<double> turned_about(int k, const Mat3<double>& axes, double height,
 
 /// Orthonormal to a few roundings, in rows, by decreasing length of the box; `start` likewise. No
 /// worse than `start`, which it is where the numbers are too large or too small to tell.
-inline Mat3<double> tight_axes(const Mat3<double>& start, std::span<const Vec3<double>> points) {
+template <class = double>
+Mat3<double> tight_axes(const Mat3<double>& start, std::span<const Vec3<double>> points) {
   const Vec3<double> origin = points[0];
   double extent = 0;
   for (const auto& p : points) extent = std::max(extent, (p - origin).cwiseAbs().maxCoeff());

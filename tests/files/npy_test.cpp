@@ -51,7 +51,8 @@ TEST(Npy, EachFaultIsNamed) {
   EXPECT_EQ(message_of(good), "");
   EXPECT_EQ(message_of("hello"), "poses.npy: not a .npy file");
   EXPECT_EQ(message_of(good.substr(0, 40)), "poses.npy: truncated .npy header");
-  EXPECT_EQ(message_of(good.substr(0, good.size() - 8)), "poses.npy: truncated: holds 6 of 7 values");
+  EXPECT_EQ(message_of(good.substr(0, good.size() - 8)),
+            "poses.npy: truncated: holds 6 of 7 values");
   EXPECT_EQ(message_of(good + "x"), "poses.npy: trailing bytes");
   const std::size_t six[] = {1, 1, 6};
   EXPECT_EQ(message_of(bytes_of(six, std::span(data).first(6))),

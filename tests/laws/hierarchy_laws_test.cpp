@@ -103,7 +103,7 @@ TYPED_TEST(HierarchyLaws, SoItIsAfterARefit) {
     for (auto& v : mesh.vertices) v = Vec3<double>(1, 2, 3);
     h.refit(mesh);
     check_all(h, mesh, 2);
-    EXPECT_LT(h.radius(), 1e-12);
+    EXPECT_LT(h.extent().radius, 1e-12);
   }
 }
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <sstream>
 
-#include "experiments/runner/study.hpp"
+#include "experiments/studies/study.hpp"
 
 namespace bvlab {
 namespace {

@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "hierarchies/volumes.hpp"
+#include "hierarchies/bounding_volume.hpp"
 #include "tests/types_of.hpp"
 #include "traversal/gather.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "broadphase/broadphase.hpp"
 #include "experiments/peers/boxes_peers.hpp"
-#include "experiments/runner/box_methods.hpp"
+#include "experiments/replay/box_methods.hpp"
 #include "experiments/scenes/boxes.hpp"
 #include "tests/laws/boxes_for_test.hpp"
 
@@ -39,12 +39,12 @@ void check_set(const std::string& set, std::size_t count, int frame_count) {
   const Frames frames = frames_of(set, count, frame_count);
   std::vector<std::vector<Pair>> right;
   for (const auto& frame : frames) right.push_back(pairs_by_definition<Closed>(frame));
-  for (const auto& [name, description] : method_descriptions())
+  for (const MethodEntry* entry : method_entries())
     for (const Coherence coherence : {Coherence::off, Coherence::on}) {
       MethodSettings settings;
       settings.coherence = coherence;
-      expect_right(*make_method<float>(name, settings), frames, right,
-                   set + ", " + name + (coherence == Coherence::on ? ", coherent" : ""));
+      expect_right(*make_method<float>(entry->name, settings), frames, right,
+                   set + ", " + std::string(entry->name) + (coherence == Coherence::on ? ", coherent" : ""));
     }
   for (const std::string name :
        {"cgal", "cgal-1000", "fcl-tree", "fcl-ssap", "bullet-dbvt", "embree"})

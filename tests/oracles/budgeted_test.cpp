@@ -3,7 +3,7 @@
 /// that do touch; and with enough of a budget everything is known.
 #include <gtest/gtest.h>
 
-#include "experiments/runner/replay_budgeted.hpp"
+#include "experiments/replay/replay_budgeted.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/random_walk.hpp"
 #include "hierarchies/volumes.hpp"

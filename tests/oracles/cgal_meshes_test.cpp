@@ -9,7 +9,7 @@
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/triangle_oracle.hpp"
-#include "experiments/runner/replay.hpp"
+#include "experiments/replay/replay.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/random_walk.hpp"
 #include "experiments/scenes/read_mesh.hpp"

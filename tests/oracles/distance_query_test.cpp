@@ -3,7 +3,7 @@
 /// the promise of a relative error.
 #include <gtest/gtest.h>
 
-#include "experiments/runner/replay.hpp"
+#include "experiments/replay/replay.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/random_walk.hpp"
 #include "hierarchies/volumes.hpp"

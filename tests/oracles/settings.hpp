@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/runner/replay.hpp"
+#include "experiments/replay/replay.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/random_walk.hpp"
 

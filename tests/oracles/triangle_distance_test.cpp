@@ -8,8 +8,8 @@
 #include <iomanip>
 #include <sstream>
 
-#include "experiments/scenes/triangle_sets.hpp"
 #include "experiments/peers/triangle_oracle.hpp"
+#include "experiments/scenes/triangle_sets.hpp"
 #include "traversal/primitives/gathered_corners.hpp"
 #include "traversal/primitives/triangle_distance_bound.hpp"
 

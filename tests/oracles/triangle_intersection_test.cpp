@@ -9,8 +9,8 @@
 #include <sstream>
 #include <string>
 
-#include "experiments/scenes/triangle_sets.hpp"
 #include "experiments/peers/triangle_oracle.hpp"
+#include "experiments/scenes/triangle_sets.hpp"
 
 namespace bvlab {
 namespace {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "hierarchies/builds.hpp"
-#include "hierarchies/volumes.hpp"
+#include "hierarchies/bounding_volume.hpp"
 #include "tests/oracles/settings.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "broadphase/broadphase.hpp"
-#include "experiments/runner/worlds.hpp"
+#include "experiments/replay/worlds.hpp"
 #include "hierarchies/volumes.hpp"
 #include "tests/oracles/settings.hpp"
 #include "traversal/strategies.hpp"

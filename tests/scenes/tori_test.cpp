@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "experiments/runner/touches_any.hpp"
 #include "experiments/scenes/named_mesh.hpp"
+#include "experiments/scenes/touches_any.hpp"
 
 namespace bvlab {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "experiments/runner/touches_any.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/random_walk.hpp"
+#include "experiments/scenes/touches_any.hpp"
 #include "traversal/primitives/triangle_intersection.hpp"
 
 namespace bvlab {

@@ -5,10 +5,10 @@
 
 #include <Eigen/Geometry>
 
-#include "experiments/runner/touches_any.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/pile.hpp"
 #include "experiments/scenes/planner.hpp"
+#include "experiments/scenes/touches_any.hpp"
 
 namespace bvlab {
 namespace {

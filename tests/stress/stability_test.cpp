@@ -3,8 +3,8 @@
 /// strategy, and the cheaper precisions miss no contact.
 #include <gtest/gtest.h>
 
-#include "experiments/runner/replay.hpp"
-#include "experiments/scenes/stressors.hpp"
+#include "experiments/replay/replay.hpp"
+#include "experiments/studies/stressors.hpp"
 #include "hierarchies/volumes.hpp"
 #include "traversal/primitives/precisions.hpp"
 #include "traversal/strategies.hpp"

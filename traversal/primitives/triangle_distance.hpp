@@ -249,7 +249,8 @@ TriangleDistance touching(const Triangle& a, const Triangle& b) {
 }
 
 /// For triangles that are apart and whose coordinates may be squared and multiplied freely.
-inline TriangleDistance apart(const Triangle& a, const Triangle& b) {
+template <class = double>
+TriangleDistance apart(const Triangle& a, const Triangle& b) {
   constexpr double u = unit_roundoff<double>;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::array<Candidate<double>, candidates> all;
@@ -303,7 +304,9 @@ inline Vec3<double> scaled(const Vec3<double>& p, int exponent) {
 }  // namespace nearest
 
 /// The distance of two closed triangles with finite corners; 0 if and only if they share a point.
-inline TriangleDistance distance(const Triangle& a, const Triangle& b) {
+// A template, so that a program can compile it once (extern template).
+template <class = double>
+TriangleDistance distance(const Triangle& a, const Triangle& b) {
   using namespace nearest;
   if (const int k = exponent_of(a, b); k != 0) {
     const Triangle x = {scaled(a[0], -k), scaled(a[1], -k), scaled(a[2], -k)};

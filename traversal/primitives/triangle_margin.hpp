@@ -219,9 +219,11 @@ using TriangleTest = std::uint64_t (*)(const Triangle* const* a, const Triangle*
 
 /// The same together with their margins. Few are left to `test`: what has a margin is certain.
 // Everything in it is to be inlined, by force: GCC gives up on functions of this length.
-[[gnu::flatten]] inline std::uint64_t touching_with_margins(const Triangle* const* a,
-                                                            const Triangle* const* b, int count,
-                                                            TriangleTest test, double* margins) {
+// And a template, so that a program can compile it once (extern template).
+template <class = double>
+[[gnu::flatten]] std::uint64_t touching_with_margins(const Triangle* const* a,
+                                                     const Triangle* const* b, int count,
+                                                     TriangleTest test, double* margins) {
   constexpr int width = std::clamp(native_width<float>, 4, 8);
   using S = Batch<float, width>;
   std::uint64_t touching = 0;

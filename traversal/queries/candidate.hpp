@@ -19,6 +19,12 @@ struct Candidate {
   std::size_t slot;    ///< of the front's entry they come from, where a front is kept
 };
 
+/// How queries are asked; each takes of it what concerns it.
+struct QueryOptions {
+  TriangleTest test = intersect_batch<Exact>;
+  double relative_error = 0;  ///< of distances
+};
+
 /// What a query made of candidates.
 struct Outcome {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);

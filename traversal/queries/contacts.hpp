@@ -28,6 +28,10 @@ class Contacts {
   explicit Contacts(std::vector<Contact>& found, TriangleTest test = intersect_batch<Exact>)
       : test_(test), found_(found) {}
 
+  static Contacts asked(const QueryOptions& options, std::vector<Contact>& found) {
+    return Contacts(found, options.test);
+  }
+
   template <class P>
   auto excludes(const P& a, const P& b) const {
     return disjoint(a, b);

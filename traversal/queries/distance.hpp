@@ -34,6 +34,8 @@ class Distance {
 
   explicit Distance(double relative_error = 0) : relative_error_(relative_error) {}
 
+  static Distance asked(const QueryOptions& options) { return Distance(options.relative_error); }
+
   template <class P>
   auto excludes(const P& a, const P& b) const {
     return excludes(gap(a, b));
@@ -83,6 +85,7 @@ class Distance {
 
   /// In units of the meshes; infinity before anything was seen.
   double distance() const { return distance_; }
+  double answer() const { return distance_; }
 
  private:
   static constexpr std::size_t at_once = native_width<double>;

@@ -21,6 +21,8 @@ class Touching {
 
   explicit Touching(TriangleTest test = intersect_batch<Exact>) : test_(test) {}
 
+  static Touching asked(const QueryOptions& options) { return Touching(options.test); }
+
   template <class P>
   auto excludes(const P& a, const P& b) const {
     return disjoint(a, b);
@@ -52,6 +54,7 @@ class Touching {
   bool known(std::uint32_t, std::uint32_t) { return touching_ = true; }
 
   bool touching() const { return touching_; }
+  bool answer() const { return touching_; }
 
  private:
   TriangleTest test_;

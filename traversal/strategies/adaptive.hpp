@@ -28,18 +28,17 @@ class Adaptive {
   static constexpr std::string_view description =
       "recursion, a list or margins, whichever has been cheapest lately";
 
-  template <class B, class V, class Query, class Counter>
-  void run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
-    const double radius = follow(a, b);
+  template <class Pair>
+  void run(const Pair& pair) {
+    const double radius = follow(pair.a(), pair.b());
     if (!(step_ < hopeless * radius) && used_ != Used::recursion) drop();
     switch (used_) {
       case Used::recursion:
-        return after_recursion(
-            price(traverse<B, NoFrontBoth>(a, b, query, counter, workspace), broad), radius);
+        return after_recursion(price(pair.template from_roots<NoFrontBoth>(), broad), radius);
       case Used::list:
-        return after_other(price(list_.run<B>(a, b, query, counter, workspace), plain));
+        return after_other(price(list_.run(pair), plain));
       case Used::margins:
-        return after_other(price(margins_.run<B>(a, b, query, counter, workspace), careful));
+        return after_other(price(margins_.run(pair), careful));
     }
   }
 
@@ -51,11 +50,10 @@ class Adaptive {
     probing_ = false;
     settle(apart);
   }
-  template <class B, class V, class Query, class Counter>
-  void run_below_roots(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
-                       Workspace& workspace) {
-    const double radius = follow(a, b);
-    Walked walked = traverse_below_roots<B, NoFrontBoth>(a, b, query, counter, workspace);
+  template <class Pair>
+  void run_below_roots(const Pair& pair) {
+    const double radius = follow(pair.a(), pair.b());
+    Walked walked = pair.template from_roots<NoFrontBoth>(Start::below_roots);
     ++walked.volumes;
     after_recursion(price(walked, broad), radius);
   }
@@ -76,10 +74,9 @@ class Adaptive {
   static constexpr double too_far = 0.04, hopeless = 0.3;
 
   /// Finds the last step; gives the mean radius of the bodies.
-  template <class V>
-  double follow(Body<V>& a, Body<V>& b) {
-    const double way = a.way() + b.way();
-    const double radius = (a.hierarchy().radius() + b.hierarchy().radius()) / 2;
+  double follow(MovingBody& a, MovingBody& b) {
+    const double way = a.displacement_bound() + b.displacement_bound();
+    const double radius = (a.extent().radius + b.extent().radius) / 2;
     // Before the first motion all that is known is that it may be large.
     step_ = way_ < 0 ? radius : way - way_;
     way_ = way;

@@ -10,8 +10,7 @@
 
 #include <string_view>
 
-#include "traversal/front.hpp"
-#include "traversal/traverse.hpp"
+#include "traversal/fronts.hpp"
 
 namespace bvlab {
 
@@ -21,14 +20,14 @@ class ByCost {
   static constexpr std::string_view description =
       "separation list, rebuilt once a run costs more than the mean since the last rebuild";
 
-  template <class B, class V, class Query, class Counter>
-  Walked run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
-    const std::size_t longest = room * (a.hierarchy().size() + b.hierarchy().size());
+  template <class Pair>
+  Walked run(const Pair& pair) {
+    const std::size_t longest = room * (pair.a().extent().nodes + pair.b().extent().nodes);
     if (front_.empty() || worn_out_ || front_.size() > longest) {
       front_.restart();
       cost_ = runs_ = 0;
     }
-    const Walked walked = traverse<B>(a, b, query, counter, workspace, front_);
+    const Walked walked = pair.from_front(front_);
     const auto tests = static_cast<double>(walked.volumes);
     cost_ += tests;
     runs_ += 1;

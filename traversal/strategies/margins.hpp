@@ -7,9 +7,10 @@
 /// two children with wide gaps cost less than a parent with a narrow one. A pair is opened while
 /// its gap is below six times the last motion.
 ///
-/// Motion is bounded between stands rather than along the way (see approach.hpp), so a body that
-/// jitters about a place is nearly free. What was measured at a stand r + d counts 2d less than at
-/// r: once d passes four times the last motion, r is moved up.
+/// Motion is bounded between reference poses rather than along the path (see
+/// relative_motion_bound.hpp), so a body that jitters about a place is nearly free. What was
+/// measured at a distance r + d counts 2d less than at r: once d passes four times the last motion,
+/// r is moved up.
 ///
 /// The front is rebuilt from the roots when that is due by the rule for replacing a machine whose
 /// upkeep rises: when a run (smoothed) costs more than the mean since the last rebuild, that
@@ -25,9 +26,7 @@
 #include <limits>
 #include <string_view>
 
-#include "traversal/approach.hpp"
-#include "traversal/margin_front.hpp"
-#include "traversal/traverse.hpp"
+#include "traversal/fronts.hpp"
 
 namespace bvlab {
 
@@ -37,8 +36,11 @@ class Margins {
   static constexpr std::string_view description =
       "a front whose entries are not looked at before the bodies can have closed their gaps";
 
-  template <class B, class V, class Query, class Counter>
-  Walked run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
+  template <class Pair>
+  Walked run(const Pair& pair) {
+    MovingBody &a = pair.a(), &b = pair.b();
+    auto& query = pair.query();
+    using Query = typename Pair::Query;
     if (!front_.empty() && unchanged(a, b, query)) return {};
     if (front_.empty() || worn_out_) rebuild(a, b);
     // What one query learned of triangles is not what another asks: the first hit of an entry, say.
@@ -48,8 +50,7 @@ class Margins {
       quiet_until_ = front_.hits().front().deadline;
       return {};
     }
-    const Walked walked =
-        traverse<B>(a, b, query, counter, workspace, KeptMargins{{}, front_, approach_, step_});
+    const Walked walked = pair.from_front(KeptMargins{{}, front_, clock_, step_});
     account(walked);
     remember(query);
     return walked;
@@ -67,9 +68,9 @@ class Margins {
   static constexpr double farthest = 1024;  // the clock is set back after so many radii
 
   /// Follows the bodies. Says whether nothing can have changed, and answers the query then.
-  template <class V, class Query>
-  bool unchanged(Body<V>& a, Body<V>& b, Query& query) {
-    const double way = a.way() + b.way();
+  template <class Query>
+  bool unchanged(MovingBody& a, MovingBody& b, Query& query) {
+    const double way = a.displacement_bound() + b.displacement_bound();
     // By epochs: a short step can be lost in the sum of two long ways.
     const bool moved = a.epoch() != epoch_a_ || b.epoch() != epoch_b_;
     epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
@@ -91,18 +92,17 @@ class Margins {
     return false;
   }
 
-  template <class V>
-  void follow(Body<V>& a, Body<V>& b) {
-    approach_.advance(a, b);
-    if (!(approach_.now() < std::numeric_limits<float>::max())) {
+  void follow(MovingBody& a, MovingBody& b) {
+    clock_.advance(a, b);
+    if (!(clock_.now() < std::numeric_limits<float>::max())) {
       front_.expire();
-      approach_.restart(a, b);
-    } else if (approach_.since() > stretch * step_) {
-      approach_.refer(a, b);
-      if (approach_.now() > farthest * (a.hierarchy().radius() + b.hierarchy().radius()))
-        front_.set_back(approach_.set_back());
+      clock_.restart(a, b);
+    } else if (clock_.since() > stretch * step_) {
+      clock_.refer(a, b);
+      if (clock_.now() > farthest * (a.extent().radius + b.extent().radius))
+        front_.set_back(clock_.set_back());
     }
-    shown_ = approach_.now();
+    shown_ = clock_.now();
   }
 
   /// Tells the query of the hits that are sure to stay; the others are found again. Says whether
@@ -127,15 +127,14 @@ class Margins {
     return false;
   }
 
-  template <class V>
-  void rebuild(Body<V>& a, Body<V>& b) {
+  void rebuild(MovingBody& a, MovingBody& b) {
     if (front_.empty()) {
-      way_ = a.way() + b.way();
+      way_ = a.displacement_bound() + b.displacement_bound();
       epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
     }
     front_.restart();
-    approach_.restart(a, b);
-    shown_ = approach_.now();
+    clock_.restart(a, b);
+    shown_ = clock_.now();
     upkeep_ = cost_ = 0;
     runs_ = 0;
     worn_out_ = false;
@@ -160,7 +159,7 @@ class Margins {
   }
 
   MarginFront front_;
-  Approach approach_;
+  RelativeMotionBound clock_;
   std::uint32_t epoch_a_ = 0, epoch_b_ = 0;  // when they were last looked at
   double way_ = 0;                           // of both bodies, when they were last looked at
   double step_ = 0;                          // how far they have moved since the time before

@@ -27,8 +27,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "traversal/rising_front.hpp"
-#include "traversal/traverse.hpp"
+#include "traversal/fronts.hpp"
 
 namespace bvlab {
 
@@ -38,19 +37,19 @@ class Raise {
   static constexpr std::string_view description =
       "separation list that is raised where the parent of two entries is apart again";
 
-  template <class B, class V, class Query, class Counter>
-  Walked run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
+  template <class Pair>
+  Walked run(const Pair& pair) {
     if (recursions_ > 0) {
       --recursions_;
-      return traverse<B>(a, b, query, counter, workspace);
+      return pair.from_roots();
     }
-    const std::size_t longest = room * (a.hierarchy().size() + b.hierarchy().size());
+    const std::size_t longest = room * (pair.a().extent().nodes + pair.b().extent().nodes);
     const bool rebuild = front_.empty() || front_.size() > longest;
     if (rebuild) {
       front_.restart();
       paid_ = false;
     }
-    const Walked walked = traverse<B>(a, b, query, counter, workspace, front_);
+    const Walked walked = pair.from_front(front_);
     if (!rebuild && walked.everything) judge(static_cast<double>(walked.volumes));
     return walked;
   }

@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "traversal/traverse.hpp"
+#include "traversal/fronts.hpp"
 
 namespace bvlab {
 
@@ -13,17 +13,16 @@ namespace detail {
 
 template <class Roots>
 struct FromTheRoots {
-  template <class B, class V, class Query, class Counter>
-  void run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
-    traverse<B, Roots>(a, b, query, counter, workspace);
+  template <class Pair>
+  void run(const Pair& pair) {
+    pair.template from_roots<Roots>();
   }
 
   static bool starts_at_roots() { return true; }
   static void roots_are_apart() {}
-  template <class B, class V, class Query, class Counter>
-  void run_below_roots(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
-                       Workspace& workspace) {
-    traverse_below_roots<B, Roots>(a, b, query, counter, workspace);
+  template <class Pair>
+  void run_below_roots(const Pair& pair) {
+    pair.template from_roots<Roots>(Start::below_roots);
   }
 
   std::size_t front_size() const { return 0; }

@@ -18,8 +18,7 @@
 
 #include <string_view>
 
-#include "traversal/front.hpp"
-#include "traversal/traverse.hpp"
+#include "traversal/fronts.hpp"
 
 namespace bvlab {
 
@@ -33,15 +32,15 @@ class Deferred {
   /// `defer`: how many runs without growth are let pass before the one that triggers a rebuild.
   explicit Deferred(unsigned defer = 1) : defer_(defer) {}
 
-  template <class B, class V, class Query, class Counter>
-  void run(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace) {
+  template <class Pair>
+  void run(const Pair& pair) {
     const bool rebuild = front_.empty() || still_ > defer_;
     if (rebuild) {
       front_.restart();
       still_ = 0;
     }
     const std::size_t before = front_.size();
-    traverse<B>(a, b, query, counter, workspace, front_);
+    pair.from_front(front_);
     if (rebuild) return;
     still_ = front_.size() > before ? 0 : still_ + 1;
   }

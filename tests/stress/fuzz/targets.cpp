@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "broadphase/box.hpp"
+#include "experiments/definitions/definition.hpp"
 #include "experiments/files/npy.hpp"
 #include "experiments/files/unusable.hpp"
-#include "experiments/runner/definition.hpp"
-#include "experiments/runner/trace.hpp"
 #include "experiments/scenes/extent.hpp"
 #include "experiments/scenes/read_mesh.hpp"
+#include "experiments/scenes/trace.hpp"
 
 namespace bvlab::fuzz {
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "experiments/runner/replay.hpp"
+#include "experiments/replay/replay.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "hierarchies/volumes.hpp"
 #include "tests/stress/soak/way.hpp"

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// `bvlab replay`: a motion trace through one variant of the engine.
+#include <algorithm>
+#include <optional>
+
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/whole_number.hpp"
+#include "experiments/files/npy.hpp"
+#include "experiments/files/peak_bytes.hpp"
+#include "experiments/files/totals.hpp"
+#include "experiments/files/unusable.hpp"
+#include "experiments/replay/replay.hpp"
+#include "experiments/replay/replay_budgeted.hpp"
+#include "experiments/replay/topology_of.hpp"
+#include "experiments/scenes/read_mesh.hpp"
+
+namespace bvlab {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> meshes;
+  std::string trace, out, json, count = "off";
+  Variant variant;
+  unsigned threads = 1;
+  std::optional<std::uint64_t> budget;
+};
+
+/// What there would have been to do: every pair to consider and every volume to pose in every
+/// frame, and the tests of the recursive strategy. That is played once more for it, where counting
+/// was asked for.
+void skipped(Totals& totals, const Arguments& arguments, std::span<const TriangleMesh> meshes,
+             const Trace& trace, const ReplayResult& result) {
+  if (arguments.count != "on") {
+    totals.set("skipped", nullptr);
+    return;
+  }
+  Variant variant = arguments.variant;
+  variant.strategy = "recursive";
+  ReplayOptions options;
+  options.count = Count::on;
+  options.keep_answers = false;
+  const ReplayResult recursive =
+      arguments.variant.strategy == "recursive" ? result : replay(meshes, trace, variant, options);
+  std::uint64_t volumes = 0;
+  for (std::size_t m = 0; m < std::min(meshes.size(), trace.objects); ++m) {
+    const std::size_t alike = (trace.objects - m - 1) / meshes.size() + 1;
+    volumes += alike * topology_of(meshes[m], variant).nodes.size();
+  }
+  Totals parts;
+  const auto part = [&](const char* key, std::uint64_t done, std::uint64_t all) {
+    Totals pair;
+    pair.set("done", done).set("of", all);
+    parts.set(key, pair);
+  };
+  part("pairs_considered", result.considered, trace.pairs() * trace.frames);
+  part("volumes_posed", result.n_u, volumes * trace.frames);
+  part("volume_tests", result.n_v, recursive.n_v);
+  part("triangle_tests", result.n_p, recursive.n_p);
+  totals.set("skipped", parts);
+}
+
+/// What every kind of replay begins its totals with.
+template <class Result>
+Totals times_of(const Trace& trace, const Result& result) {
+  Totals totals;
+  totals.set("seconds", result.seconds)
+      .set("build_seconds", result.build_seconds)
+      .set("first_seconds", result.first_seconds)
+      .set("peak_bytes", peak_bytes())
+      .set("frames", trace.frames)
+      .set("objects", trace.objects)
+      .set("pairs", trace.pairs());
+  return totals;
+}
+
+/// Null where nothing was counted.
+template <class Result>
+void set_counts(Totals& totals, const Arguments& arguments, const Result& result) {
+  for (const auto& [key, count] :
+       {std::pair{"n_u", result.n_u}, {"n_v", result.n_v}, {"n_p", result.n_p}})
+    if (arguments.count == "on")
+      totals.set(key, count);
+    else
+      totals.set(key, nullptr);
+}
+
+Totals totals_of(const Arguments& arguments, std::span<const TriangleMesh> meshes,
+                 const Trace& trace, const ReplayResult& result) {
+  const Variant& variant = arguments.variant;
+  Totals totals = times_of(trace, result);
+  totals.set(variant.query == "contacts" ? "contacts" : "touching", result.hits);
+  set_counts(totals, arguments, result);
+  totals.set("front", result.front)
+      .set("volume", variant.volume)
+      .set("strategy", variant.strategy)
+      .set("query", variant.query)
+      .set("build", variant.build)
+      .set("leaf_size", variant.leaf_size)
+      .set("fit", variant.fit)
+      .set("precision", variant.precision)
+      .set("threads", arguments.threads);
+  skipped(totals, arguments, meshes, trace, result);
+  return totals;
+}
+
+Totals totals_of(const Arguments& arguments, const Trace& trace, const BudgetedResult& result) {
+  const Variant& variant = arguments.variant;
+  Totals totals = times_of(trace, result);
+  totals.set("budget", *arguments.budget)
+      .set("touching", result.touching)
+      .set("apart", result.apart)
+      .set("unknown", result.unknown)
+      .set("deepest", result.deepest)
+      .set("mean_deepest", result.mean_deepest);
+  set_counts(totals, arguments, result);
+  totals.set("volume", variant.volume)
+      .set("query", variant.query)
+      .set("build", variant.build)
+      .set("leaf_size", variant.leaf_size)
+      .set("fit", variant.fit)
+      .set("precision", variant.precision);
+  return totals;
+}
+
+void write_answers(const Arguments& arguments, const Trace& trace, const ReplayResult& result) {
+  if (arguments.variant.query == "touching") {
+    const std::size_t shape[] = {trace.frames, trace.pairs()};
+    write_npy<std::uint8_t>(arguments.out, shape, result.touching);
+  } else if (arguments.variant.query == "distance") {
+    const std::size_t shape[] = {trace.frames, trace.pairs()};
+    write_npy<double>(arguments.out, shape, result.distances);
+  } else {
+    const std::size_t shape[] = {result.contacts.size(), 5};
+    write_npy<std::uint32_t>(arguments.out, shape,
+                             {reinterpret_cast<const std::uint32_t*>(result.contacts.data()),
+                              result.contacts.size() * 5});
+  }
+}
+
+void check(const Arguments& arguments) {
+  check(arguments.variant);
+  require_place("--out", arguments.out);
+  require_place("--json", arguments.json);
+  if (!arguments.budget) return;
+  if (arguments.variant.query != "touching")
+    throw Unusable("--budget",
+                   "answers whether surfaces touch; not with --query " + arguments.variant.query);
+  if (arguments.variant.strategy != "recursive")
+    throw Unusable("--budget", "starts from the roots in every frame; not with --strategy " +
+                                   arguments.variant.strategy);
+  if (arguments.threads != 1) throw Unusable("--budget", "runs in one thread");
+}
+
+void run(const Arguments& arguments) {
+  check(arguments);
+  std::vector<TriangleMesh> meshes;
+  for (const auto& file : arguments.meshes) meshes.push_back(read_mesh(file));
+  const Trace trace = read_trace(arguments.trace);
+  const Count count = arguments.count == "on" ? Count::on : Count::off;
+  if (arguments.budget) {
+    const BudgetedResult result =
+        replay_budgeted(meshes, trace, arguments.variant, *arguments.budget, count);
+    if (!arguments.out.empty()) {
+      const std::size_t shape[] = {trace.frames, trace.pairs()};
+      write_npy<std::uint8_t>(arguments.out, shape, result.known);
+    }
+    return write_totals(totals_of(arguments, trace, result), arguments.json);
+  }
+  ReplayOptions options;
+  options.count = count;
+  options.threads = arguments.threads;
+  options.keep_answers = !arguments.out.empty();
+  const ReplayResult result = replay(meshes, trace, arguments.variant, options);
+  const Totals totals = totals_of(arguments, meshes, trace, result);
+  if (!arguments.out.empty()) write_answers(arguments, trace, result);
+  write_totals(totals, arguments.json);
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("replay", "Plays a motion trace through the engine");
+  auto arguments = std::make_shared<Arguments>();
+  command
+      ->add_option("--mesh", arguments->meshes, "mesh file; object i uses mesh i mod their number")
+      ->required();
+  command->add_option("--trace", arguments->trace, "poses: .npy, float64, (frames, objects, 7)")
+      ->required();
+  command->add_option("--volume", arguments->variant.volume, "see `bvlab list volumes`")
+      ->capture_default_str();
+  command
+      ->add_option("--strategy", arguments->variant.strategy,
+                   "see `bvlab list strategies`; name or name:parameter")
+      ->capture_default_str();
+  command->add_option("--query", arguments->variant.query, "see `bvlab list queries`")
+      ->capture_default_str();
+  command->add_option("--build", arguments->variant.build, "see `bvlab list builds`")
+      ->capture_default_str();
+  command->add_option("--fit", arguments->variant.fit, "of volumes: published, or tight")
+      ->capture_default_str();
+  command->add_option("--leaf-size", arguments->variant.leaf_size, "triangles in a leaf, at most")
+      ->check(whole_number(1, 1u << 16))
+      ->capture_default_str();
+  command
+      ->add_option("--relative-error", arguments->variant.relative_error,
+                   "distances may be so much above the truth, never below")
+      ->capture_default_str();
+  command->add_option("--precision", arguments->variant.precision, "see `bvlab list precisions`")
+      ->capture_default_str();
+  command
+      ->add_option("--budget", arguments->budget,
+                   "so many tests of volumes for each pair and frame: 0 apart, 1 touching, 2 not "
+                   "known yet, with a bound on how deep")
+      ->check(whole_number(0, 1u << 30));
+  command->add_option("--threads", arguments->threads)
+      ->check(whole_number(1, 1024))
+      ->capture_default_str();
+  command->add_option("--count", arguments->count, "on: fill n_u, n_v, n_p (and time that)")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  command->add_option("--out", arguments->out, "result array");
+  command->add_option("--json", arguments->json, "totals; to standard output where not given");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace bvlab

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// `bvlab scene NAME`: writes a built-in scene as a trace, and its meshes.
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/whole_number.hpp"
+#include "experiments/files/npy.hpp"
+#include "experiments/files/unusable.hpp"
+#include "experiments/scenes/formula_mesh.hpp"
+#include "experiments/scenes/named_mesh.hpp"
+#include "experiments/scenes/read_mesh.hpp"
+#include "experiments/scenes/scenes.hpp"
+#include "experiments/scenes/touches_any.hpp"
+
+namespace bvlab {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> files, names;
+  std::size_t polygons = 500;
+  std::string out, meshes;
+};
+
+template <class S>
+std::string default_meshes() {
+  if constexpr (requires { S::meshes; }) return std::string(S::meshes);
+  return "bunny";
+}
+
+std::vector<NamedMesh> meshes_of(const Arguments& arguments, const std::string& otherwise) {
+  std::vector<NamedMesh> meshes;
+  for (const auto& file : arguments.files)
+    meshes.push_back({std::filesystem::path(file).stem().string(), read_mesh(file)});
+  for (const auto& name : arguments.names)
+    for (auto& mesh : named_meshes(name, arguments.polygons)) meshes.push_back(std::move(mesh));
+  if (meshes.empty()) meshes = named_meshes(otherwise, arguments.polygons);
+  return meshes;
+}
+
+/// Writes 0-bunny.off, 1-torus.off ...: in the order in which replay takes them.
+void write_meshes(const std::string& directory, const std::vector<std::string>& names,
+                  const std::vector<TriangleMesh>& meshes) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw Unusable(directory, "cannot be made: " + error.message());
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    write_off(std::filesystem::path(directory) / (std::to_string(i) + "-" + names[i] + ".off"),
+              meshes[i]);
+}
+
+template <class S>
+void run(const S& scene, const Arguments& arguments) {
+  require_place("--out", arguments.out);
+  if constexpr (requires { scene.check(); }) scene.check();
+  std::vector<std::string> names;
+  std::vector<TriangleMesh> meshes;
+  std::vector<Extent> extents;
+  for (auto& [name, mesh] : meshes_of(arguments, default_meshes<S>())) {
+    extents.push_back(extent_of(mesh));
+    names.push_back(std::move(name));
+    meshes.push_back(std::move(mesh));
+  }
+  const auto trace = scene.generate(extents, touches_any(meshes, scene.objects));
+  if (!arguments.meshes.empty()) write_meshes(arguments.meshes, names, meshes);
+  write_npy<double>(arguments.out, trace.shape, trace.data);
+}
+
+/// An option of a scene as one of the command line.
+struct Adding {
+  CLI::App& command;
+
+  template <class T>
+  void operator()(std::string_view name, T& value, std::string_view meaning) const {
+    const std::string flag = "--" + std::string(name), text(meaning);
+    if constexpr (std::is_same_v<T, Length>) {
+      command
+          .add_option_function<std::string>(
+              flag,
+              [&value, flag](const std::string& word) {
+                try {
+                  value = length_from(word);
+                } catch (const Unusable& fault) {
+                  throw Unusable(flag, fault.what());
+                }
+              },
+              text)
+          ->type_name("LENGTH")
+          ->default_str(text_of(value));
+    } else if constexpr (std::is_unsigned_v<T>) {
+      command.add_option(flag, value, text)->check(whole_number())->capture_default_str();
+    } else {
+      command.add_option(flag, value, text)->capture_default_str();
+    }
+  }
+};
+
+template <class S>
+void add(CLI::App& parent) {
+  CLI::App* command = parent.add_subcommand(std::string(S::name), std::string(S::description));
+  auto scene = std::make_shared<S>();
+  auto arguments = std::make_shared<Arguments>();
+  scene->visit_options(Adding{*command});
+  command->add_option("--out", arguments->out, "the trace: .npy, float64, (frames, objects, 7)")
+      ->required();
+  command->add_option("--meshes", arguments->meshes, "directory to write the meshes to, as OFF");
+  command->add_option("--mesh", arguments->files, "mesh file; object i is mesh i mod their number");
+  command->add_option(
+      "--shape", arguments->names,
+      "the same, a mesh as NAME[:POLYGONS[:SCALE]]; names are bunny, " + formula_mesh_names() +
+          "; NAME-hull is its convex hull (where none is given: " + default_meshes<S>() + ")");
+  command->add_option("--polygons", arguments->polygons, "triangles of each mesh given by name")
+      ->check(whole_number())
+      ->capture_default_str();
+  command->footer(
+      "A LENGTH is a number, or one followed by `leaf` (radii of the smallest leaf "
+      "sphere) or `body` (radii of the largest mesh).");
+  command->callback([scene, arguments] { run(*scene, *arguments); });
+}
+
+}  // namespace
+
+void add_scene(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("scene", "Writes a built-in scene as a trace");
+  Scenes::for_each([&]<class S>(std::type_identity<S>) { add<S>(*command); });
+  command->allow_extras();
+  command->callback([command] {
+    if (!command->get_subcommands().empty()) return;
+    const auto words = command->remaining();
+    throw Unusable((words.empty() ? "scene: a name is needed" : "no scene '" + words[0] + "'") +
+                   "; there are " + Scenes::names());
+  });
+}
+
+}  // namespace bvlab

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/definitions/definition.hpp"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+#include <sstream>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/files/whole_file.hpp"
+#include "experiments/scenes/scenes.hpp"
+
+namespace bvlab {
+namespace {
+
+std::string shortest(double value) {
+  char text[32];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  return {text, end};
+}
+
+struct AddingDefault {
+  Settings& settings;
+  void operator()(std::string_view name, const std::string& value, std::string_view) const {
+    add(name, value);
+  }
+  void operator()(std::string_view name, double value, std::string_view) const {
+    add(name, shortest(value));
+  }
+  void operator()(std::string_view name, std::uint64_t value, std::string_view) const {
+    add(name, std::to_string(value));
+  }
+  void operator()(std::string_view name, const Length& value, std::string_view) const {
+    add(name, text_of(value));
+  }
+  void add(std::string_view name, const std::string& value) const {
+    const auto same = [&](const Setting& s) { return s.first == name; };
+    if (std::none_of(settings.begin(), settings.end(), same)) settings.emplace_back(name, value);
+  }
+};
+
+/// Keys with dots make tables in tables, as deep as the file likes: reading them, and giving them
+/// back, takes stack for each.
+void check_depth(const std::string& text, const std::string& name) {
+  constexpr std::ptrdiff_t deepest = 1000;
+  std::istringstream lines(text);
+  std::size_t number = 0;
+  for (std::string line; ++number, std::getline(lines, line);)
+    if (std::count(line.begin(), line.end(), '.') > deepest)
+      throw Unusable(name, "line " + std::to_string(number) + ": more than " +
+                               std::to_string(deepest) + " dots");
+}
+
+/// Behind the string that starts at `i`, or where it has to end at the latest.
+std::size_t end_of_string(std::string_view text, std::size_t i) {
+  const char quote = text[i];
+  const std::string three(3, quote);
+  const bool long_one = text.substr(i).starts_with(three);
+  for (i += long_one ? 3 : 1; i < text.size(); ++i) {
+    if (text[i] == '\n' && !long_one) return i;
+    if (text[i] == '\\' && quote == '"' && !text.substr(i).starts_with("\\\n")) {
+      ++i;
+    } else if (text[i] == quote && !long_one) {
+      return i + 1;
+    } else if (text.substr(i).starts_with(three)) {
+      // Quotes just before the end are part of the string.
+      for (i += 3; text.substr(i, 1) == three.substr(0, 1);) ++i;
+      return i;
+    }
+  }
+  return text.size();
+}
+
+/// Letters beyond ASCII belong into strings and comments. (Elsewhere toml++ 3.3 asks whether they
+/// are blanks, and on the answer for most of them runs into what it declares unreachable.)
+void check_characters(std::string_view text, const std::string& name) {
+  std::size_t line = 1;
+  for (std::size_t i = text.starts_with("\xef\xbb\xbf") ? 3 : 0; i < text.size();) {
+    std::size_t end = i + 1;
+    if (text[i] == '#')
+      end = std::min(text.find('\n', i), text.size());
+    else if (text[i] == '"' || text[i] == '\'')
+      end = end_of_string(text, i);
+    else if (static_cast<unsigned char>(text[i]) >= 128)
+      throw Unusable(name, "line " + std::to_string(line) +
+                               ": a letter that is not ASCII outside of strings and comments");
+    line += static_cast<std::size_t>(std::count(&text[i], text.data() + end, '\n'));
+    i = end;
+  }
+}
+
+/// Reads one definition; every complaint names the file and the line.
+class Reader {
+ public:
+  explicit Reader(const std::string& name) : name_(name) {}
+
+  Definition read(const std::string& text) {
+    check_text(text, name_);
+    toml::table table;
+    try {
+      table = toml::parse(text, name_);
+    } catch (const toml::parse_error& error) {
+      fail(error.source(), std::string(error.description()));
+    }
+    Definition definition;
+    definition.text = text;
+    definition.file = name_;
+    for (auto&& [key, node] : table) {
+      if (key == "name")
+        definition.name = string(node, "name");
+      else if (key == "description")
+        definition.description = string(node, "description");
+      else if (key == "repetitions")
+        definition.repetitions = repetitions(node);
+      else if (key == "measures")
+        definition.measures = measures(node);
+      else if (key == "parameters")
+        definition.parameters = settings(node, {});
+      else if (key == "axis")
+        definition.axes = axes(node);
+      else if (key == "series")
+        read_series(node, definition);
+      else
+        fail(key.source(), "unknown key '" + std::string(key.str()) + "'");
+    }
+    if (definition.name.empty() || definition.name.find('/') != std::string::npos)
+      throw Unusable(name_, "needs a name (without '/')");
+    check_size(definition.axes);
+    check_series(definition);
+    return definition;
+  }
+
+ private:
+  [[noreturn]] void fail(const toml::source_region& where, const std::string& what) const {
+    throw Unusable(name_, "line " + std::to_string(where.begin.line) + ": " + what);
+  }
+
+  void check_size(const std::vector<Definition::Axis>& axes) const {
+    std::size_t cells = 1;
+    for (const auto& axis : axes)
+      if ((cells *= axis.values.size()) > most_cells)
+        throw Unusable(name_, "axis '" + axis.name + "': the axes up to this one multiply into " +
+                                  std::to_string(cells) + " cells; " + std::to_string(most_cells) +
+                                  " are the most");
+  }
+
+  void check_series(const Definition& definition) const {
+    for (const auto& [key, value] : definition.series) {
+      std::string names;
+      bool known = false;
+      const auto offer = [&, &key = key](const std::string& name) {
+        known = known || name == key;
+        names += (names.empty() ? "" : ", ") + name;
+      };
+      for (const auto& axis : definition.axes)
+        if (!axis.is_parameter) offer(axis.name);
+      for (const auto& [name, ignored] : default_parameters()) offer(name);
+      if (!known) throw Unusable(name_, "series: unknown '" + key + "'; there are " + names);
+    }
+  }
+
+  std::string string(const toml::node& node, const std::string& key) const {
+    if (const auto value = node.value_exact<std::string>()) return *value;
+    fail(node.source(), key + " must be a string");
+  }
+
+  std::set<std::string> measures(const toml::node& node) const {
+    const auto* list = node.as_array();
+    if (!list) fail(node.source(), "measures must be a list");
+    std::set<std::string> result;
+    for (auto&& each : *list) {
+      const auto name = each.value_exact<std::string>();
+      if (!name || (*name != "coherence" && *name != "best rebuilds"))
+        fail(each.source(), "measures: there are coherence, best rebuilds");
+      result.insert(*name);
+    }
+    return result;
+  }
+
+  unsigned repetitions(const toml::node& node) const {
+    const auto value = node.value_exact<std::int64_t>();
+    if (!value || *value < 1 || *value > 1000)
+      fail(node.source(), "repetitions must be a whole number from 1 to 1000");
+    return static_cast<unsigned>(*value);
+  }
+
+  std::string scalar(const toml::node& node, const std::string& key) const {
+    if (const auto value = node.value_exact<std::string>()) return *value;
+    if (const auto value = node.value_exact<std::int64_t>()) return std::to_string(*value);
+    if (const auto value = node.value_exact<double>()) return shortest(*value);
+    fail(node.source(), "'" + key + "' must be a number or a string");
+  }
+
+  static bool is_parameter(const std::string& name) {
+    const auto& all = default_parameters();
+    return std::any_of(all.begin(), all.end(),
+                       [&](const auto& each) { return each.first == name; });
+  }
+
+  void known(const std::string& parameter, const toml::source_region& where) const {
+    std::string names;
+    for (const auto& [name, value] : default_parameters()) {
+      if (name == parameter) return;
+      names += (names.empty() ? "" : ", ") + name;
+    }
+    fail(where, "unknown parameter '" + parameter + "'; there are " + names);
+  }
+
+  const toml::table& table(const toml::node& node, const char* what) const {
+    if (const auto* table = node.as_table()) return *table;
+    fail(node.source(), std::string(what) + " must be a table");
+  }
+
+  void read_series(const toml::node& node, Definition& definition) const {
+    definition.has_series = true;
+    for (auto&& [key, value] : table(node, "series")) {
+      if (key != "until") {
+        definition.series.emplace_back(key.str(), scalar(value, std::string(key.str())));
+        continue;
+      }
+      const auto frames = value.value_exact<std::int64_t>();
+      if (!frames || *frames < 1) fail(value.source(), "until must be a whole number above 0");
+      definition.series_until = static_cast<std::size_t>(*frames);
+    }
+  }
+
+  Settings settings(const toml::node& node, std::string_view but) const {
+    Settings result;
+    for (auto&& [key, value] : table(node, "parameters")) {
+      if (key == but) continue;
+      const std::string name(key.str());
+      known(name, key.source());
+      result.emplace_back(name, scalar(value, name));
+    }
+    return result;
+  }
+
+  std::vector<Definition::Axis> axes(const toml::node& node) const {
+    const auto* array = node.as_array();
+    if (!array) fail(node.source(), "axes are written as [[axis]]");
+    std::vector<Definition::Axis> result;
+    for (auto&& each : *array) {
+      result.push_back(axis(table(each, "an axis")));
+      for (std::size_t i = 0; i + 1 < result.size(); ++i)
+        if (result[i].name == result.back().name)
+          fail(each.source(), "a second axis '" + result[i].name + "'");
+    }
+    return result;
+  }
+
+  Definition::Axis axis(const toml::table& from) const {
+    Definition::Axis axis;
+    const auto *name = from.get("name"), *values = from.get("values"), *tables = from.get("value");
+    if (!name || !values == !tables)
+      fail(from.source(), "an axis needs a name and either values or [[axis.value]]");
+    axis.name = string(*name, "an axis' name");
+    for (auto&& [key, node] : from)
+      if (key != "name" && key != "values" && key != "value")
+        fail(key.source(), "unknown key '" + std::string(key.str()) + "' of an axis");
+    const auto* list = (values ? values : tables)->as_array();
+    if (!list || list->empty()) fail(from.source(), "axis '" + axis.name + "' has no values");
+    axis.is_parameter = values != nullptr;
+    if (values)
+      known(axis.name, name->source());
+    else if (is_parameter(axis.name))
+      fail(name->source(), "axis '" + axis.name + "' is a parameter: it needs values");
+    std::set<std::string> labels;
+    for (auto&& each : *list) {
+      if (values) {
+        const std::string value = scalar(each, axis.name);
+        axis.values.push_back({value, {{axis.name, value}}});
+      } else {
+        const auto& one = table(each, "a value");
+        const auto* label = one.get("name");
+        if (!label) fail(one.source(), "a value of axis '" + axis.name + "' needs a name");
+        axis.values.push_back({string(*label, "a value's name"), settings(one, "name")});
+      }
+      // Cells are told apart by what stands in their row.
+      if (const auto& label = axis.values.back().label; !labels.insert(label).second)
+        fail(each.source(), "axis '" + axis.name + "' has '" + label + "' twice");
+    }
+    return axis;
+  }
+
+  const std::string& name_;
+};
+
+void set(Settings& settings, const Settings& to) {
+  for (const auto& [name, value] : to)
+    for (auto& [known, old] : settings)
+      if (known == name) old = value;
+}
+
+}  // namespace
+
+const std::string& Cell::operator[](std::string_view name) const {
+  static const std::string nothing;
+  for (const auto* settings : {&labels, &parameters})
+    for (const auto& [key, value] : *settings)
+      if (key == name) return value;
+  return nothing;
+}
+
+const Settings& default_parameters() {
+  static const Settings defaults = [] {
+    Settings settings{
+        {"scene", std::string(Scenes::at<0>::name)}, {"mesh", "bunny"}, {"polygons", "500"}};
+    Scenes::for_each(
+        [&]<class S>(std::type_identity<S>) { S{}.visit_options(AddingDefault{settings}); });
+    for (const auto& setting :
+         {Setting{"volume", "sphere"}, Setting{"strategy", "recursive"},
+          Setting{"query", "touching"}, Setting{"build", "top-down-principal"},
+          Setting{"leaf_size", "1"}, Setting{"fit", "published"}, Setting{"precision", "exact"},
+          Setting{"relative_error", "0"}, Setting{"peer", ""}})
+      settings.push_back(setting);
+    return settings;
+  }();
+  return defaults;
+}
+
+void check_text(const std::string& text, const std::string& name) {
+  check_depth(text, name);
+  check_characters(text, name);
+}
+
+Definition parse_definition(const std::string& text, const std::string& name) {
+  return Reader(name).read(text);
+}
+
+Definition read_definition(const std::string& path) {
+  return parse_definition(read_whole(path), path);
+}
+
+std::vector<Cell> cells_of(const Definition& definition) {
+  std::vector<Cell> cells(1);
+  cells[0].parameters = default_parameters();
+  set(cells[0].parameters, definition.parameters);
+  for (const auto& axis : definition.axes) {
+    std::vector<Cell> next;
+    for (const auto& cell : cells)
+      for (const auto& value : axis.values) {
+        next.push_back(cell);
+        set(next.back().parameters, value.settings);
+        if (!axis.is_parameter) next.back().labels.emplace_back(axis.name, value.label);
+      }
+    cells = std::move(next);
+  }
+  return cells;
+}
+
+}  // namespace bvlab

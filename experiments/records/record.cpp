@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/records/record.hpp"
+
+#include <sys/utsname.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "build_facts.hpp"
+#include "experiments/files/unusable.hpp"
+#include "experiments/files/whole_file.hpp"
+
+namespace bvlab {
+namespace {
+
+std::string contents(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::string quoted(const std::string& field) {
+  if (field.find_first_of(",\"\n") == std::string::npos) return field;
+  std::string text = "\"";
+  for (const char c : field) text += c == '"' ? "\"\"" : std::string(1, c);
+  return text + '"';
+}
+
+std::string line_of(const Row& row) {
+  std::string line;
+  for (std::size_t i = 0; i < row.size(); ++i) line += (i ? "," : "") + quoted(row[i]);
+  return line + '\n';
+}
+
+std::vector<Row> parse_csv(const std::string& text) {
+  std::vector<Row> rows;
+  Row row;
+  std::string field;
+  bool inside = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (inside && c == '"' && i + 1 < text.size() && text[i + 1] == '"')
+      field += c, ++i;
+    else if (c == '"')
+      inside = !inside;
+    else if (!inside && (c == ',' || c == '\n')) {
+      row.push_back(std::move(field));
+      field.clear();
+      if (c == '\n') rows.push_back(std::move(row)), row.clear();
+    } else {
+      field += c;
+    }
+  }
+  return rows;
+}
+
+std::string after_colon(const std::string& file, const std::string& key) {
+  std::ifstream lines(file);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(key))
+      if (const auto colon = line.find(':'); colon != line.npos)
+        return line.substr(line.find_first_not_of(" \t", colon + 1));
+  return "unknown";
+}
+
+std::string system_name() {
+  std::ifstream lines("/etc/os-release");
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("PRETTY_NAME=")) return line.substr(13, line.size() - 14);
+  return "unknown";
+}
+
+std::string machine() {
+  utsname kernel{};
+  uname(&kernel);
+  const nlohmann::ordered_json json = {{"processor", after_colon("/proc/cpuinfo", "model name")},
+                                       {"cores", std::thread::hardware_concurrency()},
+                                       {"memory", after_colon("/proc/meminfo", "MemTotal")},
+                                       {"system", system_name()},
+                                       {"kernel", kernel.release},
+                                       {"compiler", build_facts::compiler},
+                                       {"flags", build_facts::flags},
+                                       {"libraries", build_facts::libraries},
+                                       {"bvlab", build_facts::commit}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace
+
+Table::Table(std::filesystem::path path, Row columns)
+    : path_(std::move(path)), columns_(std::move(columns)) {
+  if (!std::filesystem::exists(path_)) return;
+  auto rows = parse_csv(contents(path_));
+  if (rows.empty() || rows[0] != columns_) throw Unusable(path_.string(), "has other columns");
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (rows[i].size() != columns_.size())
+      throw Unusable(path_.string(), "line " + std::to_string(i + 1) + " has " +
+                                         std::to_string(rows[i].size()) + " fields, not " +
+                                         std::to_string(columns_.size()));
+    rows_.push_back(std::move(rows[i]));
+  }
+}
+
+void Table::forget(const Row& key) {
+  std::erase_if(rows_, [&](const Row& row) {
+    return std::equal(key.begin(), key.end(), row.begin(),
+                      row.begin() + static_cast<std::ptrdiff_t>(key.size()));
+  });
+}
+
+void Table::save() const {
+  std::string text = line_of(columns_);
+  for (const auto& row : rows_) text += line_of(row);
+  write_whole(path_, text);
+}
+
+std::filesystem::path fresh_record(const std::filesystem::path& parent) {
+  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm date{};
+  gmtime_r(&now, &date);
+  char day[16];
+  std::strftime(day, sizeof day, "%Y-%m-%d", &date);
+  for (int n = 1;; ++n)
+    if (const auto path = parent / (std::string(day) + "." + std::to_string(n));
+        !std::filesystem::exists(path))
+      return path;
+}
+
+void open_record(const std::filesystem::path& record, const std::string& definition,
+                 const std::string& command) {
+  std::error_code error;
+  std::filesystem::create_directories(record, error);
+  if (error) throw Unusable(record.string(), "cannot be made: " + error.message());
+  clear_left_behind(record);
+  const auto held = record / "definition.toml";
+  if (std::filesystem::exists(held)) {
+    if (contents(held) != definition)
+      throw Unusable(record.string(), "is a record of another definition");
+  } else {
+    write_whole(held, definition);
+  }
+  if (!std::filesystem::exists(record / "machine.json"))
+    write_whole(record / "machine.json", machine());
+  if (!std::filesystem::exists(record / "command.txt"))
+    write_whole(record / "command.txt", command + "\n");
+}
+
+}  // namespace bvlab

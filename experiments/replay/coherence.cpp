@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/replay/coherence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "experiments/replay/registry.hpp"
+#include "traversal/all_pairs.hpp"
+#include "traversal/queries.hpp"
+
+namespace bvlab {
+namespace {
+
+template <class Query>
+Query asked(std::vector<Contact>& found) {
+  if constexpr (std::same_as<Query, Contacts>)
+    return Contacts(found);
+  else
+    return Query();
+}
+
+/// Half the mean of the longest edges.
+double leaf_size_of(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle c = mesh.corners(t);
+    sum += std::max({(c[0] - c[1]).norm(), (c[1] - c[2]).norm(), (c[2] - c[0]).norm()});
+  }
+  return sum / 2 / static_cast<double>(std::max<std::size_t>(mesh.triangles.size(), 1));
+}
+
+/// A mesh's middle and how far from it the mesh reaches.
+struct Middle {
+  Vec3<double> centre;
+  double radius = 0;
+
+  explicit Middle(const TriangleMesh& mesh) {
+    Vec3<double> low = mesh.vertices[0], high = low;
+    for (const auto& v : mesh.vertices) low = low.cwiseMin(v), high = high.cwiseMax(v);
+    centre = (low + high) / 2;
+    for (const auto& v : mesh.vertices) radius = std::max(radius, (v - centre).norm());
+  }
+};
+
+/// No point of the body has moved farther: |R - R'| = 2 sqrt(2) sin(angle / 2) in Frobenius' norm.
+double motion(const Middle& middle, const Pose& from, const Pose& to) {
+  return (to(middle.centre) - from(middle.centre)).norm() +
+         (to.rotation - from.rotation).norm() / std::sqrt(2.0) * middle.radius;
+}
+
+/// The bodies of a trace, of which fronts are asked by one query and distances by another.
+template <class Query>
+class CoherenceMeter {
+ public:
+  CoherenceMeter(std::span<const TriangleMesh> meshes, std::size_t objects, const Variant& variant)
+      : pairs_(all_object_pairs(static_cast<std::uint32_t>(objects))),
+        fronts_(pairs_.size()),
+        hierarchies_(volume_entry(variant.volume).hierarchies(meshes, variant)),
+        bodies_(loops_of<Query>(variant.volume).bodies(*hierarchies_, objects)),
+        apart_(loops_of<Distance>(variant.volume).bodies(*hierarchies_, objects)) {
+    for (const auto& mesh : meshes) {
+      middles_.emplace_back(mesh);
+      leaf_sizes_.push_back(leaf_size_of(mesh));
+    }
+  }
+
+  void frame(std::span<const Pose> poses) {
+    const bool first = before_.empty();
+    bodies_.move(poses, Vec3<double>::Zero());
+    apart_.move(poses, Vec3<double>::Zero());
+    for (std::size_t p = 0; p < pairs_.size(); ++p)
+      first ? (void)fresh_front(p, fronts_[p]) : look_at(p, poses);
+    before_.assign(poses.begin(), poses.end());
+  }
+
+  const CoherenceSums& sums() const { return sums_; }
+
+ private:
+  void look_at(std::size_t p, std::span<const Pose> poses) {
+    ++sums_.pair_runs;
+    const std::size_t ends = fronts_[p].size();
+    Front last = fronts_[p];
+    const std::uint64_t tests = fresh_front(p, fronts_[p]);
+    if (ends == 1 && fronts_[p].size() == 1) return;
+    ++sums_.near_runs;
+    sums_.tests += tests;
+    sums_.ends += ends;
+    sums_.kept += shared(last, fronts_[p]);
+    Counting again;
+    ask(p, last, again);
+    sums_.again += again.n_v;
+    sums_.grown += last.size() - ends;
+    if (last.size() == ends) ++sums_.still_runs, sums_.still_ends += ends;
+    measure_motion(pairs_[p], poses);
+  }
+
+  void measure_motion(const ObjectPair& pair, std::span<const Pose> poses) {
+    const auto of = [&](std::uint32_t i) {
+      return motion(middles_[i % middles_.size()], before_[i], poses[i]);
+    };
+    const double moved = of(pair.i) + of(pair.j);
+    if (moved == 0) return;
+    ++sums_.moved_runs;
+    const double leaf =
+        (leaf_sizes_[pair.i % leaf_sizes_.size()] + leaf_sizes_[pair.j % leaf_sizes_.size()]) / 2;
+    if (leaf > 0) sums_.motion_leaf += moved / leaf;
+    Distance query(0.1);
+    NotCounting counter;
+    apart_.pair(pair, query, counter).from_roots();
+    sums_.motion_gap += moved < query.distance() ? moved / query.distance() : 1;
+  }
+
+  /// From the roots; gives the tests of volumes it took.
+  std::uint64_t fresh_front(std::size_t p, Front& front) {
+    front = Front();
+    front.restart();
+    Counting counter;
+    ask(p, front, counter);
+    return counter.n_v;
+  }
+
+  void ask(std::size_t p, Front& front, Counting& counter) {
+    found_.clear();
+    Query query = asked<Query>(found_);
+    bodies_.pair(pairs_[p], query, counter).from_front(front);
+  }
+
+  std::size_t shared(const Front& a, const Front& b) {
+    const auto before = [](const NodePair& x, const NodePair& y) {
+      return x.a != y.a ? x.a < y.a : x.b < y.b;
+    };
+    old_.assign(a.entries().begin(), a.entries().end());
+    new_.assign(b.entries().begin(), b.entries().end());
+    std::sort(old_.begin(), old_.end(), before);
+    std::sort(new_.begin(), new_.end(), before);
+    std::size_t count = 0;
+    for (std::size_t i = 0, j = 0; i < old_.size() && j < new_.size();) {
+      count += old_[i] == new_[j];
+      const bool a_first = before(old_[i], new_[j]), b_first = before(new_[j], old_[i]);
+      i += !b_first, j += !a_first;
+    }
+    return count;
+  }
+
+  std::vector<ObjectPair> pairs_;
+  std::vector<Front> fronts_;
+  std::unique_ptr<AnyHierarchies> hierarchies_;
+  AnyBodies<Query, Counting> bodies_;
+  AnyBodies<Distance, NotCounting> apart_;
+  std::vector<Middle> middles_;
+  std::vector<double> leaf_sizes_;
+  std::vector<Pose> before_;
+  std::vector<NodePair> old_, new_;
+  std::vector<Contact> found_;
+  CoherenceSums sums_;
+};
+
+/// How well a separation list could have done: the rebuilds that cost the fewest tests of volumes,
+/// found afterwards. What any rule for rebuilding is to be compared with.
+///
+/// The state of a list in run f depends on nothing but the run r <= f in which it was rebuilt last;
+/// so c(r, f), the tests it makes in run f, is measured by letting a list live from every r to the
+/// end. Then
+///
+///   best(f) = min over r <= f of best(r - 1) + c(r, r) + ... + c(r, f),   best(-1) = 0,
+///
+/// is the least that can be reached: exact, by O(frames^2) runs for every pair.
+template <class Query>
+class RebuildSearch {
+ public:
+  explicit RebuildSearch(AnyBodies<Query, NotCounting> bodies) : bodies_(std::move(bodies)) {}
+
+  /// `poses[f]` are all bodies' in frame f.
+  BestRebuilds search(const ObjectPair& pair, const std::vector<std::vector<Pose>>& poses) {
+    const std::size_t n = poses.size();
+    constexpr auto never = std::numeric_limits<std::uint64_t>::max();
+    // before[f] is of all runs before f.
+    std::vector<BestRebuilds> before(n + 1, BestRebuilds{never, 0});
+    before[0] = {};
+    for (std::size_t r = 0; r < n; ++r) {
+      Front front;
+      front.restart();
+      std::uint64_t tests = before[r].tests;
+      for (std::size_t f = r; f < n; ++f) {
+        for (const auto k : {pair.i, pair.j}) bodies_.move(k, poses[f][k], Vec3<double>::Zero());
+        tests += run(pair, front);
+        if (tests < before[f + 1].tests) before[f + 1] = {tests, before[r].rebuilds + 1};
+      }
+    }
+    return before[n];
+  }
+
+ private:
+  std::uint64_t run(const ObjectPair& pair, Front& front) {
+    NotCounting counter;
+    found_.clear();
+    Query query = asked<Query>(found_);
+    return bodies_.pair(pair, query, counter).from_front(front).volumes;
+  }
+
+  AnyBodies<Query, NotCounting> bodies_;
+  std::vector<Contact> found_;
+};
+
+template <class Query>
+CoherenceSums coherence_under(std::span<const TriangleMesh> meshes, const Trace& trace,
+                              const Variant& variant) {
+  CoherenceMeter<Query> meter(meshes, trace.objects, variant);
+  std::vector<Pose> poses(trace.objects);
+  for (std::size_t frame = 0; frame < trace.frames; ++frame) {
+    trace.poses(frame, poses);
+    meter.frame(poses);
+  }
+  return meter.sums();
+}
+
+template <class Query>
+BestRebuilds best_rebuilds_under(std::span<const TriangleMesh> meshes, const Trace& trace,
+                                 const Variant& variant) {
+  std::vector<std::vector<Pose>> poses(trace.frames, std::vector<Pose>(trace.objects));
+  for (std::size_t frame = 0; frame < trace.frames; ++frame) trace.poses(frame, poses[frame]);
+  const auto hierarchies = volume_entry(variant.volume).hierarchies(meshes, variant);
+  RebuildSearch<Query> search(AnyBodies<Query, NotCounting>(
+      loops_of<Query>(variant.volume).bodies(*hierarchies, trace.objects)));
+  BestRebuilds sum;
+  for (const auto& pair : all_object_pairs(static_cast<std::uint32_t>(trace.objects))) {
+    const BestRebuilds best = search.search(pair, poses);
+    sum.tests += best.tests, sum.rebuilds += best.rebuilds;
+  }
+  return sum;
+}
+
+}  // namespace
+
+CoherenceSums coherence(std::span<const TriangleMesh> meshes, const Trace& trace,
+                        const Variant& variant) {
+  check(variant);
+  return variant.query == Contacts::name ? coherence_under<Contacts>(meshes, trace, variant)
+                                         : coherence_under<Touching>(meshes, trace, variant);
+}
+
+BestRebuilds best_rebuilds(std::span<const TriangleMesh> meshes, const Trace& trace,
+                           const Variant& variant) {
+  check(variant);
+  return variant.query == Contacts::name ? best_rebuilds_under<Contacts>(meshes, trace, variant)
+                                         : best_rebuilds_under<Touching>(meshes, trace, variant);
+}
+
+}  // namespace bvlab

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What a variant says of hierarchies, made.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "experiments/replay/replay.hpp"
+#include "experiments/replay/topology_of.hpp"
+#include "experiments/replay/volume_entry.hpp"
+#include "hierarchies/hierarchy.hpp"
+#include "traversal/bodies.hpp"
+
+namespace bvlab {
+
+/// What volumes over T are tested in: as many lanes as a register holds, where it holds four or
+/// more.
+template <class T>
+using NativeBatch = Batch<T, std::max(native_width<T>, 4)>;
+
+/// The variant's names have been checked.
+inline Fit fit_of(const Variant& variant) {
+  return variant.fit == "tight" ? Fit::tight : Fit::published;
+}
+
+/// One hierarchy for each mesh.
+template <BoundingVolume V>
+class HierarchiesOf final : public AnyHierarchies {
+ public:
+  HierarchiesOf(std::span<const TriangleMesh> meshes, const Variant& variant) : meshes_(meshes) {
+    all_.reserve(meshes.size());
+    for (const auto& mesh : meshes)
+      all_.emplace_back(mesh, topology_of(mesh, variant), fit_of(variant));
+  }
+
+  std::size_t meshes() const override { return all_.size(); }
+  const Hierarchy<V>& operator[](std::size_t i) const { return all_[i]; }
+
+  /// Object i uses mesh i mod the number of meshes.
+  std::vector<Shape<V>> shapes(std::size_t objects) const {
+    std::vector<Shape<V>> shapes;
+    shapes.reserve(objects);
+    for (std::size_t i = 0; i < objects; ++i)
+      shapes.push_back({&meshes_[i % all_.size()], &all_[i % all_.size()]});
+    return shapes;
+  }
+
+ private:
+  std::span<const TriangleMesh> meshes_;
+  std::vector<Hierarchy<V>> all_;
+};
+
+}  // namespace bvlab

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Replays and whole scenes of one strategy under one query, over bodies of any volume: compiled by
+/// itself.
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <memory>
+
+#include "experiments/replay/any_bodies.hpp"
+#include "experiments/replay/box_methods.hpp"
+#include "experiments/replay/play_entry.hpp"
+#include "experiments/replay/registry.hpp"
+#include "experiments/replay/replay_shares.hpp"
+#include "experiments/replay/strategy_text.hpp"
+#include "experiments/replay/triangle_test.hpp"
+#include "traversal/all_pairs.hpp"
+#include "traversal/counters.hpp"
+#include "traversal/world_of.hpp"
+
+namespace bvlab {
+
+namespace detail {
+
+/// What one thread finds out about its share of the pairs: a cell of the shared array for each
+/// frame and pair, or a list of its own, as the query has it.
+template <class Query>
+class Answers {
+  static constexpr bool lists =
+      requires(const QueryOptions& options, std::vector<std::array<std::uint32_t, 2>>& found) {
+    Query::asked(options, found);
+  };
+
+ public:
+  Answers(ReplayResult& result, const Trace& trace, bool keep, const QueryOptions& how)
+      : result_(&result), pairs_(trace.pairs()), keep_(keep), how_(how) {
+    if constexpr (!lists)
+      if (keep) cells().resize(trace.frames * pairs_);
+  }
+
+  Query ask() {
+    if constexpr (lists) {
+      found_.clear();
+      return Query::asked(how_, found_);
+    } else {
+      return Query::asked(how_);
+    }
+  }
+
+  void take(std::size_t frame, std::size_t p, const ObjectPair& pair, const Query& query) {
+    if constexpr (lists) {
+      hits_ += found_.size();
+      if (keep_)
+        for (const auto& [a, b] : found_)
+          all_.push_back({static_cast<std::uint32_t>(frame), pair.i, pair.j, a, b});
+    } else {
+      const auto answer = query.answer();
+      if constexpr (std::same_as<decltype(answer), const bool>)
+        hits_ += answer;
+      else
+        hits_ += answer == 0;
+      if (keep_) cells()[frame * pairs_ + p] = answer;
+    }
+  }
+
+  std::uint64_t hits() const { return hits_; }
+
+  void hand_over(ReplayResult& result) {
+    result.contacts.insert(result.contacts.end(), all_.begin(), all_.end());
+  }
+
+ private:
+  auto& cells() {
+    if constexpr (std::same_as<decltype(std::declval<Query>().answer()), bool>)
+      return result_->touching;
+    else
+      return result_->distances;
+  }
+
+  ReplayResult* result_;
+  std::size_t pairs_;
+  bool keep_;
+  QueryOptions how_;
+  std::uint64_t hits_ = 0;
+  std::vector<std::array<std::uint32_t, 2>> found_;
+  std::vector<std::array<std::uint32_t, 5>> all_;
+};
+
+/// Bodies of its own, every `stride`-th pair, all frames.
+template <class BodySet, class Strategy, class Query, class Counter>
+class ShareOf final : public Share {
+ public:
+  /// `bodies` makes the BodySet.
+  template <class Made>
+  ShareOf(Made&& bodies, const Strategy& strategy, std::size_t first, std::size_t stride,
+          const Trace& trace, const QueryOptions& how, ReplayResult& result,
+          const ReplayOptions& options)
+      : trace_(trace),
+        result_(result),
+        options_(options),
+        first_(first),
+        stride_(stride),
+        engine_(std::forward<Made>(bodies), share_of_pairs(trace.objects, first, stride), strategy),
+        answers_(result, trace, options.keep_answers, how) {}
+
+  void play() override {
+    const auto start = Clock::now();
+    std::vector<Pose> poses(trace_.objects);
+    for (std::size_t frame = 0; frame < trace_.frames; ++frame) {
+      trace_.poses(frame, poses);
+      engine_.frame(
+          poses, counter_, [&](std::size_t) { return answers_.ask(); },
+          [&](std::size_t p, const Query& query) {
+            answers_.take(frame, first_ + p * stride_, engine_.pairs()[p], query);
+          });
+      if constexpr (requires { engine_.bodies().count_posed(counter_); })
+        engine_.bodies().count_posed(counter_);
+      const std::size_t front = engine_.front_size();
+      entries_ += static_cast<double>(front);
+      if (options_.keep_series)
+        result_.series[frame] = {counter_.n_u, counter_.n_v, counter_.n_p, front, answers_.hits()};
+      if (frame == 0) first_seconds_ = seconds_since(start);
+    }
+  }
+
+  void hand_over(ReplayResult& result) override {
+    result.first_seconds = std::max(result.first_seconds, first_seconds_);
+    result.n_u += counter_.n_u, result.n_v += counter_.n_v, result.n_p += counter_.n_p;
+    result.considered += counter_.considered;
+    result.front += entries_;
+    result.hits += answers_.hits();
+    answers_.hand_over(result);
+  }
+
+ private:
+  const Trace& trace_;
+  ReplayResult& result_;
+  const ReplayOptions& options_;
+  std::size_t first_, stride_;
+  AllPairsOf<BodySet, Strategy> engine_;
+  Answers<Query> answers_;
+  Counter counter_;
+  double entries_ = 0, first_seconds_ = 0;
+};
+
+template <class Query, class Counter>
+AnyBodies<Query, Counter> bodies_of(const VolumeEntry& volume, const AnyHierarchies& hierarchies,
+                                    std::size_t objects) {
+  return AnyBodies<Query, Counter>(loops_of<Query>(volume.name).bodies(hierarchies, objects));
+}
+
+template <class Strategy, class Query>
+void play(const VolumeEntry& volume, const AnyHierarchies& hierarchies, const Trace& trace,
+          const Variant& variant, const ReplayOptions& options, ReplayResult& result) {
+  const QueryOptions how{triangle_test(variant.precision), variant.relative_error};
+  const auto strategy = made_from<Strategy>(variant.strategy);
+  const auto with = [&]<class Counter>(std::type_identity<Counter>) {
+    play_shares(
+        trace, options,
+        [&](std::size_t first, std::size_t stride, ReplayResult& all) -> std::unique_ptr<Share> {
+          return std::make_unique<ShareOf<AnyBodies<Query, Counter>, Strategy, Query, Counter>>(
+              bodies_of<Query, Counter>(volume, hierarchies, trace.objects), strategy, first,
+              stride, trace, how, all, options);
+        },
+        result);
+  };
+  if (options.count == Count::on || options.keep_series)
+    with(std::type_identity<Counting>());
+  else
+    with(std::type_identity<NotCounting>());
+}
+
+/// The broad phase of whole scenes, compiled once for all strategies.
+class NearBoxes {
+ public:
+  explicit NearBoxes(const MethodSettings& settings)
+      : method_(make_method<float>("auto", settings)) {}
+  std::span<const Pair> overlapping(Boxes<float> boxes) { return method_->overlapping(boxes); }
+  PairChanges changes() const { return method_->changes(); }
+
+ private:
+  std::unique_ptr<AnyMethod<float>> method_;
+};
+
+/// A whole scene that says which pairs touch.
+template <class Strategy, class Query>
+class TouchingWorld final : public WorldEngine {
+ public:
+  TouchingWorld(const VolumeEntry& volume, std::unique_ptr<AnyHierarchies> hierarchies,
+                std::size_t objects, const Variant& variant)
+      : hierarchies_(std::move(hierarchies)),
+        world_(bodies_of<Query, NotCounting>(volume, *hierarchies_, objects),
+               made_from<Strategy>(variant.strategy)),
+        how_{triangle_test(variant.precision), 0} {}
+
+  void move(std::uint32_t object, const Pose& pose) override { world_.move(object, pose); }
+
+  void update() override {
+    NotCounting counter;
+    world_.update(
+        counter, [&](const ObjectPair&) { return Query::asked(how_); },
+        [&](std::uint32_t slot, const ObjectPair& pair, const Query& query) {
+          touching_.put(slot, pair, query.answer());
+        },
+        [&](std::uint32_t slot) { touching_.drop(slot); });
+  }
+
+  std::span<const ObjectPair> touching() override { return touching_.pairs(); }
+  std::size_t near() const override { return world_.near(); }
+  std::size_t asked() const override { return world_.asked(); }
+
+ private:
+  std::unique_ptr<AnyHierarchies> hierarchies_;
+  WorldOf<AnyBodies<Query, NotCounting>, Strategy, NearBoxes> world_;
+  TouchingPairs touching_;
+  QueryOptions how_;
+};
+
+/// Null where the query is no matter of yes or no.
+template <class Strategy, class Query>
+std::unique_ptr<WorldEngine> world(const VolumeEntry& volume,
+                                   std::unique_ptr<AnyHierarchies> hierarchies, std::size_t objects,
+                                   const Variant& variant) {
+  if constexpr (requires(const Query& query) {
+                  { query.answer() } -> std::same_as<bool>;
+                })
+    return std::make_unique<TouchingWorld<Strategy, Query>>(volume, std::move(hierarchies), objects,
+                                                            variant);
+  else
+    return nullptr;
+}
+
+}  // namespace detail
+
+template <class Strategy, class Query>
+constexpr PlayEntry play_of() {
+  return {Strategy::name,
+          Strategy::description,
+          Query::name,
+          Query::description,
+          [](std::string_view text) { made_from<Strategy>(text); },
+          detail::play<Strategy, Query>,
+          detail::world<Strategy, Query>};
+}
+
+}  // namespace bvlab

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What was compiled into the program: the volumes, strategies and queries of THE lists (or the
+/// part of them that was configured), each from units of its own. The tables are generated
+/// (registry.cpp.in), so that an entry that is added recompiles itself and the tables alone.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/replay/loops_entry.hpp"
+#include "experiments/replay/play_entry.hpp"
+#include "experiments/replay/volume_entry.hpp"
+
+namespace bvlab {
+
+/// In the order of the list.
+std::span<const VolumeEntry* const> volume_entries();
+/// Strategy by strategy, each under every query.
+std::span<const PlayEntry* const> play_entries();
+/// One for each volume; specialised for each query.
+template <class Query>
+std::span<const LoopsEntry<Query>* const> loops_entries();
+
+/// A name and what it is.
+struct Named {
+  std::string name, description;
+};
+std::vector<Named> volumes();
+std::vector<Named> strategies();
+std::vector<Named> queries();
+
+/// Those of that name. Throw Unusable, naming the option and what there is.
+const VolumeEntry& volume_entry(std::string_view name);
+const PlayEntry& play_entry(std::string_view strategy, std::string_view query);
+
+/// Of a volume that exists.
+template <class Query>
+const LoopsEntry<Query>& loops_of(std::string_view volume) {
+  for (const auto* entry : loops_entries<Query>())
+    if (entry->volume == volume) return *entry;
+  std::abort();
+}
+
+}  // namespace bvlab

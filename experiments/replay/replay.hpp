@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A trace played through one variant of the engine: volume, strategy, query.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "experiments/scenes/trace.hpp"
+#include "hierarchies/geometry/triangle_mesh.hpp"
+
+namespace bvlab {
+
+enum class Count { off, on };
+
+struct Variant {
+  std::string volume = "sphere";
+  std::string strategy = "recursive";  ///< a name, or name:parameter
+  std::string query = "touching";
+  std::string build = "top-down-principal";
+  std::uint32_t leaf_size = 1;
+  std::string fit = "published";  ///< or "tight", see bounding_volume.hpp
+  std::string precision = "exact";
+  double relative_error = 0;  ///< of distances
+};
+
+struct ReplayOptions {
+  Count count = Count::off;
+  unsigned threads = 1;
+  bool keep_answers = true;  ///< fill `touching`, `contacts` or `distances`
+  bool keep_series = false;  ///< fill `series`
+};
+
+/// Counts of one frame, all pairs together.
+struct FrameCounts {
+  std::uint64_t n_u = 0, n_v = 0, n_p = 0, front = 0, hits = 0;
+};
+
+struct ReplayResult {
+  double seconds = 0;        ///< posing and querying every frame
+  double first_seconds = 0;  ///< the first frame alone
+  double build_seconds = 0;
+  std::uint64_t n_u = 0, n_v = 0, n_p = 0;  ///< where counted
+  std::uint64_t considered = 0;        ///< pairs, over all frames, for which anything was tested
+  double front = 0;                    ///< mean entries per pair and frame
+  std::uint64_t hits = 0;              ///< touching pairs, or contacts, over all frames
+  std::vector<std::uint8_t> touching;  ///< (frames, pairs)
+  std::vector<double> distances;       ///< (frames, pairs)
+  std::vector<std::array<std::uint32_t, 5>> contacts;  ///< frame, i, j, triangle of i, of j; sorted
+  std::vector<FrameCounts> series;                     ///< one for each frame
+};
+
+/// Object i uses mesh i mod meshes.size(). Throws Unusable for unknown names.
+ReplayResult replay(std::span<const TriangleMesh> meshes, const Trace& trace,
+                    const Variant& variant, const ReplayOptions& options);
+
+/// Throws Unusable with the names that exist where the variant names something unknown.
+void check(const Variant& variant);
+
+}  // namespace bvlab

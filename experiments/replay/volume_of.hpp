@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// All that is compiled for a volume whatever is asked of it: its hierarchies, its tightness, and
+/// answers within a budget.
+#pragma once
+
+#include <algorithm>
+
+#include "experiments/replay/hierarchies_of.hpp"
+#include "experiments/replay/replay_shares.hpp"
+#include "experiments/replay/triangle_test.hpp"
+#include "traversal/all_pairs.hpp"
+#include "traversal/budgeted.hpp"
+#include "traversal/counters.hpp"
+
+namespace bvlab {
+
+namespace detail {
+
+inline void note(BudgetedResult& result, const BudgetedAnswer& answer) {
+  ++(answer.known == Known::touching ? result.touching
+     : answer.known == Known::apart  ? result.apart
+                                     : result.unknown);
+  result.deepest = std::max(result.deepest, answer.deepest);
+  result.mean_deepest += answer.deepest;
+  result.known.push_back(static_cast<std::uint8_t>(answer.known));
+  result.bounds.push_back(answer.deepest);
+}
+
+/// Counted by the traversal itself, so that one version serves both ways to count.
+template <BoundingVolume V>
+BudgetedResult play_budgeted(std::span<const TriangleMesh> meshes, const Trace& trace,
+                             const Variant& variant, std::uint64_t budget, Count count) {
+  BudgetedResult result;
+  const TriangleTest test = triangle_test(variant.precision);
+  auto start = Clock::now();
+  const HierarchiesOf<V> hierarchies(meshes, variant);
+  std::vector<PatchSizes> sizes;
+  for (std::size_t m = 0; m < meshes.size(); ++m) sizes.emplace_back(meshes[m], hierarchies[m]);
+  Bodies<NativeBatch<typename V::scalar>, V> bodies(hierarchies.shapes(trace.objects));
+  result.build_seconds = seconds_since(start);
+  const auto pairs = all_object_pairs(static_cast<std::uint32_t>(trace.objects));
+  result.known.reserve(trace.frames * pairs.size());
+  result.bounds.reserve(trace.frames * pairs.size());
+  std::vector<Pose> poses(trace.objects);
+  Budgeted<NativeBatch<typename V::scalar>, V> ask;
+  const auto play = [&](auto& counter) {
+    Vec3<double> origin;
+    start = Clock::now();
+    for (std::size_t frame = 0; frame < trace.frames; ++frame) {
+      trace.poses(frame, poses);
+      if (frame == 0) origin = middle_of(poses);
+      bodies.move(poses, origin);
+      for (const auto& [i, j] : pairs)
+        note(result, ask(bodies[i], sizes[i % meshes.size()], bodies[j], sizes[j % meshes.size()],
+                         budget, test, counter));
+      if (frame == 0) result.first_seconds = seconds_since(start);
+    }
+    result.seconds = seconds_since(start);
+    result.n_u = counter.n_u, result.n_v = counter.n_v, result.n_p = counter.n_p;
+  };
+  if (count == Count::on) {
+    Counting counter;
+    play(counter);
+  } else {
+    NotCounting counter;
+    play(counter);
+  }
+  if (!result.bounds.empty()) result.mean_deepest /= static_cast<double>(result.bounds.size());
+  return result;
+}
+
+template <BoundingVolume V>
+std::vector<double> gaps_of(const TriangleMesh& mesh, const Topology& topology, Fit fit,
+                            std::span<const GapQuestion> questions) {
+  const Hierarchy<V> hierarchy(mesh, topology, fit);
+  std::vector<double> gaps;
+  for (const auto& [node, at] : questions) {
+    // Both stand where they are, with the margins that a pose brings along.
+    const double reach = std::max(hierarchy.extent().reach, 2 * at.norm());
+    const bvlab::PlacementOf<V> here(Pose{}, Vec3<double>::Zero(), reach);
+    const Vec3<double> point[] = {at};
+    gaps.push_back(gap(posed(hierarchy.volume(node), here),
+                       posed(V::enclosing(std::span<const Vec3<double>>(point)), here)));
+  }
+  return gaps;
+}
+
+}  // namespace detail
+
+template <BoundingVolume V>
+constexpr VolumeEntry volume_of() {
+  return {
+      V::name,
+      V::description,
+      FittedTightly<V>,
+      [](std::span<const TriangleMesh> meshes, const Variant& variant) {
+        return std::unique_ptr<AnyHierarchies>(std::make_unique<HierarchiesOf<V>>(meshes, variant));
+      },
+      detail::gaps_of<V>,
+      detail::play_budgeted<V>};
+}
+
+}  // namespace bvlab

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/scenes/trace.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "experiments/files/npy.hpp"
+#include "experiments/files/unusable.hpp"
+
+namespace bvlab {
+
+void Trace::poses(std::size_t frame, std::span<Pose> poses) const {
+  const double* v = values.data() + frame * objects * 7;
+  for (std::size_t i = 0; i < objects; ++i, v += 7)
+    poses[i] = *pose_from({v[0], v[1], v[2]}, v[3], v[4], v[5], v[6]);
+}
+
+Trace parse_trace(std::string_view bytes, const std::string& name) {
+  constexpr std::size_t shape[] = {any_length, any_length, 7};
+  auto array = parse_npy<double>(bytes, name, shape);
+  Trace trace{array.shape[0], array.shape[1], std::move(array.data)};
+  // An array without entries can promise any lengths.
+  if (std::max(trace.frames, trace.objects) > std::numeric_limits<std::uint32_t>::max())
+    throw Unusable(name, "more frames or objects than 32 bits number");
+  for (std::size_t i = 0; i < trace.values.size(); i += 7) {
+    const double* v = trace.values.data() + i;
+    if (pose_from({v[0], v[1], v[2]}, v[3], v[4], v[5], v[6])) continue;
+    const bool finite = std::all_of(v, v + 7, [](double x) { return std::isfinite(x); });
+    const std::size_t object = i / 7 % trace.objects, frame = i / 7 / trace.objects;
+    throw Unusable(name, std::string(finite ? "zero quaternion" : "not a finite number") +
+                             " in frame " + std::to_string(frame) + ", object " +
+                             std::to_string(object));
+  }
+  return trace;
+}
+
+Trace read_trace(const std::string& path) { return parse_trace(read_whole(path), path); }
+
+}  // namespace bvlab

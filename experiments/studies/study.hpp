@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// An experiment that is not a product of replays: a definition with a `kind`, and lists of what to
+/// run.
+///
+///     name = "triangles-error"
+///     kind = "triangles"          # see THE list in study.cpp
+///     description = "one line"
+///     repetitions = 5
+///     [parameters]                # numbers, strings, or lists of either; each kind knows its own
+///     pairs = 50000
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/records/record.hpp"
+#include "experiments/studies/experiment.hpp"
+
+namespace bvlab {
+
+class StudyDefinition {
+ public:
+  std::string file, text, kind, name;
+  unsigned repetitions = 1;
+
+  /// A list, also where one value was written; the fallback where none was. Asked for is known:
+  /// what nobody asks for is refused by `check`.
+  std::vector<std::string> strings(const std::string& key, std::vector<std::string> fallback) const;
+  std::vector<double> numbers(const std::string& key, std::vector<double> fallback) const;
+  double number(const std::string& key, double fallback) const;
+  /// A whole number from 1 to `most`.
+  std::size_t whole(const std::string& key, std::size_t fallback, std::size_t most) const;
+
+  std::map<std::string, std::vector<std::string>> parameters;
+};
+
+/// What a study has to work with: rows are saved as they are finished, and what a broken run has
+/// finished is not done again.
+class StudyRecord {
+ public:
+  StudyRecord(const StudyDefinition& definition, const std::filesystem::path& folder, Row columns,
+              std::size_t keys, const Progress& progress);
+
+  /// Whether rows that begin so are there already.
+  bool has(const Row& key) const;
+  void add(Row row) { table_.add(std::move(row)); }
+  /// After `done` of `all` parts.
+  void save(std::size_t done, std::size_t all);
+
+ private:
+  Table table_;
+  std::size_t keys_;
+  Progress progress_;
+};
+
+/// The definition in the text if it has a kind (nothing if not: an experiment). Throws Unusable.
+std::optional<StudyDefinition> study_from(const std::string& text, const std::string& file);
+
+/// Throws Unusable for unknown kinds, parameters and names.
+void check(const StudyDefinition& definition);
+void run_study(const StudyDefinition& definition, const std::filesystem::path& folder,
+               const Progress& progress);
+
+/// One kind of study. `check` asks for every parameter it knows.
+struct StudyKind {
+  std::string_view name, description;
+  void (*check)(const StudyDefinition&);
+  void (*run)(const StudyDefinition&, const std::filesystem::path& folder, const Progress&);
+};
+
+namespace studies {
+
+extern const StudyKind box_precision;
+extern const StudyKind boxes;
+extern const StudyKind budget;
+extern const StudyKind distance;
+extern const StudyKind posing;
+extern const StudyKind stability;
+extern const StudyKind tightness;
+extern const StudyKind triangles;
+extern const StudyKind worlds;
+
+}  // namespace studies
+
+/// Digits enough to read the same number again.
+std::string text_of(double value);
+
+}  // namespace bvlab

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Broad-phase methods and peers on the built-in sets, interleaved: for every set, number, motion
+/// and displacement all variants run the same frames, in an order drawn anew for each repetition,
+/// and every frame's pair set is compared with the reference's by count and by a sum of hashes.
+/// A frame's time is the mean over all but the first, since some methods save work up for later
+/// frames. Processor time, which neighbours on the machine disturb less, stands beside that of the
+/// wall clock; `bytes` is the heap that a method holds after its last frame.
+#include <malloc.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <random>
+#include <set>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/peers/boxes_peers.hpp"
+#include "experiments/replay/box_methods.hpp"
+#include "experiments/scenes/boxes.hpp"
+#include "experiments/studies/study.hpp"
+
+namespace bvlab {
+namespace {
+
+using Frames = std::vector<std::vector<Box<float>>>;
+
+struct Case {
+  std::string set, motion;
+  std::size_t count;
+  double displacement;
+  Row key() const { return {set, std::to_string(count), motion, text_of(displacement)}; }
+};
+struct Variant {
+  std::string method, coherent, changes;
+  int threads;
+};
+struct Answer {
+  std::uint64_t pairs = 0, hash = 0;
+  bool operator==(const Answer&) const = default;
+};
+struct Outcome {
+  std::vector<Answer> answers;
+  double first_ns = 0, frame_ns = 0, middle_ns = 0, wall_ns = 0, events = 0;
+  std::size_t bytes = 0;
+  bool slow = false;
+};
+
+struct Settings {
+  std::vector<Case> cases;
+  std::vector<Variant> variants;
+  std::size_t reference = 0;
+  int frames = 0;
+  double limit_ns = 0;
+  unsigned seed = 1;
+};
+
+Settings settings_of(const StudyDefinition& definition) {
+  Settings s;
+  const auto whole = [&](const std::string& key, double value, double most) {
+    if (!(value >= 1 && value <= most) || value != std::floor(value))
+      throw Unusable(definition.file, key + " must be a whole number from 1 to " + text_of(most));
+    return static_cast<std::size_t>(value);
+  };
+  const auto known = [&](const std::string& key, const std::string& name,
+                         const std::vector<std::string>& names) {
+    std::string all;
+    for (const auto& each : names) {
+      if (each == name) return;
+      all += (all.empty() ? "" : ", ") + each;
+    }
+    throw Unusable(definition.file, key + ": no '" + name + "'; there are " + all);
+  };
+  const auto counts = definition.numbers("counts", {10000});
+  const auto displacements = definition.numbers("displacements", {0.02});
+  for (const double displacement : displacements)
+    if (!(displacement >= 0 && displacement <= 1e6))
+      throw Unusable(definition.file, "displacements must lie between 0 and 1e6");
+  const auto motions = definition.strings("motions", {"drift"});
+  for (const auto& motion : motions) known("motions", motion, box_motion_names());
+  for (const auto& set : definition.strings("sets", box_set_names())) {
+    known("sets", set, box_set_names());
+    for (const double count : counts)
+      for (const auto& motion : motions)
+        for (const double displacement : displacements)
+          s.cases.push_back({set, motion, whole("counts", count, 1e8), displacement});
+  }
+  const auto coherent = definition.strings("coherent", {"on"});
+  for (const auto& each : coherent) known("coherent", each, {"on", "off"});
+  const auto changes = definition.strings("changes", {"off"});
+  for (const auto& each : changes) known("changes", each, {"on", "off"});
+  std::vector<std::string> method_names;
+  for (const auto* method : method_entries()) method_names.emplace_back(method->name);
+  const auto threads = definition.numbers("threads", {1});
+  for (const auto& method : definition.strings("methods", method_names)) {
+    known("methods", method, method_names);
+    for (const auto& c : coherent)
+      for (const auto& reported : changes)
+        for (const double t : threads)
+          s.variants.push_back({method, c, reported, static_cast<int>(whole("threads", t, 1024))});
+  }
+  for (const auto& peer : definition.strings("peers", {})) {
+    known("peers", peer, box_peer_names());
+    s.variants.push_back({peer, "on", "off", peer == "cgal-parallel" ? 2 : 1});
+  }
+  const std::string reference = definition.strings("reference", {s.variants.back().method}).at(0);
+  while (s.reference < s.variants.size() && s.variants[s.reference].method != reference)
+    ++s.reference;
+  if (s.reference == s.variants.size())
+    throw Unusable(definition.file, "reference: " + reference + " is not among methods and peers");
+  s.frames = static_cast<int>(whole("frames", definition.number("frames", 10), 1e6));
+  s.limit_ns = 1e9 * definition.number("seconds_a_frame", 1);
+  s.seed = static_cast<unsigned>(whole("seed", definition.number("seed", 1), 1e9));
+  return s;
+}
+void check_settings(const StudyDefinition& definition) { settings_of(definition); }
+
+double processor_ns() {
+  timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
+}
+double wall_ns() {
+  return std::chrono::duration<double, std::nano>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0 : sum / static_cast<double>(values.size());
+}
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+std::size_t heap_bytes() {
+  const auto info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+/// The same for the same set of pairs in any order.
+Answer answer_of(std::span<const Pair> pairs) {
+  Answer answer{pairs.size(), 0};
+  for (const Pair& pair : pairs) {
+    std::uint64_t x = (std::uint64_t{pair.i} << 32 | pair.j) * 0x9e3779b97f4a7c15u;
+    x ^= x >> 29;
+    answer.hash += x * 0xbf58476d1ce4e5b9u;
+  }
+  return answer;
+}
+
+/// A method of ours or a peer, through the same call.
+class Player {
+ public:
+  explicit Player(const Variant& variant) {
+    if ((peer_ = make_box_peer(variant.method))) return;
+    MethodSettings settings;
+    settings.coherence = variant.coherent == "on" ? Coherence::on : Coherence::off;
+    settings.changes = variant.changes == "on" ? Changes::reported : Changes::unreported;
+    settings.threads = variant.threads;
+    method_ = make_method<float>(variant.method, settings);
+  }
+  std::span<const Pair> overlapping(Boxes<float> boxes) {
+    return peer_ ? peer_->overlapping(boxes) : method_->overlapping(boxes);
+  }
+  std::size_t events() const {
+    if (peer_) return 0;
+    const PairChanges changes = method_->changes();
+    return changes.began.size() + changes.ended.size();
+  }
+
+ private:
+  std::unique_ptr<BoxPeer> peer_;
+  std::unique_ptr<AnyMethod<float>> method_;
+};
+
+Outcome play(const Variant& variant, const Frames& frames, double limit_ns) {
+  Outcome outcome;
+  std::vector<double> later, wall, events;
+  const std::size_t heap = heap_bytes();
+  Player player(variant);
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    const double start_wall = wall_ns(), start = processor_ns();
+    const auto pairs = player.overlapping(frames[f]);
+    const double ns = processor_ns() - start, took = wall_ns() - start_wall;
+    outcome.answers.push_back(answer_of(pairs));
+    if (f == 0)
+      outcome.first_ns = ns;
+    else
+      later.push_back(ns), wall.push_back(took),
+          events.push_back(static_cast<double>(player.events()));
+    outcome.slow |= ns > limit_ns;
+    if (ns > limit_ns && (f > 0 || ns > 10 * limit_ns)) break;
+  }
+  const std::size_t now = heap_bytes();
+  outcome.bytes = now > heap ? now - heap : 0;
+  outcome.frame_ns = mean(later), outcome.middle_ns = median(later);
+  outcome.wall_ns = mean(wall), outcome.events = mean(events);
+  return outcome;
+}
+
+class BoxStudy {
+ public:
+  BoxStudy(const StudyDefinition& definition, const std::filesystem::path& folder,
+           const Progress& progress)
+      : settings_(settings_of(definition)),
+        repetitions_(definition.repetitions),
+        record_(definition, folder,
+                {"set", "count", "motion", "displacement", "boxes", "method", "coherent", "changes",
+                 "threads", "repetition", "frames", "overlaps", "events", "differing", "first_ns",
+                 "frame_ns", "middle_ns", "wall_ns", "bytes"},
+                4, progress) {}
+
+  void run() {
+    std::size_t done = 0;
+    for (const Case& c : settings_.cases) {
+      if (!record_.has(c.key())) run_case(c);
+      record_.save(++done, settings_.cases.size());
+    }
+  }
+
+ private:
+  void run_case(const Case& c) {
+    Frames frames;
+    BoxMotion motion(c.motion, c.displacement, c.set, make_box_set(c.set, c.count, settings_.seed),
+                     settings_.seed);
+    for (int f = 0; f < settings_.frames; ++f, motion.step()) frames.push_back(motion.boxes());
+    std::vector<Answer> reference;
+    for (unsigned repetition = 0; repetition < repetitions_; ++repetition) {
+      std::vector<std::size_t> order(settings_.variants.size());
+      for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+      std::shuffle(order.begin(), order.end(), random_);
+      // What the others are compared with comes first.
+      if (repetition == 0)
+        std::swap(*std::find(order.begin(), order.end(), settings_.reference), order[0]);
+      for (const std::size_t k : order) {
+        if (slow_.contains(slow_key(k, c)) && k != settings_.reference) continue;
+        const Outcome outcome = play(settings_.variants[k], frames,
+                                     k == settings_.reference ? 1e18 : settings_.limit_ns);
+        if (outcome.slow) slow_.insert(slow_key(k, c));
+        if (reference.empty()) reference = outcome.answers;
+        add_row(c, k, repetition, frames, outcome, reference);
+      }
+    }
+  }
+  /// What took longer than the definition allows is not run again on that set and motion: cases go
+  /// on with more boxes, or with more displacement.
+  static std::string slow_key(std::size_t k, const Case& c) {
+    return std::to_string(k) + " " + c.set + " " + c.motion;
+  }
+
+  void add_row(const Case& c, std::size_t k, unsigned repetition, const Frames& frames,
+               const Outcome& outcome, const std::vector<Answer>& reference) {
+    std::size_t differing = 0;
+    for (std::size_t f = 0; f < outcome.answers.size(); ++f)
+      differing += f < reference.size() && outcome.answers[f] != reference[f];
+    const Variant& v = settings_.variants[k];
+    const auto whole = [](double value) {
+      return std::to_string(static_cast<std::int64_t>(value + 0.5));
+    };
+    Row row = c.key();
+    for (auto& field :
+         {std::to_string(frames[0].size()), v.method, v.coherent, v.changes,
+          std::to_string(v.threads), std::to_string(repetition),
+          std::to_string(outcome.answers.size()), std::to_string(outcome.answers.back().pairs),
+          whole(outcome.events), std::to_string(differing), whole(outcome.first_ns),
+          whole(outcome.frame_ns), whole(outcome.middle_ns), whole(outcome.wall_ns),
+          std::to_string(outcome.bytes)})
+      row.push_back(field);
+    record_.add(std::move(row));
+  }
+
+  Settings settings_;
+  unsigned repetitions_;
+  StudyRecord record_;
+  std::set<std::string> slow_;
+  std::mt19937 random_{20260101};
+};
+
+void run(const StudyDefinition& definition, const std::filesystem::path& folder,
+         const Progress& progress) {
+  BoxStudy(definition, folder, progress).run();
+}
+
+}  // namespace
+
+const StudyKind studies::boxes = {
+    "boxes", "broad-phase methods and peers on sets of boxes, frame by frame", check_settings, run};
+
+}  // namespace bvlab

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Quinlan's relative error: what is promised, what is seen, and what it costs, for every volume on
+/// the same traces. The truth is the distance at relative error 0.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/replay/registry.hpp"
+#include "experiments/replay/replay.hpp"
+#include "experiments/studies/study.hpp"
+#include "experiments/studies/wandering.hpp"
+
+namespace bvlab {
+namespace {
+
+struct Settings {
+  std::vector<double> errors;
+  std::vector<std::string> strategies;
+};
+
+Settings settings_of(const StudyDefinition& definition) {
+  Settings settings;
+  settings.errors = definition.numbers("relative_errors", {0, 0.01, 0.1, 0.5});
+  settings.strategies = definition.strings("strategies", {"recursive"});
+  for (const auto& strategy : settings.strategies)
+    for (const double error : settings.errors) {
+      Variant variant;
+      variant.query = "distance", variant.strategy = strategy, variant.relative_error = error;
+      bvlab::check(variant);
+    }
+  return settings;
+}
+
+void check_settings(const StudyDefinition& definition) {
+  settings_of(definition);
+  Wandering{definition};
+}
+
+struct Observed {
+  double largest = 0, sum = 0;
+  std::size_t below = 0, above = 0;  ///< answers outside of what is promised
+};
+
+/// A distance itself is right to 1e-14 of it (triangle_distance.hpp), and what is nearer by less
+/// than 2^-45 is not looked for (distance.hpp), in the truth and in the answer.
+Observed compared(const std::vector<double>& answers, const std::vector<double>& truth,
+                  double promised) {
+  constexpr double grain = 1e-13;
+  Observed observed;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const double error = truth[i] > 0 ? answers[i] / truth[i] - 1 : answers[i] > 0 ? INFINITY : 0;
+    observed.below += error < -grain;
+    observed.above += error > promised + grain;
+    observed.largest = std::max(observed.largest, error);
+    observed.sum += error;
+  }
+  return observed;
+}
+
+void run(const StudyDefinition& definition, const std::filesystem::path& folder,
+         const Progress& progress) {
+  const Settings settings = settings_of(definition);
+  const Wandering wandering(definition);
+  StudyRecord record(
+      definition, folder,
+      {"mesh", "volume", "strategy", "relative_error", "repetition", "answers", "touching",
+       "largest_error", "mean_error", "outside", "n_u", "n_v", "n_p", "time_ns"},
+      1, progress);
+  std::mt19937_64 random(20260101);
+  std::size_t done = 0;
+  for (const auto& name : wandering.names) {
+    if (record.has({name})) {
+      record.save(++done, wandering.names.size());
+      continue;
+    }
+    const auto [meshes, trace, radius] = wandering.scene(name);
+    Variant variant;
+    variant.query = "distance";
+    const auto truth = replay(meshes, trace, variant, {}).distances;
+    const auto touching = std::count(truth.begin(), truth.end(), 0.0);
+    std::vector<std::pair<Variant, ReplayResult>> cells;
+    for (const auto& strategy : settings.strategies)
+      for (const double error : settings.errors)
+        for (const auto& volume : volumes()) {
+          variant.volume = volume.name, variant.strategy = strategy, variant.relative_error = error;
+          ReplayOptions options;
+          options.count = Count::on;
+          cells.emplace_back(variant, replay(meshes, trace, variant, options));
+        }
+    for (unsigned repetition = 0; repetition < definition.repetitions; ++repetition) {
+      std::shuffle(cells.begin(), cells.end(), random);
+      for (const auto& [cell, counted] : cells) {
+        const auto timed = replay(meshes, trace, cell, {});
+        const Observed observed = compared(timed.distances, truth, cell.relative_error);
+        record.add({name, cell.volume, cell.strategy, text_of(cell.relative_error),
+                    std::to_string(repetition), std::to_string(truth.size()),
+                    std::to_string(touching), text_of(observed.largest),
+                    text_of(observed.sum / static_cast<double>(truth.size())),
+                    std::to_string(observed.below + observed.above), std::to_string(counted.n_u),
+                    std::to_string(counted.n_v), std::to_string(counted.n_p),
+                    text_of(std::round(timed.seconds * 1e9))});
+      }
+    }
+    record.save(++done, wandering.names.size());
+  }
+}
+
+}  // namespace
+
+const StudyKind studies::distance = {
+    "distance", "the relative error of distances, promised and seen, against time", check_settings,
+    run};
+
+}  // namespace bvlab

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The stability map: false answers to "do they touch" of every volume, strategy and precision, and
+/// of every peer, under every stressor. The truth is found by brute force in rational numbers.
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/peers/peers.hpp"
+#include "experiments/replay/registry.hpp"
+#include "experiments/studies/stressors.hpp"
+#include "experiments/studies/study.hpp"
+#include "traversal/primitives/precisions.hpp"
+
+namespace bvlab {
+namespace {
+
+using Answers = std::vector<std::uint8_t>;
+
+struct Settings {
+  std::size_t frames;
+  std::uint64_t seed;
+  int seconds;
+};
+
+Settings settings_of(const StudyDefinition& definition) {
+  return {definition.whole("frames", 100, 1'000'000), definition.whole("seed", 1, 1'000'000'000),
+          static_cast<int>(definition.whole("seconds", 20, 3600))};
+}
+
+void check_settings(const StudyDefinition& definition) { settings_of(definition); }
+
+/// What `work` answers in a process of its own; nothing where it crashed, refused, or took longer
+/// than `seconds`: what other libraries do with such input is not to end ours.
+template <class Work>
+std::optional<Answers> in_a_child(std::size_t count, int seconds, const Work& work) {
+  int ends[2];
+  if (pipe(ends) != 0) throw std::runtime_error("no pipe");
+  const pid_t child = fork();
+  if (child < 0) throw std::runtime_error("no process");
+  if (child == 0) {
+    close(ends[0]);
+    try {
+      const Answers answers = work();
+      std::size_t sent = 0;
+      while (sent < answers.size()) {
+        const auto n = write(ends[1], answers.data() + sent, answers.size() - sent);
+        if (n <= 0) _exit(1);
+        sent += static_cast<std::size_t>(n);
+      }
+    } catch (...) {
+      _exit(1);
+    }
+    _exit(0);
+  }
+  close(ends[1]);
+  Answers answers(count);
+  std::size_t got = 0;
+  pollfd ready{ends[0], POLLIN, 0};
+  while (got < count && poll(&ready, 1, seconds * 1000) > 0) {
+    const auto n = read(ends[0], answers.data() + got, count - got);
+    if (n <= 0) break;
+    got += static_cast<std::size_t>(n);
+  }
+  close(ends[0]);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  if (got < count) return {};
+  return answers;
+}
+
+class Map {
+ public:
+  Map(const StudyDefinition& definition, const std::filesystem::path& folder,
+      const Progress& progress)
+      : settings_(settings_of(definition)),
+        record_(definition, folder,
+                {"stressor", "level", "source", "volume", "strategy", "precision", "answers",
+                 "touching", "false_positives", "false_negatives"},
+                2, progress) {}
+
+  void run() {
+    std::size_t all = 0, done = 0;
+    for (const auto& stressor : stressors()) all += stressor.levels.size();
+    for (const auto& stressor : stressors())
+      for (const double level : stressor.levels) {
+        key_ = {std::string(stressor.name), text_of(level)};
+        if (!record_.has(key_)) {
+          const StressCase stress = stressor.make(level, settings_.frames, settings_.seed);
+          truth_ = truth_of(stress);
+          ours(stress);
+          theirs(stress);
+        }
+        record_.save(++done, all);
+      }
+  }
+
+ private:
+  void ours(const StressCase& stress) {
+    for (const auto& volume : volumes())
+      for (const auto& strategy : strategies())
+        Precisions::for_each([&]<class P>(std::type_identity<P>) {
+          Variant variant;
+          variant.volume = volume.name, variant.strategy = strategy.name;
+          variant.precision = P::name;
+          add("bvlab", variant.volume, variant.strategy, variant.precision,
+              replay(stress.meshes, stress.trace, variant, {}).touching);
+        });
+  }
+
+  void theirs(const StressCase& stress) {
+    for (const Peer& peer : peers()) {
+      if (!peer.answers("touching") || peer.takes_solids) continue;
+      add(std::string(peer.name), "", "", "", in_a_child(settings_.frames, settings_.seconds, [&] {
+            return peer.replay(stress.meshes, stress.trace, "touching", {}).touching;
+          }));
+    }
+  }
+
+  void add(const std::string& source, const std::string& volume, const std::string& strategy,
+           const std::string& precision, const std::optional<Answers>& answers) {
+    std::size_t touching = 0, positives = 0, negatives = 0;
+    for (std::size_t i = 0; i < truth_.size(); ++i) {
+      touching += truth_[i];
+      if (!answers) continue;
+      positives += (*answers)[i] > truth_[i], negatives += (*answers)[i] < truth_[i];
+    }
+    const auto count = [&](std::size_t n) { return answers ? std::to_string(n) : std::string(); };
+    record_.add({key_[0], key_[1], source, volume, strategy, precision,
+                 std::to_string(answers ? truth_.size() : 0), std::to_string(touching),
+                 count(positives), count(negatives)});
+  }
+
+  Settings settings_;
+  StudyRecord record_;
+  Row key_;
+  Answers truth_;
+};
+
+void run(const StudyDefinition& definition, const std::filesystem::path& folder,
+         const Progress& progress) {
+  Map(definition, folder, progress).run();
+}
+
+}  // namespace
+
+const StudyKind studies::stability = {
+    "stability", "false answers of every variant and peer under every stressor", check_settings,
+    run};
+
+}  // namespace bvlab

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// How tightly volumes enclose their triangles, level by level of the tree, as tests feel it.
+///
+/// A probe is a point at a known distance from the triangles of a node. The node's volume says that
+/// it is at least `gap` away, and what it leaves out of the distance, divided by the diameter of
+/// the triangles, is what is recorded: 0 for a volume that tells distances as its triangles do.
+///
+/// The relative: tau, the farthest that a point of the volume is from the triangles (their
+/// Hausdorff distance), over the same diameter (gottschalk2000thesis). Where the gap to a point is
+/// the distance to the volume, what is left out is at most tau, since the volume's nearest point is
+/// that near the triangles, and reaches it at a probe inside; so `largest` is below tau over the
+/// diameter, and the mean is the average for tests of which that is the worst. Where the gap is
+/// less than the distance to the volume, that is counted, too: tests feel it.
+///
+/// Probes lie off the surface (points of it by area) in any direction, by up to one diameter: there
+/// is where a traversal meets a node, for from farther away its parent is enough. Uniformly, since
+/// no volume leaves out more than the distance, and near probes would all say the same. Every level
+/// has about as many, dealt out evenly to so many of its nodes; a leaf belongs to the level where
+/// it stands; nodes that are a point are left out.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/replay/hierarchies_of.hpp"
+#include "experiments/replay/registry.hpp"
+#include "experiments/replay/triangle_test.hpp"
+#include "experiments/scenes/named_mesh.hpp"
+#include "experiments/studies/study.hpp"
+#include "hierarchies/geometry/enclosing_ball.hpp"
+
+namespace bvlab {
+namespace {
+
+struct Settings {
+  std::vector<std::string> meshes, volumes, builds, fits;
+  std::size_t polygons, leaf_size, nodes, probes, seed;
+
+  explicit Settings(const StudyDefinition& definition)
+      : meshes(definition.strings("mesh", {"bunny"})),
+        volumes(definition.strings("volumes", all_volumes())),
+        builds(definition.strings("builds", {Variant{}.build})),
+        fits(definition.strings("fits", {"published", "tight"})),
+        polygons(definition.whole("polygons", 5000, 1'000'000)),
+        leaf_size(definition.whole("leaf_size", 1, 1u << 16)),
+        nodes(definition.whole("nodes", 64, 1'000'000)),
+        probes(definition.whole("probes", 1024, 1'000'000)),
+        seed(definition.whole("seed", 1, 1'000'000'000)) {
+    for (const auto& volume : volumes)
+      for (const auto& build : builds)
+        for (const auto& fit : fits) bvlab::check(variant(volume, build, fit));
+  }
+
+  Variant variant(const std::string& volume, const std::string& build,
+                  const std::string& fit) const {
+    Variant variant;
+    variant.volume = volume, variant.build = build, variant.fit = fit;
+    variant.leaf_size = static_cast<std::uint32_t>(leaf_size);
+    return variant;
+  }
+
+ private:
+  static std::vector<std::string> all_volumes() {
+    std::vector<std::string> names;
+    for (const auto& volume : bvlab::volumes()) names.push_back(volume.name);
+    return names;
+  }
+};
+
+struct Probe {
+  Vec3<double> at;
+  double distance;  ///< from the triangles of its node
+};
+
+struct ProbedNode {
+  std::uint32_t node;
+  double diameter;  ///< of its triangles
+  std::vector<Probe> probes;
+};
+
+struct ProbedLevel {
+  std::size_t nodes;  ///< all there are; probed are some
+  std::vector<ProbedNode> probed;
+};
+
+/// The largest distance of two corners: pairs are tried from the ball around them inward, until two
+/// radii are less than what was found.
+double diameter_of(const std::vector<Triangle>& triangles) {
+  std::vector<Vec3<double>> points;
+  for (const auto& t : triangles) points.insert(points.end(), t.begin(), t.end());
+  const Vec3<double> centre = enclosing_ball(points).centre;
+  std::vector<std::pair<double, Vec3<double>>> outward;
+  for (const auto& p : points) outward.emplace_back((p - centre).norm(), p);
+  std::sort(outward.begin(), outward.end(),
+            [](const auto& a, const auto& b) { return a.first > b.first; });
+  double diameter = 0;
+  for (std::size_t i = 0; i < outward.size(); ++i)
+    for (std::size_t j = 0; j < i && outward[i].first + outward[j].first > diameter; ++j)
+      diameter = std::max(diameter, (outward[i].second - outward[j].second).norm());
+  return diameter;
+}
+
+/// Probes for the nodes of a topology, the same for every volume that is fitted to it.
+class Prober {
+ public:
+  Prober(const TriangleMesh& mesh, const Topology& topology, const Settings& settings)
+      : mesh_(mesh), topology_(topology), settings_(settings), random_(settings.seed) {}
+
+  std::vector<ProbedLevel> levels() {
+    std::vector<ProbedLevel> levels;
+    for (std::vector<std::uint32_t> level{0}, next; !level.empty();
+         level = std::move(next), next.clear()) {
+      for (const auto node : level)
+        if (const auto& [first, count] = topology_.nodes[node]; count == 0)
+          next.push_back(first), next.push_back(first + 1);
+      ProbedLevel& probed = levels.emplace_back();
+      probed.nodes = level.size();
+      std::shuffle(level.begin(), level.end(), random_);
+      const std::size_t nodes = std::min(level.size(), settings_.nodes);
+      const std::size_t probes = (settings_.probes + nodes - 1) / nodes;
+      for (const auto node : level) {
+        if (probed.probed.size() == nodes) break;
+        if (ProbedNode done = around(node, probes); done.diameter > 0)
+          probed.probed.push_back(std::move(done));
+      }
+    }
+    return levels;
+  }
+
+ private:
+  ProbedNode around(std::uint32_t node, std::size_t probes) {
+    std::vector<Triangle> triangles;
+    collect(node, triangles);
+    ProbedNode probed{node, diameter_of(triangles), {}};
+    if (!(probed.diameter > 0)) return probed;
+    std::vector<double> areas;
+    for (const auto& [a, b, c] : triangles) areas.push_back((b - a).cross(c - a).norm());
+    // Where there is no area, any triangle.
+    if (std::all_of(areas.begin(), areas.end(), [](double area) { return !(area > 0); }))
+      areas.assign(areas.size(), 1);
+    std::discrete_distribution<std::size_t> by_area(areas.begin(), areas.end());
+    for (std::size_t i = 0; i < probes; ++i) {
+      const Vec3<double> p =
+          point_of(triangles[by_area(random_)]) + probed.diameter * uniform_(random_) * direction();
+      double least = std::numeric_limits<double>::infinity();
+      for (const auto& t : triangles) least = std::min(least, distance(t, {p, p, p}).distance);
+      probed.probes.push_back({p, least});
+    }
+    return probed;
+  }
+
+  void collect(std::uint32_t node, std::vector<Triangle>& triangles) const {
+    const auto& [first, count] = topology_.nodes[node];
+    if (count == 0) collect(first, triangles), collect(first + 1, triangles);
+    for (std::uint32_t place = first; place < first + count; ++place)
+      triangles.push_back(mesh_.corners(topology_.primitives[place]));
+  }
+
+  Vec3<double> point_of(const Triangle& triangle) {
+    double s = uniform_(random_), t = uniform_(random_);
+    if (s + t > 1) s = 1 - s, t = 1 - t;
+    return triangle[0] + s * (triangle[1] - triangle[0]) + t * (triangle[2] - triangle[0]);
+  }
+
+  Vec3<double> direction() {
+    const double x = normal_(random_), y = normal_(random_), z = normal_(random_);
+    return Vec3<double>(x, y, z).stableNormalized();
+  }
+
+  const TriangleMesh& mesh_;
+  const Topology& topology_;
+  const Settings& settings_;
+  std::mt19937_64 random_;
+  std::uniform_real_distribution<double> uniform_;
+  std::normal_distribution<double> normal_;
+};
+
+/// What the volumes of each level leave out of its probes' distances, over the diameters,
+/// ascending.
+std::vector<std::vector<double>> left_out(const VolumeEntry& volume, const TriangleMesh& mesh,
+                                          const Topology& topology, Fit fit,
+                                          const std::vector<ProbedLevel>& levels) {
+  std::vector<GapQuestion> questions;
+  for (const auto& level : levels)
+    for (const auto& [node, diameter, probes] : level.probed)
+      for (const auto& probe : probes) questions.push_back({node, probe.at});
+  const std::vector<double> gaps = volume.gaps(mesh, topology, fit, questions);
+  std::vector<std::vector<double>> shares;
+  auto told = gaps.begin();
+  for (const auto& level : levels) {
+    auto& of_level = shares.emplace_back();
+    for (const auto& [node, diameter, probes] : level.probed)
+      for (const auto& probe : probes) of_level.push_back((probe.distance - *told++) / diameter);
+    std::sort(of_level.begin(), of_level.end());
+  }
+  return shares;
+}
+
+/// Of ascending values, between the two next to it.
+double quantile(const std::vector<double>& values, double part) {
+  const double place = part * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  return values[below] + (place - std::floor(place)) * (values[above] - values[below]);
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+/// One row for each level that has a node larger than a point.
+void add_rows(StudyRecord& record, const Row& key, const std::vector<std::vector<double>>& left,
+              const std::vector<ProbedLevel>& levels) {
+  for (std::size_t depth = 0; depth < levels.size(); ++depth) {
+    const ProbedLevel& level = levels[depth];
+    if (level.probed.empty()) continue;
+    std::vector<double> diameters;
+    for (const auto& node : level.probed) diameters.push_back(node.diameter);
+    const auto& shares = left[depth];
+    Row row = key;
+    for (const std::size_t n : {depth, level.nodes, level.probed.size(), shares.size()})
+      row.push_back(std::to_string(n));
+    for (const double value :
+         {mean_of(diameters), mean_of(shares), shares.front(), quantile(shares, 0.25),
+          quantile(shares, 0.5), quantile(shares, 0.75), shares.back()})
+      row.push_back(text_of(value));
+    record.add(std::move(row));
+  }
+}
+
+TriangleMesh mesh_of(const StudyDefinition& definition, const Settings& settings,
+                     const std::string& name) {
+  auto meshes = named_meshes(name, settings.polygons);
+  if (meshes.size() != 1) throw Unusable(definition.file, name + ": must be one mesh");
+  return std::move(meshes[0].mesh);
+}
+
+void measure(StudyRecord& record, const TriangleMesh& mesh, const std::string& name,
+             const Settings& settings) {
+  for (const auto& build : settings.builds) {
+    const Topology topology =
+        topology_of(mesh, settings.variant(settings.volumes[0], build, settings.fits[0]));
+    const auto levels = Prober(mesh, topology, settings).levels();
+    for (const auto& name_of_volume : settings.volumes)
+      for (const auto& fit : settings.fits) {
+        const VolumeEntry& volume = volume_entry(name_of_volume);
+        const Fit how = fit == "tight" ? Fit::tight : Fit::published;
+        if (how == Fit::tight && !volume.has_tight_fit) continue;
+        add_rows(record, {name, name_of_volume, build, fit},
+                 left_out(volume, mesh, topology, how, levels), levels);
+      }
+  }
+}
+
+void check_settings(const StudyDefinition& definition) { Settings{definition}; }
+
+void run(const StudyDefinition& definition, const std::filesystem::path& folder,
+         const Progress& progress) {
+  const Settings settings(definition);
+  StudyRecord record(
+      definition, folder,
+      {"mesh", "volume", "build", "fit", "level", "nodes", "probed", "probes", "diameter", "mean",
+       "least", "lower_quartile", "median", "upper_quartile", "largest"},
+      1, progress);
+  std::size_t done = 0;
+  for (const auto& name : settings.meshes) {
+    if (!record.has({name})) measure(record, mesh_of(definition, settings, name), name, settings);
+    record.save(++done, settings.meshes.size());
+  }
+}
+
+}  // namespace
+
+const StudyKind studies::tightness = {
+    "tightness", "what volumes leave out of distances, level by level of the tree", check_settings,
+    run};
+
+}  // namespace bvlab

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Misclassified pairs of triangles and time per call: every precision, one by one and batched, and
+/// every other test, on sets from harmless to nasty. The truth is CGAL's, in rational numbers.
+#include <time.h>
+
+#include <algorithm>
+#include <bit>
+#include <functional>
+#include <random>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/peers/triangle_oracle.hpp"
+#include "experiments/peers/triangle_tests.hpp"
+#include "experiments/replay/triangle_test.hpp"
+#include "experiments/scenes/triangle_sets.hpp"
+#include "experiments/studies/study.hpp"
+
+namespace bvlab {
+namespace {
+
+using Pairs = TriangleTestPeer::Pairs;
+
+template <class Precision>
+void one_by_one(Pairs pairs, std::uint8_t* verdicts) {
+  for (const auto& [a, b] : pairs) *verdicts++ = intersect<Precision>(a, b);
+}
+
+template <class Precision>
+void batched(Pairs pairs, std::uint8_t* verdicts) {
+  constexpr std::size_t most = 16;  // as queries do
+  for (std::size_t first = 0; first < pairs.size(); first += most) {
+    const std::size_t count = std::min(most, pairs.size() - first);
+    const Triangle *a[most], *b[most];
+    for (std::size_t i = 0; i < count; ++i)
+      a[i] = &pairs[first + i][0], b[i] = &pairs[first + i][1];
+    const std::uint64_t hits = intersect_batch<Precision>(a, b, static_cast<int>(count));
+    for (std::size_t i = 0; i < count; ++i) *verdicts++ = hits >> i & 1;
+  }
+}
+
+struct Test {
+  std::string name, source;
+  void (*decide)(Pairs, std::uint8_t*);
+  bool takes_zero_area = true;
+};
+
+std::vector<Test> all_tests() {
+  std::vector<Test> tests;
+  Precisions::for_each([&]<class Precision>(std::type_identity<Precision>) {
+    tests.push_back({std::string(Precision::name), "batched", batched<Precision>});
+    tests.push_back({std::string(Precision::name), "one by one", one_by_one<Precision>});
+  });
+  for (const auto& peer : triangle_test_peers())
+    tests.push_back({std::string(peer.name), "peer", peer.decide, peer.takes_zero_area});
+  return tests;
+}
+
+const TriangleSet& set_named(const std::string& file, const std::string& name) {
+  std::string names;
+  for (const auto& set : triangle_sets) {
+    if (set.name == name) return set;
+    names += (names.empty() ? "" : ", ") + std::string(set.name);
+  }
+  throw Unusable(file, "sets: no '" + name + "'; there are " + names);
+}
+
+struct Settings {
+  std::vector<const TriangleSet*> sets;
+  std::size_t pairs, at_once;
+  std::uint64_t seed;
+};
+
+Settings settings_of(const StudyDefinition& definition) {
+  std::vector<std::string> all;
+  for (const auto& set : triangle_sets) all.emplace_back(set.name);
+  Settings settings;
+  for (const auto& name : definition.strings("sets", all))
+    settings.sets.push_back(&set_named(definition.file, name));
+  settings.pairs = definition.whole("pairs", 50000, 10'000'000);
+  settings.at_once = definition.whole("at_once", 5000, 10'000'000);
+  settings.seed = definition.whole("seed", 1, 1'000'000'000);
+  return settings;
+}
+
+void check_settings(const StudyDefinition& definition) { settings_of(definition); }
+
+/// Pairs with area, so that every test can be asked, but for the sets that are made of others.
+std::vector<TrianglePair> pairs_of(const TriangleSet& set, const Settings& settings,
+                                   bool zero_area) {
+  auto pairs = set.make(settings.pairs, settings.seed);
+  if (!zero_area)
+    std::erase_if(pairs, [](const TrianglePair& pair) {
+      return oracle::without_area(pair[0]) || oracle::without_area(pair[1]);
+    });
+  return pairs;
+}
+
+/// Of this thread on a processor: neighbours on the machine disturb that less than the wall clock.
+double nanoseconds(const std::function<void()>& work) {
+  const auto now = [] {
+    timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
+  };
+  const double start = now();
+  work();
+  return now() - start;
+}
+
+void run(const StudyDefinition& definition, const std::filesystem::path& folder,
+         const Progress& progress) {
+  const Settings settings = settings_of(definition);
+  StudyRecord record(definition, folder,
+                     {"set", "test", "source", "repetition", "pairs", "touching", "false_positives",
+                      "false_negatives", "ns_per_call"},
+                     1, progress);
+  std::mt19937_64 random(20260101);
+  std::size_t done = 0;
+  for (const TriangleSet* set : settings.sets) {
+    const std::string set_name(set->name);
+    if (record.has({set_name})) {
+      record.save(++done, settings.sets.size());
+      continue;
+    }
+    const bool zero_area = set_name.starts_with("without area");
+    const auto pairs = pairs_of(*set, settings, zero_area);
+    std::vector<std::uint8_t> truth, verdicts(pairs.size());
+    for (const auto& [a, b] : pairs) truth.push_back(oracle::intersect(a, b));
+    std::vector<Test> tests = all_tests();
+    for (unsigned repetition = 0; repetition < definition.repetitions; ++repetition) {
+      std::shuffle(tests.begin(), tests.end(), random);
+      for (const Test& test : tests) {
+        if (zero_area && !test.takes_zero_area) continue;
+        // Pairs few enough to stay in the cache: once to bring them there, then by the clock.
+        double time = 0;
+        for (std::size_t first = 0; first < pairs.size(); first += settings.at_once) {
+          const Pairs some(&pairs[first], std::min(settings.at_once, pairs.size() - first));
+          if (first == 0) test.decide(some, &verdicts[first]);
+          time += nanoseconds([&] { test.decide(some, &verdicts[first]); });
+        }
+        std::size_t touching = 0, positives = 0, negatives = 0;
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+          touching += truth[i];
+          positives += verdicts[i] > truth[i], negatives += verdicts[i] < truth[i];
+        }
+        record.add({set_name, test.name, test.source, std::to_string(repetition),
+                    std::to_string(pairs.size()), std::to_string(touching),
+                    std::to_string(positives), std::to_string(negatives),
+                    text_of(time / static_cast<double>(pairs.size()))});
+      }
+    }
+    record.save(++done, settings.sets.size());
+  }
+}
+
+}  // namespace
+
+const StudyKind studies::triangles = {
+    "triangles", "misclassified pairs and time of every triangle test on every set", check_settings,
+    run};
+
+}  // namespace bvlab

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Whole scenes: many bodies in a closed cube of which some move, our engine and other libraries'
+/// complete pipelines on the same trace, answers compared pair by pair in every frame.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <random>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/peers/world_peers.hpp"
+#include "experiments/replay/worlds.hpp"
+#include "experiments/scenes/extent.hpp"
+#include "experiments/scenes/named_mesh.hpp"
+#include "experiments/scenes/random_walk.hpp"
+#include "experiments/studies/study.hpp"
+
+namespace bvlab {
+namespace {
+
+struct Contestant {
+  Variant variant;
+  std::string peer;  ///< empty: ours
+};
+
+/// What all contestants are given.
+struct Scene {
+  std::size_t objects;
+  double room;  ///< side of the cube, in body radii, for as many bodies as the talk has
+  double moving;
+  double step, degrees;  ///< in body radii
+};
+
+struct Settings {
+  std::string mesh;
+  std::size_t polygons, frames;
+  std::uint64_t seed;
+  std::vector<Scene> scenes;
+  std::vector<Contestant> contestants;
+};
+
+/// The talk's workspace holds nine; a larger one keeps the density.
+double side_of(const Scene& scene) {
+  return scene.room * std::cbrt(static_cast<double>(scene.objects) / 9);
+}
+
+Settings settings_of(const StudyDefinition& definition) {
+  Settings settings;
+  const auto number = [&](const char* key, double fallback, double least, double most) {
+    const double value = definition.number(key, fallback);
+    if (!(value >= least && value <= most))
+      throw Unusable(definition.file,
+                     std::string(key) + " must be " + text_of(least) + " to " + text_of(most));
+    return value;
+  };
+  settings.mesh = definition.strings("mesh", {"bunny"}).at(0);
+  settings.polygons = static_cast<std::size_t>(number("polygons", 500, 1, 1e7));
+  settings.frames = static_cast<std::size_t>(number("frames", 12, 2, 1e5));
+  settings.seed = static_cast<std::uint64_t>(number("seed", 1, 0, 1e9));
+  const auto steps = definition.numbers("steps", {0.03}),
+             degrees = definition.numbers("degrees", {5});
+  if (steps.size() != degrees.size())
+    throw Unusable(definition.file, "steps and degrees must be as many");
+  for (const double objects : definition.numbers("objects", {1000}))
+    for (const double room : definition.numbers("rooms", {4}))
+      for (const double moving : definition.numbers("moving", {1, 0.1, 0.01}))
+        for (std::size_t k = 0; k < steps.size(); ++k) {
+          if (!(objects >= 1 && objects <= 1e6) || !(room > 0) || !(moving >= 0 && moving <= 1))
+            throw Unusable(definition.file,
+                           "objects must be 1 to 1e6, rooms above 0, moving 0 to 1");
+          settings.scenes.push_back(
+              {static_cast<std::size_t>(objects), room, moving, steps[k], degrees[k]});
+        }
+  for (const auto& volume : definition.strings("volumes", {"sphere"}))
+    for (const auto& strategy : definition.strings("strategies", {"recursive"})) {
+      Variant variant;
+      variant.volume = volume, variant.strategy = strategy;
+      variant.build = definition.strings("build", {variant.build}).at(0);
+      variant.fit = definition.strings("fit", {variant.fit}).at(0);
+      variant.leaf_size = static_cast<std::uint32_t>(number("leaf_size", variant.leaf_size, 1, 64));
+      check(variant);
+      settings.contestants.push_back({variant, ""});
+    }
+  for (const auto& peer : definition.strings("peers", {})) {
+    if (!is_world_peer(peer))
+      throw Unusable(definition.file, "peers: no '" + peer + "'; there are " + world_peer_names());
+    settings.contestants.push_back({{}, peer});
+  }
+  return settings;
+}
+
+void check_settings(const StudyDefinition& definition) { settings_of(definition); }
+
+Trace trace_of(const Scene& scene, const Settings& settings, const TriangleMesh& mesh) {
+  RandomWalk walk;
+  walk.objects = scene.objects;
+  // With `moving` 0 nobody moves: a scene that stands.
+  const auto movers =
+      static_cast<std::size_t>(std::lround(scene.moving * static_cast<double>(scene.objects)));
+  walk.moving = std::max<std::size_t>(movers, 1);
+  walk.frames = movers ? settings.frames : 1;
+  walk.side = {side_of(scene), Length::Unit::body};
+  walk.step = {scene.step, Length::Unit::body};
+  walk.degrees = scene.degrees;
+  walk.seed = settings.seed;
+  const Extent extent = extent_of(mesh);
+  auto array = walk.generate(std::span(&extent, 1), {});
+  if (!movers) {
+    const auto first = array.data;
+    for (std::size_t frame = 1; frame < settings.frames; ++frame)
+      array.data.insert(array.data.end(), first.begin(), first.end());
+    array.shape[0] = settings.frames;
+  }
+  return {array.shape[0], array.shape[1], std::move(array.data)};
+}
+
+WorldRun run_of(const Contestant& who, const TriangleMesh& mesh, const Trace& trace,
+                Answers answers) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::span meshes(&mesh, 1);
+  auto world = who.peer.empty() ? make_world(meshes, trace.objects, who.variant)
+                                : make_world_peer(who.peer, meshes, trace.objects);
+  const std::chrono::duration<double> built = std::chrono::steady_clock::now() - start;
+  WorldRun run = play_frames(*world, trace, answers);
+  run.build_seconds = built.count();
+  return run;
+}
+
+std::string nanoseconds(double seconds) {
+  return std::to_string(static_cast<std::int64_t>(seconds * 1e9 + 0.5));
+}
+
+void run(const StudyDefinition& definition, const std::filesystem::path& folder,
+         const Progress& progress) {
+  const Settings settings = settings_of(definition);
+  StudyRecord record(
+      definition, folder,
+      {"objects",  "room",     "moving", "step",     "degrees", "mesh",       "polygons",
+       "frames",   "seed",     "volume", "strategy", "peer",    "repetition", "time_ns",
+       "first_ns", "build_ns", "moved",  "near",     "asked",   "touching",   "differing"},
+      9, progress);
+  const TriangleMesh mesh = named_mesh(settings.mesh, settings.polygons).mesh;
+  std::mt19937_64 random(20260101);
+  std::size_t done = 0;
+  for (const Scene& scene : settings.scenes) {
+    const Row key{std::to_string(scene.objects),
+                  text_of(scene.room),
+                  text_of(scene.moving),
+                  text_of(scene.step),
+                  text_of(scene.degrees),
+                  settings.mesh,
+                  std::to_string(settings.polygons),
+                  std::to_string(settings.frames),
+                  std::to_string(settings.seed)};
+    if (record.has(key)) {
+      record.save(++done, settings.scenes.size());
+      continue;
+    }
+    const Trace trace = trace_of(scene, settings, mesh);
+    const WorldRun reference = run_of({}, mesh, trace, Answers::kept);
+    std::vector<std::size_t> order, differences;
+    for (const auto& who : settings.contestants) {
+      order.push_back(order.size());
+      differences.push_back(differing(run_of(who, mesh, trace, Answers::kept), reference));
+    }
+    for (unsigned repetition = 0; repetition < definition.repetitions; ++repetition) {
+      std::shuffle(order.begin(), order.end(), random);
+      for (const std::size_t k : order) {
+        const auto& who = settings.contestants[k];
+        const WorldRun timed = run_of(who, mesh, trace, Answers::counted);
+        const bool ours = who.peer.empty();
+        Row row = key;
+        for (const auto& field :
+             {ours ? who.variant.volume : "", ours ? who.variant.strategy : "", who.peer,
+              std::to_string(repetition), nanoseconds(timed.seconds),
+              nanoseconds(timed.first_seconds), nanoseconds(timed.build_seconds),
+              std::to_string(timed.moved), ours ? std::to_string(timed.near) : "",
+              ours ? std::to_string(timed.asked) : "", std::to_string(timed.touching),
+              std::to_string(differences[k])})
+          row.push_back(field);
+        record.add(std::move(row));
+      }
+    }
+    record.save(++done, settings.scenes.size());
+  }
+}
+
+}  // namespace
+
+const StudyKind studies::worlds = {
+    "worlds", "whole scenes of many bodies, beside other libraries' complete pipelines",
+    check_settings, run};
+
+}  // namespace bvlab

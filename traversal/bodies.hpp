@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Bodies over one kind of volume, and the pairs among them. `AllPairs` and `World` are written
+/// over what this offers, so that the bvlab program can put bodies in its place whose volume is
+/// chosen while it runs (AnyBodies).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "traversal/body.hpp"
+#include "traversal/body_pair.hpp"
+#include "traversal/gather.hpp"
+
+namespace bvlab {
+
+/// A mesh and the hierarchy over it.
+template <BoundingVolume V>
+struct Shape {
+  const TriangleMesh* mesh;
+  const Hierarchy<V>* hierarchy;
+};
+
+/// The middle of the box around all translations: float volumes are posed relative to it, so that
+/// their precision does not depend on where in the world the bodies are.
+inline Vec3<double> middle_of(std::span<const Pose> poses) {
+  if (poses.empty()) return Vec3<double>::Zero();
+  Vec3<double> low = poses[0].translation, high = low;
+  for (const auto& pose : poses) {
+    low = low.cwiseMin(pose.translation);
+    high = high.cwiseMax(pose.translation);
+  }
+  return low / 2 + high / 2;
+}
+
+/// B is the scalar or batch in which volumes are tested.
+template <class B, BoundingVolume V>
+class Bodies {
+  static constexpr int W = width<B>();
+
+ public:
+  /// Whether roots are worth testing for many pairs at once.
+  static constexpr bool culls_in_batches = W > 1;
+
+  /// One body for each shape; meshes and hierarchies must outlive this.
+  explicit Bodies(std::span<const Shape<V>> shapes) : roots_(shapes.size()) {
+    bodies_.reserve(shapes.size());
+    for (const auto& shape : shapes) bodies_.emplace_back(*shape.mesh, *shape.hierarchy);
+  }
+
+  std::size_t size() const { return bodies_.size(); }
+  const TriangleMesh& mesh(std::size_t i) const { return bodies_[i].mesh(); }
+  Body<V>& operator[](std::size_t i) { return bodies_[i]; }
+
+  /// See Body::move.
+  void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) {
+    bodies_[i].move(pose, origin);
+  }
+  /// All of them; one pose for each.
+  void move(std::span<const Pose> poses, const Vec3<double>& origin) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].move(poses[i], origin);
+  }
+
+  template <class Query, class Counter>
+  BodyPair<B, V, Query, Counter> pair(const ObjectPair& pair, Query& query, Counter& counter) {
+    return {bodies_[pair.i], bodies_[pair.j], query, counter, workspace_};
+  }
+
+  /// For each p of `fresh`, whether the query culls the roots of `pairs[p]`, into `apart[p]`. Most
+  /// of the work where bodies are sparse, and a fraction of it if done for W pairs at once. Counts
+  /// volumes posed, not tests.
+  template <class Query, class Counter>
+  void cull_roots(std::span<const ObjectPair> pairs, std::span<const std::uint32_t> fresh,
+                  Query& query, Counter& counter, std::uint8_t* apart) {
+    wanted_.assign(bodies_.size(), 0);
+    for (const auto p : fresh) wanted_[pairs[p].i] = wanted_[pairs[p].j] = 1;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (!wanted_[i]) continue;
+      bodies_[i].require(0, counter);
+      roots_[i] = bodies_[i].volumes()[0];
+    }
+    for (std::size_t first = 0; first < fresh.size(); first += W) {
+      std::array<std::uint32_t, W> a, b;
+      for (std::size_t k = 0; k < W; ++k) {
+        const ObjectPair& pair = pairs[fresh[std::min(first + k, fresh.size() - 1)]];
+        a[k] = pair.i, b[k] = pair.j;
+      }
+      const std::uint64_t culled = bits(
+          query.excludes(gather<B>(roots_.data(), a.data()), gather<B>(roots_.data(), b.data())));
+      for (std::size_t k = 0; k < W && first + k < fresh.size(); ++k)
+        apart[fresh[first + k]] = culled >> k & 1;
+    }
+  }
+
+ private:
+  std::vector<Body<V>> bodies_;
+  std::vector<Posed<V>> roots_;       // of all bodies, side by side
+  std::vector<std::uint8_t> wanted_;  // for each body, whether its root is tested
+  Workspace workspace_;
+};
+
+}  // namespace bvlab

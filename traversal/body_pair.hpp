@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Two bodies and the query asked of them: what a strategy runs on.
+///
+/// A strategy sees no more than this, so it is written once for all volumes, queries, counters and
+/// widths. What a pair offers:
+///   a(), b()              the bodies, as far as their motion is concerned (MovingBody)
+///   query()               the query, which takes the answer
+///   from_roots<Roots>(s)  the recursive algorithm; Roots is NoFront or NoFrontBoth, s says whether
+///                         the roots are known to overlap
+///   from_front(front)     from a front, which is kept up to date: whatever `traverse` takes
+/// The last two give the statistics of the traversal. `AnyPair` of the bvlab program offers the
+/// same without naming a volume.
+#pragma once
+
+#include <cstdint>
+
+#include "traversal/traverse.hpp"
+
+namespace bvlab {
+
+/// Of objects, by their indices; i < j.
+struct ObjectPair {
+  std::uint32_t i, j;
+};
+
+/// B is the scalar or batch in which volumes are tested.
+template <class B, BoundingVolume V, class QueryType, class Counter>
+class BodyPair {
+ public:
+  using Query = QueryType;
+
+  BodyPair(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace)
+      : a_(a), b_(b), query_(query), counter_(counter), workspace_(workspace) {}
+
+  MovingBody& a() const { return a_; }
+  MovingBody& b() const { return b_; }
+  Query& query() const { return query_; }
+
+  template <class Roots = NoFront>
+  Walked from_roots(Start start = Start::roots) const {
+    return traverse_from_roots<B, Roots>(a_, b_, query_, counter_, workspace_, start);
+  }
+  template <class Front>
+  Walked from_front(Front&& front) const {
+    return traverse<B>(a_, b_, query_, counter_, workspace_, front);
+  }
+
+ private:
+  Body<V>& a_;
+  Body<V>& b_;
+  Query& query_;
+  Counter& counter_;
+  Workspace& workspace_;
+};
+
+}  // namespace bvlab

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A pose from which motion is measured, and bounds on how far a body has moved since.
+///
+/// A point of a body, given by v about the body's middle c in the mesh's frame, stands at
+/// x = (Rc + t) + Rv. From a pose r to a pose f it moves by
+///
+///   (c_f - c_r) + (R_f - R_r) v,   |(R_f - R_r) v| <= |R_f - R_r|_2 radius.
+///
+/// The singular values of the difference of two rotations by an angle of s between them are
+/// 2 sin(s / 2), 2 sin(s / 2) and 0, so that |R_f - R_r|_2 = |R_f - R_r|_F / sqrt(2): nothing needs
+/// a quaternion or an angle. A matrix that is no rotation is within d = |R'R - I|_F of the
+/// orthonormal one next to it (its singular values s give |s - 1| <= |s^2 - 1|), hence
+///
+///   |R_f - R_r|_2 <= (F + d_f + d_r) / sqrt(2) + d_f + d_r,   F = |R_f - R_r|_F,
+///
+/// where both lie on the same side of O(3), which is so if F + d_f + d_r < 2; else F itself is the
+/// bound. For a point of each of two bodies the difference of their moves is at most
+///
+///   |(c_f - c_r)_a - (c_f - c_r)_b| + |R_f - R_r|_2,a radius_a + |R_f - R_r|_2,b radius_b,
+///
+/// so that bodies carried along together do not approach.
+///
+/// Rounding. A vertex as it stands, fl(Rv + t), and a middle, fl(Rc + t), are each off by less than
+/// 8u (reach + |t|) (see placement.hpp): `noise` is the sum of both, twice. It is counted at both
+/// poses. The sums of squares and their roots are off by less than 16 roundings in relative terms,
+/// those of the whole by 16 more: a factor of 1 + 32u pays for all.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hierarchies/geometry/pose.hpp"
+#include "hierarchies/hierarchy_extent.hpp"
+
+namespace bvlab {
+
+/// Where a body stands, as far as its later motion is to be bounded.
+struct ReferencePose {
+  Mat3<double> rotation = Mat3<double>::Identity();
+  Vec3<double> centre = Vec3<double>::Zero();  ///< of the body, in the world
+  double defect = 0;                           ///< at least |R'R - I|_F
+  double noise = 0;                            ///< of everything above, in units of the mesh
+
+  ReferencePose() = default;
+  ReferencePose(const Pose& pose, const HierarchyExtent& extent)
+      : rotation(pose.rotation), centre(pose(extent.centre)) {
+    constexpr double u = unit_roundoff<double>;
+    defect = (rotation.transpose() * rotation - Mat3<double>::Identity()).norm() + 16 * u;
+    noise = 32 * u * (extent.reach + pose.translation.norm()) + std::numeric_limits<double>::min();
+  }
+};
+
+/// At least |R_to - R_from|_2.
+inline double turn_between(const ReferencePose& from, const ReferencePose& to) {
+  const double norm = (to.rotation - from.rotation).norm();
+  const double defects = from.defect + to.defect;
+  if (!(norm + defects < 1.9)) return norm;
+  return std::min(norm, (norm + defects) * M_SQRT1_2 + defects);
+}
+
+/// How far any point of a body that went from one pose to another can have come, at most.
+inline double step_between(const ReferencePose& from, const ReferencePose& to, double radius) {
+  return ((to.centre - from.centre).norm() + turn_between(from, to) * radius) *
+         (1 + 32 * unit_roundoff<double>)+(from.noise + to.noise);
+}
+
+}  // namespace bvlab
