@@ -43,6 +43,7 @@ class AllPairsOf {
       : bodies_(std::forward<Made>(bodies)),
         pairs_(std::move(pairs)),
         strategies_(pairs_.size(), strategy) {
+    bodies_.make_room();
     if constexpr (roots_as_batches) {
       fresh_.reserve(pairs_.size());
       apart_.resize(pairs_.size());

@@ -54,6 +54,11 @@ class Bodies {
   const TriangleMesh& mesh(std::size_t i) const { return bodies_[i].mesh(); }
   Body<V>& operator[](std::size_t i) { return bodies_[i]; }
 
+  /// For all bodies, before anything is timed; else each makes room when it is moved first.
+  void make_room() {
+    for (auto& body : bodies_) body.make_room();
+  }
+
   /// See Body::move.
   void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) {
     bodies_[i].move(pose, origin);

@@ -24,13 +24,21 @@ class Body : public MovingBody {
       : MovingBody(hierarchy.extent()), mesh_(&mesh), hierarchy_(&hierarchy) {}
 
   /// Puts the body where `pose` says; `origin` is the same for all bodies that are to be compared.
-  /// Says whether anything moved. The first call makes room for what is posed.
+  /// Says whether anything moved. The first call makes room where that has not been done.
   bool move(const Pose& pose, const Vec3<double>& origin) {
     if (!place(pose, origin)) return false;
-    if (volumes_.empty()) allocate();
+    if (volumes_.empty()) make_room();
     if (epoch_ == 0) forget();
     placed_ = false;
     return true;
+  }
+
+  /// Room for what is posed, which a body that nobody comes near does not need.
+  void make_room() {
+    volumes_.resize(hierarchy_->size());
+    volume_epochs_.assign(hierarchy_->size() / 2 + 1, 0);
+    triangles_.resize(hierarchy_->primitives());
+    triangle_epochs_.assign(hierarchy_->primitives(), 0);
   }
 
   const TriangleMesh& mesh() const { return *mesh_; }
@@ -84,13 +92,6 @@ class Body : public MovingBody {
   void prepare() {
     placement_ = PlacementOf<V>(pose_, origin_, hierarchy_->extent().reach);
     placed_ = true;
-  }
-
-  void allocate() {
-    volumes_.resize(hierarchy_->size());
-    volume_epochs_.assign(hierarchy_->size() / 2 + 1, 0);
-    triangles_.resize(hierarchy_->primitives());
-    triangle_epochs_.assign(hierarchy_->primitives(), 0);
   }
 
   void forget() {

@@ -25,6 +25,7 @@ class BodyLoops {
   virtual std::size_t size() const = 0;
   virtual const TriangleMesh& mesh(std::size_t i) const = 0;
   virtual MovingBody& body(std::size_t i) = 0;
+  virtual void make_room() = 0;
   virtual void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) = 0;
   virtual void move(std::span<const Pose> poses, const Vec3<double>& origin) = 0;
   virtual void cull_roots(std::span<const ObjectPair> pairs, std::span<const std::uint32_t> fresh,
@@ -90,6 +91,7 @@ class AnyBodies {
 
   std::size_t size() const { return bodies_.size(); }
   const TriangleMesh& mesh(std::size_t i) const { return loops_->mesh(i); }
+  void make_room() { loops_->make_room(); }
   void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) {
     loops_->move(i, pose, origin);
   }

@@ -23,6 +23,7 @@ class LoopsOver final : public BodyLoops<Query> {
   std::size_t size() const override { return bodies_.size(); }
   const TriangleMesh& mesh(std::size_t i) const override { return bodies_.mesh(i); }
   MovingBody& body(std::size_t i) override { return bodies_[i]; }
+  void make_room() override { bodies_.make_room(); }
   void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) override {
     bodies_.move(i, pose, origin);
   }
