@@ -10,24 +10,26 @@ RECORD holds best-rebuilds.csv and best-rebuilds.coherence.csv.
 from pathlib import Path
 
 import matplotlib.pyplot as plt
-import pandas as pd
 
+import records
 import style
 from arguments import record_arguments
 
 
 def read(record):
     """One row for each motion, query and strategy: medians, N_v over the best, time over the best."""
-    rows = pd.read_csv(Path(record) / "best-rebuilds.csv", keep_default_na=False)
-    best = pd.read_csv(Path(record) / "best-rebuilds.coherence.csv", keep_default_na=False)
+    rows = records.table(Path(record) / "best-rebuilds.csv")
+    best = records.table(Path(record) / "best-rebuilds.coherence.csv")
     if (rows.differing != 0).any():
         raise SystemExit(f"{record}: answers differ")
-    keys = ["step", "degrees", "query"]
+    # A peer has neither a volume nor tests that could be counted.
+    rows["strategy"] = rows.strategy.where(rows.peer == "", rows.peer)
+    keys = ["step", "degrees", "query", "volume"]
     labels = rows[["motion"] + keys].drop_duplicates()
-    best = best.merge(labels, on=keys)[["motion", "query", "best_tests", "best_rebuilds"]]
-    rows = rows.groupby(["motion", "query", "strategy"], sort=False, as_index=False).median(
+    best = best.merge(labels, on=keys)[["motion", "query", "volume", "best_tests", "best_rebuilds"]]
+    rows = rows.groupby(["motion", "query", "volume", "strategy"], sort=False, as_index=False).median(
         numeric_only=True)
-    rows = rows.merge(best, on=["motion", "query"])
+    rows = rows.merge(best, how="left", on=["motion", "query", "volume"])
     rows["ratio"] = rows.n_v / rows.best_tests
     fastest = rows.groupby(["motion", "query"]).time_ns.transform("min")
     rows["slower"] = rows.time_ns / fastest
@@ -36,17 +38,21 @@ def read(record):
 
 def draw(rows, out):
     queries = list(dict.fromkeys(rows["query"]))
-    figure, axes = plt.subplots(2, len(queries), figsize=(7.2, 4.8), sharex=True, sharey="row")
+    several = rows[rows.volume != ""].volume.nunique() > 1
+    rows = rows.assign(variant=(rows.volume + " " + rows.strategy).str.strip() if several else rows.strategy)
+    looks = style.variant_looks(rows.variant)
+    figure, axes = plt.subplots(2, len(queries), figsize=(7.2, 4.8), sharex=True, sharey="row", squeeze=False)
     for column, query in enumerate(queries):
         part = rows[rows["query"] == query]
-        for strategy in dict.fromkeys(part.strategy):
-            line = part[part.strategy == strategy]
-            look = {k: v for k, v in style.STYLES[strategy].items() if k != "hatch"}
+        for variant in dict.fromkeys(part.variant):
+            line = part[part.variant == variant]
             for axis, measure in zip(axes[:, column], ("ratio", "slower")):
-                axis.plot(line.motion.str.replace(" / ", "\n"), line[measure], label=strategy, markersize=4, **look)
+                axis.plot(line.motion.str.replace(" / ", "\n"), line[measure], label=variant, markersize=4,
+                          **style.point_style(looks[variant]))
         axes[0, column].set(title=query, yscale="log")
         axes[0, column].axhline(1, color="#8f8f8f", lw=0.8)
-        axes[1, column].set(yscale="log", yticks=[1, 2, 5], yticklabels=["1", "2", "5"], xlabel="motion a frame: radii, degrees")
+        axes[1, column].set(yscale="log", yticks=[1, 2, 5], yticklabels=["1", "2", "5"],
+                            xlabel="motion a frame: radii, degrees")
         axes[1, column].axhline(1, color="#8f8f8f", lw=0.8)
     axes[0, 0].set_ylabel("tests of volumes over a list's\nwith the best rebuilds")
     axes[1, 0].set_ylabel("time over that of the\nfastest strategy")
@@ -62,7 +68,7 @@ def main():
     for measure, text in (("ratio", "N_v over a list's with the best rebuilds"),
                           ("slower", "time over the fastest strategy's")):
         print(text)
-        table = rows.pivot_table(index=["query", "motion"], columns="strategy", values=measure,
+        table = rows.pivot_table(index=["query", "volume", "motion"], columns="strategy", values=measure,
                                  sort=False)
         print(table.round(2).to_string())
     draw(rows, arguments.out)

@@ -13,10 +13,6 @@ import matplotlib.pyplot as plt
 import style
 from arguments import record_arguments
 
-NUMBERS = {"double": dict(color="#1b1b1b", marker="o", linestyle="-"),
-           "float, nearest": dict(color="#d95f0e", marker="s", linestyle="--"),
-           "float, outward": dict(color="#41a5c4", marker="^", linestyle="-.")}
-
 
 def middle_of(rows):
     return rows.groupby(["set", "method", "numbers", "offset"], sort=False).agg(
@@ -25,29 +21,36 @@ def middle_of(rows):
 
 
 def draw(middle, out, name):
-    sets = list(dict.fromkeys(middle.set))
-    method = middle.method.iloc[0]
-    figure, axes = plt.subplots(2, len(sets), figsize=(7.2, 4.4), squeeze=False, sharex=True)
+    sets, methods = list(dict.fromkeys(middle.set)), list(dict.fromkeys(middle.method))
+    looks = {numbers: style.point_style(look) for numbers, look in style.looks(middle.numbers).items()}
+    figure, axes = plt.subplots(1 + len(methods), len(sets), figsize=(7.2, 2 * len(methods) + 2.4), squeeze=False,
+                                sharex=True)
     for column, which in zip(axes.T, sets):
-        part = middle[(middle.set == which) & (middle.method == method)]
-        for numbers, look in NUMBERS.items():
+        # Which pairs are found is the same for every method.
+        part = middle[(middle.set == which) & (middle.method == methods[0])]
+        for numbers, look in looks.items():
             line = part[part.numbers == numbers].sort_values("offset")
             x = np.maximum(line.offset, 1)
             million = 1e6 / np.maximum(line.pairs, 1)
             column[0].plot(x, np.maximum(line.positives * million, 0.3), markersize=4,
                            label=f"{numbers}: too many", **look)
-            if numbers == "float, nearest":
+            if line.negatives.any() or numbers == "float, nearest":
                 column[0].plot(x, np.maximum(line.negatives * million, 0.3), markersize=4,
                                markerfacecolor="none", label=f"{numbers}: missed", **look)
-            column[1].plot(x, line.us, markersize=4, **look)
+            for axis, method in zip(column[1:], methods):
+                line = middle[(middle.set == which) & (middle.method == method) & (middle.numbers == numbers)]
+                line = line.sort_values("offset")
+                axis.plot(np.maximum(line.offset, 1), line.us, markersize=4, **look)
         column[0].set_xscale("log")
         column[0].set_yscale("log")
         column[0].set_title(which)
-        column[1].set_ylim(bottom=0)
-        column[1].set_xlabel("distance from the origin")
+        for axis in column[1:]:
+            axis.set_ylim(bottom=0)
+        column[-1].set_xlabel("distance from the origin")
         column[0].axhline(0.3, color="#888888", linewidth=0.6)
     axes[0, 0].set_ylabel("false pairs per million\n(the lowest line: none)")
-    axes[1, 0].set_ylabel(f"µs a frame, {method}")
+    for axis, method in zip(axes[1:, 0], methods):
+        axis.set_ylabel(f"µs a frame, {method}")
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", ncol=2, frameon=False,
                   bbox_to_anchor=(0.5, -0.1))

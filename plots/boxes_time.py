@@ -14,35 +14,38 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-import pandas as pd
 
+import records
 import style
 
-# In the order of their family, so that a name looks the same in every figure.
-LOOKS = {
-    "blocks": ("#1b1b1b", "o", "-"), "hybrid": ("#d95f0e", "s", "--"), "hash": ("#41a5c4", "^", "-."),
-    "sweep1": ("#7a5195", "D", ":"), "sweep2": ("#bc9fd1", "v", "-."), "sweep3": ("#c43c6b", "P", "--"),
-    "sweep4": ("#3c8d40", "X", "-"), "cgal-1000": ("#8f8f8f", "x", ":"), "sap": ("#d95f0e", "s", "--"),
-    "dynamic-tree": ("#7a5195", "D", ":"), "sort-and-sweep": ("#c43c6b", "P", "-."),
-    "fcl-tree": ("#41a5c4", "^", "--"), "bullet-dbvt": ("#bc9fd1", "v", ":"),
-}
+# The order of legends; what is not in it comes after.
+FIRST = ["blocks", "hybrid", "hash", "sweep1", "sweep2", "sweep3", "sweep4"]
 
 
-def look(name):
-    color, marker, dashes = LOOKS[name]
-    return dict(color=color, marker=marker, linestyle=dashes)
+def looks_of(rows):
+    """Keywords for plot, for every method there is."""
+    present = set(rows.method)
+    looks = style.looks([m for m in FIRST if m in present] + [m for m in dict.fromkeys(rows.method) if m not in FIRST])
+    return {method: style.point_style(look) for method, look in looks.items()}
 
 
 def read(folder):
     """Medians over repetitions; variants whose pairs differ from the reference are refused."""
     path = next(Path(folder).glob("boxes-*.csv"))
-    rows = pd.read_csv(path)
-    rows = rows[rows.frame_ns > 0]  # the others took too long for a second frame
+    rows = records.table(path)
+    # Other libraries have no mode from scratch: they stand beside both.
+    rows["theirs"] = rows.method.isin(records.box_peers(folder))
+    slow = rows.frame_ns <= 0
+    records.say_left_out(rows[slow].method + " on " + rows[slow].boxes.astype(str),
+                         "which took too long for a second frame")
+    rows = rows[~slow]
+    if rows.motion.nunique() > 1 and rows.changes.nunique() == 1:
+        rows["set"] += ", " + rows.motion
     wrong = sorted(set(rows[rows.differing > 0].method))
     if wrong:
         print("refused, since their pairs differ:", ", ".join(wrong))
         rows = rows[~rows.method.isin(wrong)]
-    keys = ["set", "boxes", "motion", "displacement", "method", "coherent", "changes"]
+    keys = ["set", "boxes", "motion", "displacement", "method", "theirs", "coherent", "changes"]
     return path.stem, rows.groupby(keys, sort=False).agg(
         time=("frame_ns", "median"), bytes=("bytes", "median"), events=("events", "median"),
         pairs=("overlaps", "median")).reset_index()
@@ -55,20 +58,21 @@ def exponent(group):
 
 
 def against_number(name, rows, out):
-    both = rows[rows.method != "cgal-1000"].coherent.nunique() > 1
+    both = rows[~rows.theirs].coherent.nunique() > 1
     sets = list(dict.fromkeys(rows.set))
     panels = [(s, c) for s in sets for c in (("off", "on") if both else ("off",))]
     figure, axes = plt.subplots(1, len(panels), figsize=(1 + 3.3 * len(panels), 3.4), sharey=True, squeeze=False)
+    looks = looks_of(rows)
     for axis, (set_name, coherent) in zip(axes[0], panels):
         here = rows[rows.set == set_name]
-        for method in LOOKS:
-            group = here[(here.method == method) & ((here.coherent == coherent) | (here.method == "cgal-1000"))]
+        for method, look in looks.items():
+            group = here[(here.method == method) & ((here.coherent == coherent) | here.theirs)]
             group = group.sort_values("boxes")
             if group.empty:
                 continue
             slope = exponent(group)
             text = method + (f"  $n^{{{slope:.2f}}}$" if slope is not None else "")
-            axis.plot(group.boxes, group.time / 1e6, label=text, markersize=4, linewidth=1.1, **look(method))
+            axis.plot(group.boxes, group.time / 1e6, label=text, markersize=4, linewidth=1.1, **look)
         kind = "" if not both else ", coherent" if coherent == "on" else ", from scratch"
         axis.set(xscale="log", yscale="log", xlabel="boxes", title=set_name + kind)
         axis.legend(frameon=False, fontsize=6.5, loc="upper left", labelspacing=0.25)
@@ -83,14 +87,16 @@ def memory_against_number(name, rows, sets, out):
     figure, axes = plt.subplots(1, len(sets), figsize=(2.2 + 3 * len(sets), 3), sharey=True, squeeze=False)
     for axis, set_name in zip(axes[0], sets):
         here = rows[rows.set == set_name]
-        for method in LOOKS:
+        for method, look in looks_of(rows).items():
             for coherent in ("off", "on"):
                 group = here[(here.method == method) & (here.coherent == coherent)].sort_values("boxes")
-                if group.empty or coherent == "on" and method not in ("blocks", "cgal-1000"):
+                fresh = here[(here.method == method) & (here.coherent == "off")].sort_values("boxes")
+                # The seed's methods hold the same either way.
+                if group.empty or coherent == "on" and group.bytes.tolist() == fresh.bytes.tolist():
                     continue
-                kept = coherent == "on" and method == "blocks"
+                kept = coherent == "on" and not fresh.empty
                 axis.plot(group.boxes, group.bytes / (group.boxes + group.pairs), markersize=4, linewidth=1.1,
-                          label=method + (", coherent" if kept else ""), **look(method),
+                          label=method + (", coherent" if kept else ""), **look,
                           **(dict(markerfacecolor="white") if kept else {}))
         axis.set(xscale="log", xlabel="boxes", title=set_name, ylim=(0, None))
     axes[0, 0].set_ylabel("bytes held, a box or pair")
@@ -108,7 +114,7 @@ def conclusions(rows):
             order = mine[(mine.boxes == boxes) & (mine.coherent == "off")].sort_values("time")
             print(f"{set_name}, {boxes} boxes, from scratch: " +
                   " < ".join(f"{m} {t / 1e6:.3g} ms" for m, t in zip(order.method, order.time)))
-            pairs = mine[mine.boxes == boxes].pivot(index="method", columns="coherent", values="time")
+            pairs = mine[mine.boxes == boxes].pivot_table(index="method", columns="coherent", values="time")
             if "on" in pairs:
                 saved = 100 * (1 - pairs["on"] / pairs["off"]).dropna()
                 print("   saved by coherence: " + ", ".join(f"{m} {s:.0f}%" for m, s in saved.items()))
@@ -123,10 +129,10 @@ def against_displacement(name, rows, out):
         scratch = here[(here.coherent == "off") & (here.method == "blocks")].sort_values("displacement")
         place = lambda group: group.displacement.where(group.displacement > 0, least / 10)
         axis.plot(place(scratch), scratch.time / 1e6, color="#bbbbbb", linewidth=4, label="blocks, from scratch")
-        for method in LOOKS:
+        for method, look in looks_of(rows).items():
             group = here[(here.method == method) & (here.coherent == "on")].sort_values("displacement")
             if not group.empty:
-                axis.plot(place(group), group.time / 1e6, label=method, markersize=3.5, linewidth=1.1, **look(method))
+                axis.plot(place(group), group.time / 1e6, label=method, markersize=3.5, linewidth=1.1, **look)
         axis.set(xscale="log", yscale="log", title=set_name)
         axis.set_xticks([least / 10, 1e-4, 1e-2, 1], ["none", "$10^{-4}$", "1%", "100%"])
         axis.minorticks_off()
@@ -143,20 +149,24 @@ def against_displacement(name, rows, out):
 
 def against_changes(name, rows, out):
     figure, axes = plt.subplots(figsize=(4.6, 3.4))
-    looks = {"part": ("^", "one box in a hundred moves"), "drift": ("s", "all move")}
-    colours = {"adjacent": "#d95f0e", "flock": "#41a5c4", "sphere-packed": "#1b1b1b"}
-    wide = rows[rows.method == "blocks"]
-    for (set_name, motion), group in wide.groupby(["set", "motion"], sort=False):
+    says = {"part": "one box in a hundred moves", "drift": "all move"}
+    wide = rows[rows.changes.eq("on").groupby(rows.method).transform("any")].copy()
+    records.say_left_out(set(rows.method) - set(wide.method), "which report no changes")
+    several = wide.method.nunique() > 1
+    wide["shape"] = wide.method + ", " + wide.motion if several else wide.motion
+    sets, shapes = style.looks(wide.set), style.looks(wide["shape"])
+    for (shape, set_name, method, motion), group in wide.groupby(["shape", "set", "method", "motion"], sort=False):
         on = group[group.changes == "on"].sort_values("events")
-        axes.plot(on.events.clip(lower=1), on.time / 1e3, color=colours[set_name], marker=looks[motion][0],
-                  linestyle="-" if motion == "part" else "--", markersize=4, linewidth=1.1,
-                  label=f"{set_name}, {looks[motion][1]}")
+        look = dict(style.point_style(shapes[shape]), color=sets[set_name]["color"])
+        axes.plot(on.events.clip(lower=1), on.time / 1e3, **look, markersize=4, linewidth=1.1,
+                  label=(method + ", " if several else "") + f"{set_name}, {says.get(motion, motion)}")
     axes.set(xscale="log", yscale="log", xlabel="pairs that began or ended, a frame",
-             ylabel="µs of processor time a frame", title="blocks, changes reported, 10 000 boxes")
+             ylabel="µs of processor time a frame",
+             title="changes reported" if several else f"{wide.method.iloc[0]}, changes reported")
     axes.legend(frameon=False, fontsize=7)
     figure.tight_layout()
     print(style.save(figure, out, name))
-    table = wide.pivot(index=["set", "motion", "displacement"], columns="changes", values=["time", "events"])
+    table = wide.pivot(index=["method", "set", "motion", "displacement"], columns="changes", values=["time", "events"])
     print((table / 1).round(0).to_string())
 
 

@@ -43,12 +43,12 @@ def winners(middle):
 
 def draw(middle, out, name):
     meshes = list(dict.fromkeys(middle.mesh))
+    looks = style.looks(middle.volume)
     figure, axes = plt.subplots(len(meshes), 3, figsize=(7.2, 2.5 * len(meshes)), squeeze=False)
     for line, mesh in zip(axes, meshes):
         for volume in dict.fromkeys(middle.volume):
             part = middle[(middle.mesh == mesh) & (middle.volume == volume)]
-            look = dict(linewidth=1, markersize=3, label=volume, **style.STYLES[volume])
-            look.pop("hatch")
+            look = dict(linewidth=1, markersize=3, label=volume, **style.point_style(looks[volume]))
             known = part[part["mean"] > 0]
             line[0].plot(known.budget, known["mean"], **look)
             line[1].plot(known.us, known["mean"], **look)

@@ -26,24 +26,19 @@ def read(record):
     return rows
 
 
-def look(variant):
-    return variant.split(" ")[-1]
-
-
 def draw(rows, out):
     meshes = list(dict.fromkeys(rows.mesh))
+    looks = {variant: style.point_style(look) for variant, look in style.variant_looks(rows.variant).items()}
     figure, axes = plt.subplots(2, len(meshes), figsize=(7.4, 5), sharex=True, sharey="row", squeeze=False)
     for column, mesh in enumerate(meshes):
         for variant, group in rows[rows.mesh == mesh].groupby("variant", sort=True):
             group = group.groupby("degrees")
             us = group.us.quantile([0.25, 0.5, 0.75]).unstack()
             axes[0, column].errorbar(us.index, us[0.5], yerr=[us[0.5] - us[0.25], us[0.75] - us[0.5]], markersize=4,
-                                     linewidth=0.9, label=variant,
-                                     **{**style.marker_style(look(variant)), **style.line_style(look(variant))})
+                                     linewidth=0.9, label=variant, **looks[variant])
             tests = group.n_v.first().dropna()
             if len(tests):
-                axes[1, column].plot(tests.index, tests, markersize=4, linewidth=0.9,
-                                     **{**style.marker_style(look(variant)), **style.line_style(look(variant))})
+                axes[1, column].plot(tests.index, tests, markersize=4, linewidth=0.9, **looks[variant])
         axes[0, column].set_title(mesh)
         for axis in axes[:, column]:
             axis.set_xscale("log")

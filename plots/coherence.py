@@ -29,6 +29,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
+import records
 import style
 from arguments import record_arguments
 
@@ -41,17 +42,21 @@ FITTED_MANNERS = ["all bodies, all freedoms", "one body, one freedom"]
 def read(record):
     """One row per trace, volume and strategy: counts, median time, and the coherence of the trace."""
     (table,) = [p for p in Path(record).glob("*.csv") if p.name.count(".") == 1]
-    rows = pd.read_csv(table, keep_default_na=False)
-    coherence = pd.read_csv(table.with_suffix(".coherence.csv"), keep_default_na=False)
+    rows = records.table(table)
+    coherence = records.table(table.with_suffix(".coherence.csv"))
     if (rows.differing != 0).any():
         raise SystemExit("a variant's answers differ from the reference: refused")
+    records.say_left_out(rows[rows.peer != ""].peer, "which keep no front")
+    rows = rows[rows.peer == ""]
     trace = [c for c in coherence.columns if c in rows]
     labels = [c for c in ("motion", "manner", "density", "workload") if c in rows]
     rows = rows.groupby(trace + labels + ["strategy"], sort=False).agg(
         time_ns=("time_ns", "median"), pairs=("pairs", "first"), n_u=("n_u", "first"),
         n_v=("n_v", "first"), n_p=("n_p", "first"), front=("front", "first"),
         hits=("hits", "first")).reset_index()
-    rows = rows.merge(coherence, on=trace)
+    measured = rows.merge(coherence, on=trace)
+    records.say_left_out(set(rows.volume) - set(measured.volume), "whose coherence was not measured")
+    rows = measured
     recursive = rows[rows.strategy == "recursive"][trace + labels + ["time_ns", "n_v", "n_p"]]
     rows = rows.merge(recursive, on=trace + labels, suffixes=("", "_recursive"))
     rows["survival"] = rows.kept / rows.ends
@@ -218,7 +223,7 @@ def print_tables(rows, kappa):
 
 def draw_speedup(rows, out):
     """Speedup against survival, a panel per strategy, tests above and time below."""
-    strategies = strategies_of(rows)
+    strategies, looks = strategies_of(rows), style.looks(rows.volume)
     figure, axes = plt.subplots(2, len(strategies), figsize=(2.1 * len(strategies) + 0.6, 4.6),
                                 sharex=True, sharey="row", squeeze=False)
     edges = np.quantile(rows.survival, np.linspace(0, 1, 13))
@@ -226,7 +231,7 @@ def draw_speedup(rows, out):
         group = rows[rows.strategy == strategy]
         for axis, what in zip(column, ("all_saved" if strategy not in LISTS else "tests_saved", "time_saved")):
             for volume, part in group.groupby("volume", sort=False):
-                look = style.STYLES[volume]
+                look = looks[volume]
                 axis.plot(1 - part.survival, part[what], linestyle="none", marker=look["marker"],
                           color=look["color"], markersize=2.5, alpha=0.5, label=volume)
             bins = group.groupby(np.clip(np.digitize(group.survival, edges), 1, 12))
@@ -261,7 +266,7 @@ def draw_law(rows, kappa, out):
     low, high = (f * x for f, x in ((0.8, rows[["predicted", "tests_saved"]].min().min()),
                                     (1.25, rows[["predicted", "tests_saved"]].max().max())))
     for name in LISTS:
-        look = style.STYLES[name]
+        look = style.looks(LISTS)[name]
         for part, fill, label in ((seen, look["color"], "fitted"), (~seen, "none", "left out")):
             group = rows[(rows.strategy == name) & part]
             if not len(group):
@@ -302,7 +307,7 @@ def draw_curve(axis, kappa):
                           "again": ends * (1 + 2 * opened)})
     for name, defer in LISTS.items():
         axis.plot(opened, 1 / list_over_recursion(model, defer, kappa), linewidth=1.5, label=name,
-                  **style.line_style(name))
+                  **style.line_style(style.looks(LISTS)[name]))
     axis.axhline(1, color="black", linewidth=0.8)
     axis.axhline(2, color="black", linewidth=0.8, linestyle=":")
     axis.set_xscale("symlog", linthresh=1e-3)
@@ -317,9 +322,10 @@ def draw_margins(rows, out):
     law = fit_margins(rows)
     group = rows[(rows.strategy == "margins") & (rows.leaves > 0)]
     figure, axes = plt.subplots(1, 2, figsize=(7.2, 3.1), sharex=True)
+    looks = style.looks(rows.volume)
     for axis, what in zip(axes, ("all_saved", "time_saved")):
         for volume, part in group.groupby("volume", sort=False):
-            look = style.STYLES[volume]
+            look = looks[volume]
             seen = fitted(part)
             for where, fill in ((seen, look["color"]), (~seen, "none")):
                 axis.plot(part.leaves[where], 1 / part[what][where], linestyle="none", marker=look["marker"],

@@ -15,6 +15,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
+import records
 import style
 from arguments import record_arguments
 
@@ -52,23 +53,25 @@ def predicted(rows, costs, triangle):
 
 
 def read(record):
-    rows = pd.read_csv(Path(record) / "cost-model.csv")
+    rows = records.table(Path(record) / "cost-model.csv")
+    records.say_left_out(rows[rows.peer.notna() & (rows.peer != "")].peer, "which count nothing")
+    rows = rows[rows.peer.isna() | (rows.peer == "")]
     wrong = rows[rows.differing != 0]
     if len(wrong):
         raise SystemExit(f"{record}: answers differ: {wrong.volume.unique()}")
     keys = ["query", "motion", "density", "volume", "strategy"]
     rows = rows.groupby(keys, sort=False, as_index=False).median(numeric_only=True)
     costs, triangle = unit_costs(Path(record) / "unit-costs.json")
-    return predicted(rows, costs, triangle), costs, triangle
+    records.say_left_out(set(rows.volume) - set(costs), "whose unit costs are not in unit-costs.json")
+    return predicted(rows[rows.volume.isin(costs)].copy(), costs, triangle), costs, triangle
 
 
 def draw_errors(rows, out):
     figure, (left, right) = plt.subplots(1, 2, figsize=(7.2, 3.4))
     volumes = list(dict.fromkeys(rows.volume))
-    for density, marker in zip(dict.fromkeys(rows.density), "o^s"):
+    for density, look in style.looks(rows.density).items():
         part = rows[rows.density == density]
-        left.plot(part.us_measured, part.us_model, marker, ms=3.5, alpha=0.7,
-                  color=style.DENSITY_COLOURS[density], label=density)
+        left.plot(part.us_measured, part.us_model, ms=3.5, alpha=0.7, label=density, **style.marker_style(look))
     ends = [rows.us_measured.min() / 2, rows.us_measured.max() * 2]
     left.plot(ends, ends, color="#8f8f8f", lw=1)
     left.plot(ends, np.array(ends) / 2, color="#8f8f8f", lw=0.6, ls=":")
@@ -87,9 +90,11 @@ def draw_errors(rows, out):
 
 
 def draw_split(rows, out):
-    part = rows[(rows.strategy == "recursive") & (rows.motion == "5 degrees")]
-    panels = [(q, d) for q in dict.fromkeys(part["query"]) for d in ("dense", "interlocked")]
-    figure, axes = plt.subplots(1, len(panels), figsize=(7.2, 3.0))
+    # One strategy and motion, where pairs cost more than to be looked at.
+    part = rows[(rows.strategy == "recursive") & (rows.motion == rows.motion.iloc[0]) & (rows.density != "sparse")]
+    panels = list(dict.fromkeys(zip(part["query"], part.density)))
+    figure, axes = plt.subplots(1, len(panels), figsize=(1.8 * len(panels), 3.0), squeeze=False)
+    axes = axes[0]
     terms = [("us_u", "posing $N_u C_u$", "#41a5c4"), ("us_v", "volumes $N_v C_v$", "#1b1b1b"),
              ("us_p", "triangles $N_p C_p$", "#d95f0e")]
     for axis, (query, density) in zip(axes, panels):

@@ -30,13 +30,13 @@ def middle_of(rows):
 
 def draw(middle, out, name):
     meshes = list(dict.fromkeys(middle.mesh))
+    middle["variant"] = middle.volume if middle.strategy.nunique() == 1 else middle.volume + " " + middle.strategy
+    looks = style.variant_looks(middle.variant)
     figure, axes = plt.subplots(len(meshes), 3, figsize=(7.2, 2.5 * len(meshes)), squeeze=False)
     for line, mesh in zip(axes, meshes):
-        for volume in dict.fromkeys(middle.volume):
-            part = middle[(middle.mesh == mesh) & (middle.volume == volume) &
-                          (middle.strategy == middle.strategy.iloc[0])].sort_values("relative_error")
-            look = dict(linewidth=1, markersize=3, label=volume, **style.STYLES[volume])
-            look.pop("hatch")
+        for variant in dict.fromkeys(middle.variant):
+            part = middle[(middle.mesh == mesh) & (middle.variant == variant)].sort_values("relative_error")
+            look = dict(linewidth=1, markersize=3, label=variant, **style.point_style(looks[variant]))
             line[0].plot(part.relative_error, part.us, **look)
             line[1].plot(part.relative_error, part.largest, **look)
             line[2].plot(part["mean"], part.us, **look)

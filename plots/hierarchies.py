@@ -16,6 +16,7 @@ import numpy as np
 import pandas as pd
 import matplotlib.pyplot as plt
 
+import records
 import style
 from arguments import record_arguments
 
@@ -26,7 +27,7 @@ PLACES = ["query", "polygons", "density", "motion"]
 def read(record):
     definition = tomllib.loads((Path(record) / "definition.toml").read_text())
     name = definition["name"]
-    rows = pd.read_csv(Path(record) / f"{name}.csv", keep_default_na=False)
+    rows = records.table(Path(record) / f"{name}.csv")
     for column in PLACES:
         if column not in rows:
             rows[column] = ""
@@ -82,7 +83,7 @@ def draw_best(table, out, name):
     for axis, (key, group) in zip(axes.flat, panels):
         for k, (column, label, look) in enumerate(series):
             axis.bar(np.arange(len(group)) + (k - 1) * 0.27, group[column + " us"], 0.27, label=label,
-                     **style.bar_style(look))
+                     **style.bar_style(style.looks([look])[look]))
         for place, (_, row) in enumerate(group.iterrows()):
             axis.text(place + 0.27, row["best us"], f"{row['best: times faster']:.1f}×", ha="center", va="bottom",
                       fontsize=6, bbox=dict(facecolor="white", edgecolor="none", pad=0.5, alpha=0.85))
@@ -112,13 +113,14 @@ def draw_variants(middle, out, name):
     lines = int(np.ceil(len(panels) / 2))
     figure, axes = plt.subplots(lines, 2, figsize=(7.4, 2.4 * lines), squeeze=False)
     width = 0.8 / len(strategies)
+    looks = style.looks(strategies)
     for axis, (key, group) in zip(axes.flat, panels):
         for k, strategy in enumerate(strategies):
             quartiles = np.array([group[(group.volume == v) & (group.strategy == strategy)]
                                   .ratio.quantile([0.25, 0.5, 0.75]) for v in volumes])
             axis.bar(np.arange(len(volumes)) + (k - (len(strategies) - 1) / 2) * width, quartiles[:, 1], width,
                      yerr=[quartiles[:, 1] - quartiles[:, 0], quartiles[:, 2] - quartiles[:, 1]],
-                     error_kw=dict(elinewidth=0.7), label=strategy, **style.bar_style(strategy))
+                     error_kw=dict(elinewidth=0.7), label=strategy, **style.bar_style(looks[strategy]))
         axis.axhline(1, color="#7a5195", linewidth=0.8)
         axis.set_yscale("log")
         axis.set_ylim(group.ratio.min() / 2)
@@ -138,8 +140,8 @@ def draw_variants(middle, out, name):
 
 def print_tests(rows):
     """Volume tests of those that count, per pair and frame."""
-    counted = rows[rows.n_v != ""].drop_duplicates(PLACES + ["variant"])
-    counted = counted.assign(n_v=pd.to_numeric(counted.n_v) / counted.pairs, n_p=pd.to_numeric(counted.n_p, errors="coerce") / counted.pairs)
+    counted = rows[rows.n_v.notna()].drop_duplicates(PLACES + ["variant"])
+    counted = counted.assign(n_v=counted.n_v / counted.pairs, n_p=counted.n_p / counted.pairs)
     print(counted.pivot_table(index="variant", columns=["query", "polygons"], values=["n_v", "n_p"], sort=False)
           .round(1).to_string())
 

@@ -11,17 +11,13 @@ import numpy as np
 import pandas as pd
 import matplotlib.pyplot as plt
 
+import records
 import style
 from arguments import record_arguments
 
-
-ORDER = ["sphere recursive", "sphere separation-list", "sphere deferred", "fcl-obb", "fcl-obbrss",
-         "cgal"]
-
-
 def read(record):
     (table,) = Path(record).glob("*.csv")
-    rows = pd.read_csv(table, keep_default_na=False)
+    rows = records.table(table)
     rows["us_per_pair"] = rows.time_ns / rows.pairs / 1e3
     return rows
 
@@ -32,17 +28,17 @@ def refused(rows):
     return wrong.groupby("variant").differing.sum()
 
 
-def name_of(variant):
-    """"sphere recursive" is drawn as its strategy is everywhere."""
-    return variant.split(" ")[-1]
+def variants_of(rows):
+    """Ours, then the peers."""
+    return list(dict.fromkeys([*rows[rows.peer == ""].variant, *rows.variant]))
 
 
 def print_table(rows):
     middle = rows.groupby(["query", "polygons", "density", "motion", "variant"],
                           sort=False).us_per_pair.median().unstack("variant")
-    middle = middle[sorted(middle.columns, key=ORDER.index)]
+    middle = middle[variants_of(rows)]
     middle = middle.dropna(axis=1, how="all")
-    ours = [v for v in middle.columns if v.startswith("sphere")]
+    ours = [v for v in middle.columns if v in set(rows[rows.peer == ""].variant)]
     peers = [v for v in middle.columns if v not in ours]
     middle["recursive / best peer"] = middle["sphere recursive"] / middle[peers].min(axis=1)
     middle["best of ours / best peer"] = middle[ours].min(axis=1) / middle[peers].min(axis=1)
@@ -56,17 +52,18 @@ def draw(rows, out, name):
     lines = int(np.ceil(len(panels) / 2))
     figure, axes = plt.subplots(lines, min(2, len(panels)), figsize=(7.2, 3.2 * lines),
                                 squeeze=False)
-    variants = sorted(dict.fromkeys(rows.variant), key=ORDER.index)
+    variants = variants_of(rows)
+    looks = style.variant_looks(variants)
     for axis, ((query, polygons), group) in zip(axes.flat, panels):
         cells = list(dict.fromkeys(zip(group.density, group.motion)))
         for k, variant in enumerate(variants):
             quartiles = np.array([
                 group[(group.variant == variant) & (group.density == d) & (group.motion == m)]
                 .us_per_pair.quantile([0.25, 0.5, 0.75]) for d, m in cells])
-            places = np.arange(len(cells)) + (k - (len(variants) - 1) / 2) * 0.12
+            places = np.arange(len(cells)) + (k - (len(variants) - 1) / 2) * 0.7 / len(variants)
             axis.errorbar(places, quartiles[:, 1], markersize=4, elinewidth=0.8, label=variant,
                           yerr=[quartiles[:, 1] - quartiles[:, 0], quartiles[:, 2] - quartiles[:, 1]],
-                          **style.marker_style(name_of(variant)))
+                          **style.marker_style(looks[variant]))
         axis.set_yscale("log")
         axis.set_title(f"{query}, {polygons} polygons")
         axis.set_xticks(range(len(cells)), [f"{d}; {m}" for d, m in cells], fontsize=6,

@@ -17,7 +17,6 @@ import style
 from arguments import record_arguments
 
 DENSITIES = ("interlocked", "dense", "sparse")  # of three sides, the smallest first
-QUERIES = {"touching": dict(linestyle="-", marker="o"), "contacts": dict(linestyle=":", marker="s")}
 
 
 def read(record):
@@ -35,35 +34,39 @@ def read(record):
     rows["us"] = rows.time_ns / rows.pairs / 1e3
     rows["posing_us"] = rows.n_u * rows.pose_ns / 1e3
     rows["share"] = rows.dismissed / rows.pairs
-    rows.policy = pd.Categorical(rows.policy, ["realigned", "corners", "hull"])
-    rows["query"] = pd.Categorical(rows["query"], [*QUERIES, "roots"])
+    for column, first in (("policy", ["realigned", "corners", "hull"]), ("query", ["touching", "contacts", "roots"])):
+        rows[column] = pd.Categorical(rows[column], list(dict.fromkeys([*first, *rows[column]])))
     return rows.sort_values(["side", "query", "k", "policy"]).astype({"policy": str, "query": str})
 
 
 def relative(rows, measure):
-    """Corners over realigned: a column for each density and query, a row for each k."""
+    """Every policy over realigned: a column for each density, query and policy, a row for each k."""
     part = rows[rows["query"] != "roots"]
     table = part.pivot_table(index="k", columns=["density", "query", "policy"], values=measure,
                              sort=False)
-    return (table.xs("corners", axis=1, level="policy") /
-            table.xs("realigned", axis=1, level="policy"))
+    base = table.xs("realigned", axis=1, level="policy")
+    return pd.DataFrame({key: line / base[key[:2]] for key, line in table.items() if key[2] != "realigned"})
 
 
 def bars(axis, table, policies, decimals):
     """Groups along the rows of the table, side by side its columns."""
     places, width = np.arange(len(table)), 0.8 / len(policies)
+    looks = style.looks(policies)
     for i, policy in enumerate(policies):
         drawn = axis.bar(places + (i - (len(policies) - 1) / 2) * width, table[policy], width,
-                         label=policy, **style.bar_style(policy))
+                         label=policy, **style.bar_style(looks[policy]))
         axis.bar_label(drawn, fmt=f"%.{decimals}f", fontsize=6, padding=1)
     axis.grid(axis="x", visible=False)
     axis.set_xticks(places, table.index)
 
 
 def draw_ratios(axis, table, title):
-    for (density, query), line in table.items():
-        axis.plot(np.arange(len(line)), line, color=style.DENSITY_COLOURS.get(density, "#555555"),
-                  markersize=4, label=f"{density}, {query}", **QUERIES[query])
+    # Corners are what the figure is about: another policy is named.
+    named = {key: key[1] + ("" if key[2] == "corners" else f", {key[2]}") for key in table.columns}
+    densities, shapes = style.looks(key[0] for key in named), style.looks(named.values())
+    for key, line in table.items():
+        shape = dict(style.point_style(shapes[named[key]]), color=densities[key[0]]["color"])
+        axis.plot(np.arange(len(line)), line, markersize=4, label=f"{key[0]}, {named[key]}", **shape)
     axis.axhline(1, color="#8f8f8f", lw=0.8)
     axis.set_xticks(np.arange(len(table)), table.index)
     axis.set_xlabel("K")
@@ -73,19 +76,20 @@ def draw_ratios(axis, table, title):
 def draw(rows, out):
     figure, axes = plt.subplots(2, 2, figsize=(7.2, 5.4))
     asked, roots = rows[rows["query"] != "roots"], rows[rows["query"] == "roots"]
-    costs = asked.pivot_table(index="k", columns="policy", values="pose_ns", aggfunc="median")
-    bars(axes[0, 0], costs, ["realigned", "corners"], 0)
+    costs = asked.pivot_table(index="k", columns="policy", values="pose_ns", aggfunc="median",
+                              sort=False)
+    bars(axes[0, 0], costs, list(costs.columns), 0)
     axes[0, 0].set_title("To pose one volume, ns", loc="left")
     axes[0, 0].set_xlabel("K")
     # Where the roots decide about some pairs and not about others, policies can differ most.
     density = roots.groupby("density", sort=False).share.mean().sub(0.5).abs().idxmin()
     shares = roots[roots.density == density].pivot_table(index="k", columns="policy",
-                                                         values="share") * 100
-    bars(axes[0, 1], shares, ["realigned", "corners", "hull"], 0)
+                                                         values="share", sort=False) * 100
+    bars(axes[0, 1], shares, list(shares.columns), 0)
     axes[0, 1].set_title(f"Pairs dismissed at the roots, %, {density}", loc="left")
     axes[0, 1].set_xlabel("K")
-    draw_ratios(axes[1, 0], relative(rows, "n_v"), "Tests of volumes: corners / realigned")
-    draw_ratios(axes[1, 1], relative(rows, "us"), "Time of a pair: corners / realigned")
+    draw_ratios(axes[1, 0], relative(rows, "n_v"), "Tests of volumes, over realigned's")
+    draw_ratios(axes[1, 1], relative(rows, "us"), "Time of a pair, over realigned's")
     low = min(axes[1, 0].get_ylim()[0], axes[1, 1].get_ylim()[0])
     high = max(axes[1, 0].get_ylim()[1], axes[1, 1].get_ylim()[1])
     for axis in axes[1]:

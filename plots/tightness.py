@@ -15,10 +15,12 @@ from pathlib import Path
 import pandas as pd
 import matplotlib.pyplot as plt
 
+import records
 import style
 from arguments import record_arguments
 
 LINES = {"published": dict(linestyle="-"), "tight": dict(linestyle="--", markerfacecolor="white")}
+OTHER = dict(linestyle=":", markerfacecolor="#dddddd")
 
 
 def read(record):
@@ -26,6 +28,7 @@ def read(record):
     rows = pd.read_csv(table)
     if (rows.least < 0).any():
         raise SystemExit(f"{table}: a gap exceeds the distance: refused")
+    records.say_left_out(set(rows.build) - {rows.build.iloc[0]}, "builds but the first")
     rows = rows[rows.build == rows.build.iloc[0]]
     return rows, table.stem
 
@@ -38,15 +41,16 @@ def without_stragglers(rows):
 
 def draw(rows, out, name):
     meshes = list(dict.fromkeys(rows.mesh))
+    looks = style.looks(rows.volume)
     figure, axes = plt.subplots(1, len(meshes), figsize=(2.7 * len(meshes), 3.6), sharey=True,
                                 squeeze=False)
     for axis, mesh in zip(axes[0], meshes):
         part = rows[rows.mesh == mesh]
         for (volume, fit), line in part.groupby(["volume", "fit"], sort=False):
-            look = style.STYLES[volume]
+            look = looks[volume]
             axis.plot(line.level, line["mean"], color=look["color"], marker=look["marker"],
-                      markersize=3, linewidth=1.1, label=volume if fit == "published" else f"{volume}, tight",
-                      **LINES[fit])
+                      markersize=3, linewidth=1.1, label=volume if fit == "published" else f"{volume}, {fit}",
+                      **LINES.get(fit, OTHER))
         kind, _, polygons = mesh.partition(":")
         axis.set_title(f"{kind}, {polygons} polygons" if polygons else kind, loc="left")
         axis.set_xlabel("level (the root is 0)")

@@ -12,8 +12,8 @@ roots it is; its colour is the strategy's.
 from pathlib import Path
 
 import matplotlib.pyplot as plt
-import pandas as pd
 
+import records
 import style
 from arguments import record_arguments
 
@@ -23,11 +23,13 @@ TITLES = {"step": "translation a frame", "degrees": "rotation a frame, degrees",
 
 def read(record):
     (table,) = [p for p in Path(record).glob("winners-*.csv") if p.name.count(".") == 1]
-    rows = pd.read_csv(table, keep_default_na=False)
+    rows = records.table(table)
     if (rows.differing != 0).any():
         raise SystemExit("a variant's answers differ from the reference: refused")
     across, down = [c for c in ("step", "degrees", "side", "polygons") if rows[c].nunique() > 1]
     rows["ns"] = rows.time_ns / rows.pairs
+    # A peer stands as a strategy, with no volume.
+    rows["strategy"] = rows.strategy.where(rows.peer == "", rows.peer)
     middle = rows.groupby([across, down, "volume", "strategy"], sort=False).ns.median().reset_index()
     return middle, across, down, table.stem
 
@@ -35,7 +37,7 @@ def read(record):
 def winners(rows, across, down):
     best = rows.loc[rows.groupby([across, down], sort=False).ns.idxmin()].copy()
     base = rows[(rows.volume == "sphere") & (rows.strategy == "recursive")]
-    best = best.merge(base[[across, down, "ns"]], on=[across, down], suffixes=("", "_base"))
+    best = best.merge(base[[across, down, "ns"]], how="left", on=[across, down], suffixes=("", "_base"))
     best["speedup"] = best.ns_base / best.ns
     return best
 
@@ -53,12 +55,14 @@ def readable(name, value):
 def draw(rows, across, down, out, name):
     best = winners(rows, across, down)
     columns, lines = list(dict.fromkeys(rows[across])), list(dict.fromkeys(rows[down]))
+    looks = style.looks(rows.strategy)
     figure, axis = plt.subplots(figsize=(1.35 * len(columns) + 0.9, 0.85 * len(lines) + 1.1))
     for _, field in best.iterrows():
         x, y = columns.index(field[across]), lines.index(field[down])
-        colour = style.STYLES[field.strategy.partition(":")[0]]["color"]
+        colour = looks[field.strategy]["color"]
+        speedup = f"{field.speedup:.1f}×" if field.speedup > 0 else ""
         axis.add_patch(plt.Rectangle((x - 0.48, y - 0.47), 0.96, 0.94, color=colour))
-        axis.text(x, y, f"{field.volume}\n{field.ns:.0f} ns\n{field.speedup:.1f}×", ha="center", va="center",
+        axis.text(x, y, "\n".join(filter(None, (field.volume, f"{field.ns:.0f} ns", speedup))), ha="center", va="center",
                   color=ink(colour), fontsize=8)
     axis.set(xlim=(-0.5, len(columns) - 0.5), ylim=(-0.5, len(lines) - 0.5), xlabel=TITLES[across],
              ylabel=TITLES[down])
@@ -66,7 +70,7 @@ def draw(rows, across, down, out, name):
     axis.set_yticks(range(len(lines)), [readable(down, v) for v in lines])
     axis.grid(False)
     present = dict.fromkeys(best.strategy)
-    handles = [plt.Rectangle((0, 0), 1, 1, color=style.STYLES[s.partition(":")[0]]["color"]) for s in present]
+    handles = [plt.Rectangle((0, 0), 1, 1, color=looks[s]["color"]) for s in present]
     axis.legend(handles, list(present), loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=len(present),
                 frameon=False)
     return style.save(figure, out, name)

@@ -11,6 +11,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pandas as pd
 
+import records
 import style
 from arguments import record_arguments
 
@@ -21,11 +22,9 @@ PEERS = {"fcl-world": "FCL", "bullet-world": "Bullet"}
 def read(record):
     """Median milliseconds of a frame, the first one left out; one row per scene and variant."""
     (table,) = Path(record).glob("worlds*.csv")
-    rows = pd.read_csv(table, keep_default_na=False)
+    rows = records.table(table)
     rows["variant"] = rows.peer.where(rows.peer != "", rows.volume + " " + rows.strategy)
     rows["ms"] = rows.time_ns / 1e6 / (rows.frames - 1)
-    for column in ("near", "asked"):
-        rows[column] = pd.to_numeric(rows[column], errors="coerce")
     ours = rows[rows.peer == ""]
     if (ours.differing != 0).any():
         raise SystemExit("one of our answers differs from the reference: refused")
@@ -42,8 +41,8 @@ def ratios(rows):
         ours = group[group.peer == ""].nsmallest(1, "ms").iloc[0]
         entry = dict(zip(SCENE, scene), best=ours.variant, ms=ours.ms,
                      touching=ours.touching / (ours.frames - 1), near=ours.near / (ours.frames - 1))
-        for peer, name in PEERS.items():
-            theirs = group[group.peer == peer]
+        for peer, theirs in group[group.peer != ""].groupby("peer", sort=False):
+            name = PEERS.get(peer, peer)
             if len(theirs):
                 entry[name] = theirs.ms.iloc[0] / ours.ms
                 entry[f"{name} differs"] = int(theirs.differing.iloc[0])
@@ -56,13 +55,15 @@ def print_table(rows):
     print("Milliseconds of a frame for the best of ours, and how many times as long others take:")
     with pd.option_context("display.width", 200, "display.max_columns", 20):
         print(table.to_string(index=False, formatters={
-            "ms": "{:.4f}".format, "FCL": "{:.1f}".format, "Bullet": "{:.1f}".format,
+            "ms": "{:.4f}".format, **{PEERS.get(p, p): "{:.1f}".format for p in set(rows.peer) - {""}},
             "touching": "{:.0f}".format, "near": "{:.0f}".format}))
 
 
 def draw(rows, out):
     """One panel per number of bodies and step; the densest workspace."""
+    records.say_left_out(set(rows.room) - {rows.room.min()}, "rooms but the densest, of a side of so many radii")
     rows = rows[rows.room == rows.room.min()]
+    looks = style.variant_looks(rows.variant)
     objects = list(dict.fromkeys(rows.objects))
     steps = list(dict.fromkeys(zip(rows.step, rows.degrees)))
     figure, axes = plt.subplots(len(steps), len(objects), figsize=(3.7 * len(objects), 2.7 * len(steps)),
@@ -76,7 +77,7 @@ def draw(rows, out):
             for variant, group in panel.groupby("variant", sort=False):
                 group = group.sort_values("moving")
                 axis.plot([places[m] for m in group.moving], group.ms, markersize=5, linewidth=1.2,
-                          label=PEERS.get(variant, variant), **style.world_style(variant))
+                          label=PEERS.get(variant, variant), **style.point_style(looks[variant]))
             axis.set(xscale="log", yscale="log")
             axis.set_xticks([places[m] for m in moving],
                             ["none" if m == 0 else f"{100 * m:g}%" for m in moving])
