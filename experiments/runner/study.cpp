@@ -10,6 +10,7 @@
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/runner/definition.hpp"
+#include "experiments/runner/figure_tables.hpp"
 
 namespace bvlab {
 namespace {
@@ -122,6 +123,8 @@ std::optional<StudyDefinition> study_from(const std::string& text, const std::st
         else
           list.push_back(scalar(file, value));
       }
+    } else if (key == "figure") {
+      check_figures(node, file);
     } else if (key != "kind" && key != "description") {
       fail(file, node, "unknown key '" + std::string(key.str()) + "' of a study");
     }
