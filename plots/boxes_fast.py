@@ -14,20 +14,18 @@ import pandas as pd
 
 import records
 import style
+from words import number
 
 SCRATCH = "from scratch"
 WORK = {"still": "nothing moves", "drift": "all move 2% of their size", "teleport": "teleports"}
 
 
 def read(folders):
-    peers = {str(folder): records.box_peers(folder) for folder in folders}
-    rows = pd.concat([records.table(next(Path(folder).glob("boxes-*.csv"))).assign(folder=str(folder))
-                      for folder in folders])
-    rows["theirs"] = [method in peers[folder] for method, folder in zip(rows.method, rows.folder)]
-    wrong = rows[rows.differing > 0].groupby(["method", "set"]).size()
-    for (method, name), count in wrong.items():
-        print(f"{method} on {name}: pairs differ in {count} runs; refused")
-    rows = rows[rows.differing == 0]
+    rows = pd.concat([records.read(folder) for folder in folders])
+    rows["theirs"] = rows.peer != ""
+    wrong = records.wrong_answers(rows)
+    records.say_left_out(rows[wrong].method + " on " + rows[wrong].set, "where their pairs differ")
+    rows = rows[~wrong]
     records.say_left_out(set(rows.threads) - {1}, "runs on so many threads")
     return rows[rows.threads == 1]
 
@@ -35,8 +33,9 @@ def read(folders):
 def table(rows):
     """One line per (boxes, set, work) and method of ours: its time, the best peer's, its name, the ratio."""
     keys = ["count", "set", "motion", "method", "theirs", "coherent"]
-    middle = rows.groupby(keys, sort=False).agg(boxes=("boxes", "first"), time=("frame_ns", "median"),
-                                                first=("first_ns", "median"), pairs=("overlaps", "median")).reset_index()
+    middle = rows.groupby(keys, sort=False, as_index=False).agg(
+        boxes=("boxes", "first"), time=("frame_ns", "median"), first=("first_ns", "median"),
+        pairs=("overlaps", "median"))
     lines = []
     for (count, name), group in middle.groupby(["count", "set"], sort=False):
         for work in [SCRATCH, *dict.fromkeys([*WORK, *group.motion])]:
@@ -69,10 +68,10 @@ def draw(lines, out, name):
         axis.set_yticks(range(len(sets)), sets)
         axis.set_xscale("log")
         axis.axvline(1, color="#8f8f8f", linewidth=0.8)
-        axis.set_title(f"{method}, {count:,} boxes".replace(",", " "))
+        axis.set_title(f"{method}, {number(count)} boxes")
         axis.set_xlabel("times as fast as the best peer")
-    style.legend_below(figure, axes[0, 0])
     figure.tight_layout()
+    style.legend_below(figure, *axes[0, 0].get_legend_handles_labels())
     return style.save(figure, out, name)
 
 

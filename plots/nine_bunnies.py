@@ -9,8 +9,6 @@ nine-bunnies-runs (the talk's ten runs), nine-bunnies-tests (N_v per frame), nin
 (length of the front).
 """
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import matplotlib.pyplot as plt
@@ -33,9 +31,8 @@ BASE = "recursive"
 
 def read(record):
     """One row per (reading, density, seed, variant): median time over repetitions, mean counts."""
-    rows = records.table(Path(record) / "nine-bunnies.csv")
-    if (rows.differing != 0).any():
-        raise SystemExit("a variant's answers differ from the reference: refused")
+    rows = records.read(record)
+    records.wrong_answers(rows)
     keys = ["reading", "density", "seed", "variant"]
     runs = rows.groupby(keys, sort=False).agg(
         time_ns=("time_ns", "median"), pairs=("pairs", "first"), frames=("frames", "first"),
@@ -213,7 +210,7 @@ def main():
     if arguments.table_only:
         return
     out = arguments.out
-    frames = pd.read_csv(arguments.record / "nine-bunnies.frames.csv")
+    frames = records.read(arguments.record, "frames")
     for path in (draw_table(runs, out), draw_runs(runs, out),
                  draw_over_time(frames, "n_v", "$N_v$ per frame", out, "nine-bunnies-tests"),
                  draw_over_time(frames, "front", "entries of all fronts", out, "nine-bunnies-front")):

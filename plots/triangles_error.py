@@ -6,12 +6,11 @@ per call, one panel for each set, the Pareto front drawn.
 usage: triangles_error.py RECORD [--out FOLDER]
 """
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import matplotlib.pyplot as plt
 
+import records
 import style
 from arguments import record_arguments
 
@@ -19,10 +18,9 @@ NONE = 3  # where zero stands on the logarithmic axis, in pairs per million
 
 
 def read(record):
-    (table,) = Path(record).glob("*.csv")
-    rows = pd.read_csv(table)
+    rows = records.read(record)
     rows["wrong"] = (rows.false_positives + rows.false_negatives) / rows.pairs * 1e6
-    return rows, table.stem
+    return rows, rows.attrs["name"]
 
 
 def name_of(test, source):
