@@ -31,9 +31,11 @@ class Expression:
     def check(self, node, rows):
         if isinstance(node, ast.Name):
             if node.id not in rows:
-                raise Refused(f"'{self.text}': no column '{node.id}'; there are {', '.join(rows.columns)}")
+                raise Refused(f"'{self.text}': no column '{node.id}'; there are {', '.join(self.units)}")
             if not pd.api.types.is_numeric_dtype(rows[node.id]) and node is not self.tree:
-                raise Refused(f"'{self.text}': column '{node.id}' holds names, not numbers")
+                blank = rows[node.id].eq("").all()
+                raise Refused(f"'{self.text}': column '{node.id}' " +
+                              ("is empty" if blank else "holds names, not numbers"))
             self.columns.append(node.id)
         elif isinstance(node, ast.BinOp) and type(node.op) in OPERATORS:
             self.check(node.left, rows), self.check(node.right, rows)

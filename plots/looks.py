@@ -155,5 +155,7 @@ def joint_looks(keys):
         elif second:
             place = seconds.index(second)
             look.update(fill=FILLS[place], linestyle=[look["linestyle"], ":", (0, (4, 1))][place])
+            if place and look["marker"] == "x":  # which cannot be filled
+                look["marker"] = "X"
         found[first, second] = look
     return found

@@ -8,7 +8,7 @@ from matplotlib.colors import LogNorm, Normalize, to_rgb
 import charts
 import style
 from ticks import spreads
-from words import number, scaled
+from words import number, plain, scaled
 
 TIE = 1.05  # times the least: within this a variant is as good
 
@@ -86,7 +86,7 @@ def draw_winners(drawing, axes, columns, lines, points, unit, over):
     """Each field in the colour and hatch of its winner; a second one's stripe where that is as good."""
     best = winners(points)
     looks = style.joint_looks(sorted({*best.key, *(key for keys in best["keys"] for key in keys)}))
-    firsts = {first: look for (first, _), look in looks.items()}
+    firsts = {first: dict(look, fill="full") for (first, _), look in looks.items()}
     for field in best.itertuples():
         x, y, axis = columns.index(field.x), lines.index(field.y), axes[field.panel]
         look = firsts[field.key[0]]
@@ -96,13 +96,15 @@ def draw_winners(drawing, axes, columns, lines, points, unit, over):
         if others:
             axis.add_patch(plt.Rectangle((x + 0.36, y - 0.47), 0.12, 0.94, facecolor=firsts[others[0]]["color"],
                                          hatch=firsts[others[0]]["hatch"], edgecolor="white", linewidth=0))
-        axis.text(x - (0.06 if others else 0), y, text_of(field, unit, over), ha="center", va="center", fontsize=6.2,
-                  color=ink(look["color"]), linespacing=1.05, bbox=dict(facecolor=look["color"], edgecolor="none", pad=0.6))
+        text = text_of(field, unit, over)
+        size = min(6.2, 6.2 * 20 / max(map(len, text.split("\n"))))
+        axis.text(x - (0.06 if others else 0), y, text, ha="center", va="center", fontsize=size, linespacing=1.05,
+                  color=ink(look["color"]), bbox=dict(facecolor=look["color"], edgecolor="none", pad=0.6))
     shown = [plt.Rectangle((0, 0), 1, 1, **style.bar_style(look)) for look in firsts.values()]
     note = f"= within {100 * (TIE - 1):.0f} % of the least"
     if over:
         note += f"; × as fast as {charts.over_text(over).removesuffix(chr(39) + 's')}"
-    style.legend_below(drawing, shown, list(firsts), title=note, title_fontsize=7)
+    style.legend_below(drawing, shown, [plain(name) for name in firsts], title=note, title_fontsize=7)
 
 
 def text_of(field, unit, over):

@@ -56,6 +56,7 @@ def read(record, table=""):
         units.update(step="radii", side="radii")
     if "variant" not in rows:
         rows["variant"] = variant_names(rows)
+    units.setdefault("variant", "")
     rows = in_order(rows, definition, settings)
     rows.attrs.update(name=name, kind=kind, definition=definition, settings=settings, units=units)
     return rows

@@ -21,7 +21,7 @@ def columns_of(rows, text, what):
     names = [name.strip() for name in text.split(",")] if text else []
     for name in names:
         if name not in rows:
-            raise Refused(f"{what}: no column '{name}'; there are {', '.join(rows.columns)}")
+            raise Refused(f"{what}: no column '{name}'; there are {', '.join(rows.attrs['units'])}")
     return names
 
 

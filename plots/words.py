@@ -26,7 +26,8 @@ CALLED_IN = {
 }
 # Of which one is counted: "time / pairs" is time a pair.
 ONE_OF = {"pairs": "pair", "later_pairs": "pair after the first frame", "frames": "frame", "answers": "answer",
-          "objects": "body", "boxes": "box", "overlaps": "overlapping pair", "n_v": "volume test", "n_p": "triangle test"}
+          "objects": "body", "boxes": "box", "overlaps": "overlapping pair", "n_v": "volume test",
+          "n_p": "triangle test"}
 UNITS = {"ns": "ns", "us": "us", "ms": "ms", "seconds": "s", "bytes": "B"}  # by the end of a column's name
 UNIT_OF = {"degrees": "°", "bytes": "B", "ns_per_frame": "ns", "ns_per_call": "ns"}
 LENGTHS = {"body": "radii", "leaf": "leaf sizes"}  # what is written behind a length of a definition
@@ -61,10 +62,15 @@ def number(value):
     return (f"{factor:.3g}·" if abs(factor - 1) > 1e-9 else "") + f"$10^{{{power}}}$"
 
 
+def plain(name):
+    """A name as it is, in a legend and without formulas."""
+    return (" " if name.startswith("_") else "") + name.replace("$", "\\$")
+
+
 def value_text(column, value):
     """A value of a column where the column is not named beside it."""
     if isinstance(value, str):
-        return SWITCHES.get((column, value), f"{column} {value}" if value in ("on", "off") else value)
+        return SWITCHES.get((column, value), f"{column} {value}" if value in ("on", "off") else plain(value))
     return VALUES.get(column, column.replace("_", " ") + " {}").format(number(value))
 
 

@@ -41,7 +41,8 @@ STRANGE = [
     ("boxes-figure-4", dict(boxes=3), dict(method=METHODS), None),
     ("boxes-precision", dict(set=1, offset=3), dict(method="blocks", numbers="float, nearest", set="random"), None),
     ("budget", dict(budget=3), dict(volume="sphere", mesh="bunny"), None),
-    ("closest-features", dict(motion=2, mesh=2), dict(strategy=("recursive", STRATEGIES), mesh="icosphere:80"), RECURSIVE),
+    ("closest-features", dict(motion=2, mesh=2), dict(strategy=("recursive", STRATEGIES), mesh="icosphere:80"),
+     RECURSIVE),
     ("distance-error", dict(relative_error=3), dict(volume="sphere", mesh="knot"), None),
     ("fits", dict(volume=2, build=["top-down-principal", "bottom-up"]), dict(volume="sphere", fit="tight"), None),
     ("hierarchies", dict(work=2, motion=1), dict(volume="sphere", strategy=("recursive", STRATEGIES), density="dense"),
@@ -104,6 +105,25 @@ class Draws(unittest.TestCase):
                 self.assertIn("sphere", seen.printed)
 
 
+    def test_odd_names(self):
+        names = {"deferred": "_x$y_$\\frac", "obb": "a_b%c#$"}
+        with tempfile.TemporaryDirectory() as folder:
+            record = own_record(folder, change=lambda rows: rows.replace(names))
+            for words in ([], ["--x", "volume, degrees", "--y", "strategy", "--kind", "map"],
+                          ["--x", "degrees", "--y", "n_v", "--kind", "map", "--series", "variant", "--over", "best"],
+                          ["--x", "variant", "--series", "variant", "--kind", "bars"]):
+                seen = Seen(self, lambda: draw.main([str(record), "--out", folder, *words]))
+                self.assertEqual(seen.result, 0)
+                self.assertIn("x\\$y_", " ".join(seen.texts))
+
+    def test_records_of_hardly_anything(self):
+        for change in (lambda rows: rows.iloc[:1], lambda rows: rows.assign(time_ns=0),
+                       lambda rows: rows.assign(time_ns=-rows.time_ns), lambda rows: rows.assign(volume="")):
+            with tempfile.TemporaryDirectory() as folder:
+                record = own_record(folder, change=change)
+                self.assertEqual(Seen(self, lambda: draw.main([str(record), "--out", folder])).result, 0)
+
+
 class Refuses(unittest.TestCase):
     """One line that names what there is instead, exit 2, and nothing written."""
 
@@ -154,7 +174,7 @@ class Refuses(unittest.TestCase):
                                ('name = "a"\nx = 3\n', "x must be a string"),
                                ('name = "a"\nx = "degrees"\nwhere = "volume=obb"\n', "list of strings"),
                                ('name = "a"\nx = "degrees"\nfrob = "1"\n', "'frob'"),
-                               ('name = "a"\nx = "degrees"\n[[figure]]\nname = "a"\nx = "degrees"\n', "second figure 'a'"),
+                               ('name = "a"\nx = "degrees"\n[[figure]]\nname = "a"\nx = "degrees"\n', "second"),
                                # The first would do: none is drawn where one is refused.
                                ('name = "a"\nx = "degrees"\n[[figure]]\nname = "b"\nx = "frob"\n', "'frob'")):
             with self.subTest(table), tempfile.TemporaryDirectory() as folder:
@@ -175,6 +195,10 @@ class Refuses(unittest.TestCase):
             for content, mention in (("", "own.csv"), ("degrees,time_ns\n", "no rows")):
                 (record / "own.csv").write_text(content)
                 self.refuse(record, mentions=[mention])
+            for value in (float("nan"), float("inf")):
+                with tempfile.TemporaryDirectory() as other:
+                    self.refuse(own_record(other, change=lambda rows, v=value: rows.assign(time_ns=v)),
+                                mentions=["time_ns"])
             (record / "own.csv").unlink()
             self.refuse(record, mentions=["own.csv"])
             (record / "definition.toml").write_text("name = \n")
