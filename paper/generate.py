@@ -15,10 +15,9 @@ from pathlib import Path
 
 PLOTS = Path(__file__).resolve().parent.parent / "plots"
 sys.path.insert(0, str(PLOTS))
-import boxes_time  # noqa: E402
-import coherence  # noqa: E402
+import law  # noqa: E402
 import nine_bunnies  # noqa: E402
-import worlds  # noqa: E402
+import records  # noqa: E402
 
 
 def latest(records, name):
@@ -54,9 +53,10 @@ class Paper:
         lines += [r"\bottomrule", r"\end{tabular}", ""]
         (self.out / "tables" / f"{name}.tex").write_text("\n".join(lines))
 
-    def plot(self, script, *arguments):
-        subprocess.run([sys.executable, str(PLOTS / script), *map(str, arguments), "--out",
-                        str(self.out / "figures")], check=True, stdout=subprocess.DEVNULL)
+    def plot(self, record, script="draw"):
+        """The figures that the record's definition declares, or those of a script."""
+        subprocess.run([sys.executable, str(PLOTS / script), str(record), "--out", str(self.out / "figures")],
+                       check=True, stdout=subprocess.DEVNULL)
 
     def write_numbers(self):
         text = "".join(f"\\newcommand{{\\{name}}}{{{value}}}\n" for name, value in self.numbers.items())
@@ -98,7 +98,7 @@ def write_nine_bunnies(paper):
                      f"{saved['deferred']:.2f}", f"{row['deferred']:.2f}"])
     paper.table("nine-bunnies", "llrrrr", ["what moves in a step", "density", "list: $N_v$", "time",
                                            "deferred: $N_v$", "time"], rows)
-    paper.plot("nine_bunnies.py", record)
+    paper.plot(record, "nine_bunnies.py")
     paper.have("nine-bunnies")
 
 
@@ -108,18 +108,20 @@ def write_boxes(paper):
         record = paper.record(f"boxes-figure-{figure}")
         if not record:
             return
-        rows = boxes_time.read(record)[1]
-        if "changes" in rows:
-            rows = rows[rows.changes == "off"]
+        rows = records.read(record)
+        records.wrong_answers(rows)
+        # A static method is what it is either way; some took too long for a second frame.
+        rows = rows.assign(coherent=rows.coherent.where(rows.peer == "", "off"))[rows.frame_ns > 0]
+        rows = rows.groupby(["set", "boxes", "method", "coherent"], sort=False, as_index=False).frame_ns.median()
         for set_name, group in rows.groupby("set", sort=False):
             # The largest number of boxes that most methods have kept up to.
             counts = group.groupby("boxes").method.nunique()
             most = counts[counts >= 0.75 * counts.max()].index.max()
             columns.append(f"{escape(set_name)}, {most}")
             for row in group[group.boxes == most].itertuples():
-                cells[row.method, len(columns) - 1, row.coherent] = row.time / 1e6
+                cells[row.method, len(columns) - 1, row.coherent] = row.frame_ns / 1e6
                 methods.append(row.method)
-        paper.plot("boxes_time.py", record)
+        paper.plot(record)
     lines = []
     for method in dict.fromkeys(methods):
         line = [escape(method)]
@@ -147,41 +149,41 @@ def write_coherence(paper):
     record = paper.record("coherence")
     if not record:
         return
-    rows = coherence.read(record)
-    kappa = coherence.fit_kappa(rows)
-    errors = coherence.errors(rows, kappa)
-    constant = coherence.constant_errors(rows)
-    lists = rows[rows.strategy.isin(coherence.LISTS)]
+    rows = law.read(record)
+    kappa = law.fit_kappa(rows)
+    errors = law.errors(rows, kappa)
+    constant = law.constant_errors(rows)
+    lists = rows[rows.strategy.isin(law.LISTS)]
     best = lists.loc[lists.tests_saved.idxmax()]
     left_out = errors.get("left out", (float("nan"), float("nan"), 0))
     paper.numbers.update(
         lawKappa=f"{kappa:.2f}", lawCells=str(len(lists)), lawErrorFitted=percent(errors["fitted"][0]),
         lawErrorLeftOut=percent(left_out[0]))
-    text = (f"Fitted on {' and '.join(coherence.FITTED_MESHES)} when all bodies move or one does, "
+    text = (f"Fitted on {' and '.join(law.FITTED_MESHES)} when all bodies move or one does, "
             f"$\\kappa = {kappa:.2f}$. The law is off by {percent(errors['fitted'][0])} (median; 95\\,\\% of cells within "
             f"{percent(errors['fitted'][1])}) on the {errors['fitted'][2]} cells fitted")
     if left_out[2]:
-        unseen = lists[~coherence.fitted(lists)]
-        others = [m for m in dict.fromkeys(unseen.mesh) if m not in coherence.FITTED_MESHES]
+        unseen = lists[~law.fitted(lists)]
+        others = [m for m in dict.fromkeys(unseen.mesh) if m not in law.FITTED_MESHES]
         text += (f", and by {percent(left_out[0])} (within {percent(left_out[1])}) on the {left_out[2]} cells left out of the fit"
                  + (f", other shapes ({', '.join(map(escape, others))}) among them" if others else ""))
     text += (f". The talk's constants, taken for every motion, are off by {percent(constant[0])} (within "
              f"{percent(constant[1])}). The largest speedup of either list is {best.tests_saved:.2f}, with {escape(best.volume)} and the "
              f"{escape(best.mesh)} at a survival of {best.survival:.3f} and a stillness of {best.stillness:.3f}.\n")
-    law = coherence.fit_margins(rows) if (rows.strategy == "margins").any() else None
-    if law:
-        off = coherence.margins_errors(rows, law)
+    margins = law.fit_margins(rows) if (rows.strategy == "margins").any() else None
+    if margins:
+        off = law.margins_errors(rows, margins)
         text += (f"\nMargins are another matter: what they leave to do has no floor at one half. It is "
-                 f"${law[0]:.2f}\\,m^{{{law[1]:.2f}}}$ of the recursion's tests, for a motion of $m$ leaf sizes a frame "
+                 f"${margins[0]:.2f}\\,m^{{{margins[1]:.2f}}}$ of the recursion's tests, for a motion of $m$ leaf sizes a frame "
                  f"(Figure~\\ref{{marginsfigure}}), to within a factor of "
                  + " and ".join(f"{v:.2f} ({k})" for k, v in off.items()) + ".\n")
     (paper.out / "tables" / "coherence-text.tex").write_text(text)
     crossings = []
-    for query, strategy in ((q, s) for q in dict.fromkeys(rows["query"]) for s in coherence.strategies_of(rows)):
+    for query, strategy in ((q, s) for q in dict.fromkeys(rows["query"]) for s in law.strategies_of(rows)):
         of_query = rows[rows["query"] == query]
         line = [escape(query), escape(strategy)]
         for what in ("tests_saved", "time_saved"):
-            at, wrong, won = coherence.crossing(of_query, strategy, what)
+            at, wrong, won = law.crossing(of_query, strategy, what)
             line += ["--" if won > 0.99 else f"{at:.2f}", percent(won, 0)]
         group = of_query[of_query.strategy == strategy]
         line += [f"{group.time_saved.median():.2f}", f"{group.time_saved.min():.2f}", f"{group.time_saved.max():.1f}"]
@@ -189,11 +191,11 @@ def write_coherence(paper):
     paper.table("coherence-crossing", "llrrrrrrr",
                 ["query", "strategy", "tests: below", "wins", "time: below", "wins", "speedup: median", "least", "most"],
                 crossings)
-    ranks = coherence.rank_correlations(rows)
+    ranks = law.rank_correlations(rows)
     paper.table("coherence-measures", "lrrrrr",
                 ["strategy", "survival", "stillness", "growth", "motion in leaves", "in gaps"],
                 [[escape(s)] + [f"{v:.2f}" for v in line] for s, line in zip(ranks.index, ranks.values)])
-    paper.plot("coherence.py", record)
+    paper.plot(record, "coherence.py")
     paper.have("coherence")
     if (rows.strategy == "margins").any():
         paper.have("margins")
@@ -203,7 +205,7 @@ def write_winners(paper):
     for name in ("winners-motion", "winners-scene"):
         record = paper.record(name)
         if record:
-            paper.plot("winner_maps.py", record)
+            paper.plot(record)
             paper.have(name)
 
 
@@ -211,11 +213,27 @@ def write_workloads(paper):
     record = paper.record("workloads")
     if not record:
         return
-    rows = coherence.read(record)
+    rows = law.read(record)
     lines = [[escape(r.workload), escape(r.volume), escape(r.strategy), f"{r.survival:.2f}", f"{r.tests_saved:.2f}",
               f"{r.time_saved:.2f}"] for r in rows.itertuples() if r.strategy != "recursive"]
     paper.table("workloads", "lllrrr", ["workload", "volume", "strategy", "survival", "$N_v$", "time"], lines)
     paper.have("workloads")
+
+
+# What tells one whole scene from another; the names of other pipelines.
+SCENE = ["objects", "room", "step", "degrees", "moving"]
+PIPELINES = {"fcl-world": "FCL", "bullet-world": "Bullet"}
+
+
+def worlds_table(rows):
+    """For each scene the best of ours, its milliseconds a frame, and how many times as long each peer takes."""
+    rows = rows.assign(ms=rows.time_ns / 1e6 / (rows.frames - 1))  # of all frames but the first
+    middle = rows.groupby(SCENE + ["peer", "variant"], sort=False, as_index=False).ms.median()
+    for scene, group in middle.groupby(SCENE, sort=False):
+        ours = group[group.peer == ""]
+        best = ours.loc[ours.ms.idxmin()]
+        theirs = group[group.peer != ""].set_index("peer").ms / best.ms
+        yield dict(zip(SCENE, scene)), best, theirs
 
 
 def write_worlds(paper):
@@ -223,20 +241,22 @@ def write_worlds(paper):
     paper.numbers["worldsMostObjects"] = "0"
     if not record:
         return
-    rows = worlds.read(record)
-    table = worlds.ratios(rows)
-    paper.numbers["worldsMostObjects"] = str(table.objects.max())
-    answers = rows[rows.peer == ""].groupby(worlds.SCENE).touching.first().sum()
-    differing = rows[rows.peer != ""].groupby("peer").differing.sum()
+    rows = records.read(record)
+    wrong = records.wrong_answers(rows)
+    paper.numbers["worldsMostObjects"] = str(rows.objects.max())
+    answers = rows[rows.peer == ""].groupby(SCENE).touching.first().sum()
+    differing = rows[wrong | (rows.peer != "")].groupby(["peer", *SCENE]).differing.first().groupby("peer").sum()
+    peers = list(dict.fromkeys(rows[rows.peer != ""].peer))
     paper.numbers["worldsAgreement"] = "Of " + f"{answers:.0f} touching pairs, " + " and ".join(
-        f"{count} differ in {worlds.PEERS[peer]}" for peer, count in differing.items()) + "."
-    densest = table[table.room == table.room.min()]
-    lines = [[str(r.objects), f"{r.step:g}, {r.degrees:g}", "none" if r.moving == 0 else percent(r.moving, 0), escape(r.best),
-              f"{r.ms:.3f}" if r.ms < 10 else f"{r.ms:.1f}", f"{r.FCL:.1f}", f"{r.Bullet:.1f}"]
-             for r in densest.itertuples()]
-    paper.table("worlds", "rlrlrrr", ["bodies", "step: radii, degrees", "moving", "best of ours", "ms", "FCL", "Bullet"],
-                lines)
-    paper.plot("worlds.py", record)
+        f"{differing[peer]} differ in {PIPELINES.get(peer, peer)}" for peer in peers) + "."
+    lines = [[str(scene["objects"]), f"{scene['step']:g}, {scene['degrees']:g}",
+              "none" if scene["moving"] == 0 else percent(scene["moving"], 0), escape(best.variant),
+              f"{best.ms:.3f}" if best.ms < 10 else f"{best.ms:.1f}",
+              *(f"{theirs.get(peer, float('nan')):.1f}" for peer in peers)]
+             for scene, best, theirs in worlds_table(rows[rows.room == rows.room.min()])]
+    paper.table("worlds", "rlrlr" + "r" * len(peers), ["bodies", "step: radii, degrees", "moving", "best of ours", "ms",
+                                                      *(PIPELINES.get(peer, peer) for peer in peers)], lines)
+    paper.plot(record)
     paper.have("worlds")
 
 

@@ -12,67 +12,66 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
+import records
 import style
+from words import number
 
-OURS = ["blocks", "auto"]
-WORK = {"off": "from scratch", "still": "nothing moves", "drift": "all move 2% of their size", "teleport": "teleports"}
-COLOURS = {"off": "#1b1b1b", "drift": "#d95f0e", "still": "#41a5c4", "teleport": "#8f8f8f"}
-MARKERS = {"off": "o", "drift": "s", "still": "^", "teleport": "x"}
+SCRATCH = "from scratch"
+WORK = {"still": "nothing moves", "drift": "all move 2% of their size", "teleport": "teleports"}
 
 
 def read(folders):
-    rows = pd.concat([pd.read_csv(next(Path(folder).glob("boxes-*.csv"))) for folder in folders])
-    wrong = rows[rows.differing > 0].groupby(["method", "set"]).size()
-    for (method, name), count in wrong.items():
-        print(f"{method} on {name}: pairs differ in {count} runs; refused")
-    rows = rows[rows.differing == 0]
+    rows = pd.concat([records.read(folder) for folder in folders])
+    rows["theirs"] = rows.peer != ""
+    wrong = records.wrong_answers(rows)
+    records.say_left_out(rows[wrong].method + " on " + rows[wrong].set, "where their pairs differ")
+    rows = rows[~wrong]
+    records.say_left_out(set(rows.threads) - {1}, "runs on so many threads")
     return rows[rows.threads == 1]
 
 
 def table(rows):
-    """One line per (boxes, set, work): our time, the best peer's, its name, the ratio."""
-    keys = ["count", "set", "motion", "method", "coherent"]
-    middle = rows.groupby(keys, sort=False).agg(boxes=("boxes", "first"), time=("frame_ns", "median"),
-                                                first=("first_ns", "median"), pairs=("overlaps", "median")).reset_index()
+    """One line per (boxes, set, work) and method of ours: its time, the best peer's, its name, the ratio."""
+    keys = ["count", "set", "motion", "method", "theirs", "coherent"]
+    middle = rows.groupby(keys, sort=False, as_index=False).agg(
+        boxes=("boxes", "first"), time=("frame_ns", "median"), first=("first_ns", "median"),
+        pairs=("overlaps", "median"))
     lines = []
     for (count, name), group in middle.groupby(["count", "set"], sort=False):
-        for work in WORK:
-            motion = "drift" if work == "off" else work
-            here = group[group.motion == motion]
-            ours = here[(here.method == "blocks") & (here.coherent == ("off" if work == "off" else "on"))]
-            peers = here[~here.method.isin(OURS)].copy()
-            if work == "off":
+        for work in [SCRATCH, *dict.fromkeys([*WORK, *group.motion])]:
+            here = group[group.motion == ("drift" if work == SCRATCH else work)]
+            ours = here[~here.theirs & (here.coherent == ("off" if work == SCRATCH else "on"))]
+            peers = here[here.theirs].copy()
+            if work == SCRATCH:
                 # What a peer that keeps something needs for a first frame, too, is from scratch.
                 peers["time"] = np.minimum(peers["time"].where(peers.method == "cgal-1000", np.inf), peers["first"])
-            if ours.empty or peers.empty:
+            if peers.empty:
                 continue
             best = peers.loc[peers.time.idxmin()]
-            lines.append(dict(count=count, set=name, work=work, boxes=int(ours.boxes.iloc[0]),
-                              pairs=int(ours.pairs.iloc[0]), ours_ms=ours.time.iloc[0] / 1e6,
-                              peer_ms=best.time / 1e6, peer=best.method, ratio=best.time / ours.time.iloc[0]))
+            lines += [dict(count=count, set=name, work=work, method=mine.method, boxes=int(mine.boxes),
+                           pairs=int(mine.pairs), ours_ms=mine.time / 1e6, peer_ms=best.time / 1e6,
+                           peer=best.method, ratio=best.time / mine.time) for mine in ours.itertuples()]
     return pd.DataFrame(lines)
 
 
 def draw(lines, out, name):
-    counts = sorted(lines["count"].unique())
-    figure, axes = plt.subplots(1, len(counts), figsize=(1.2 + 2.6 * len(counts), 3.4), sharex=True, squeeze=False)
-    for axis, count in zip(axes[0], counts):
-        here = lines[lines["count"] == count]
+    panels = sorted(set(zip(lines["count"], lines.method)), key=lambda panel: (panel[0], panel[1] != "blocks", panel))
+    looks = style.looks(lines.work)
+    figure, axes = plt.subplots(1, len(panels), figsize=(1.2 + 2.6 * len(panels), 3.4), sharex=True, squeeze=False)
+    for axis, (count, method) in zip(axes[0], panels):
+        here = lines[(lines["count"] == count) & (lines.method == method)]
         sets = list(dict.fromkeys(here.set))[::-1]
-        for work in WORK:
+        for work, look in looks.items():
             some = here[here.work == work].set_index("set").reindex(sets)
-            axis.plot(some.ratio, range(len(sets)), linestyle="none", color=COLOURS[work], marker=MARKERS[work],
-                      markersize=5, label=WORK[work])
+            axis.plot(some.ratio, range(len(sets)), **style.marker_style(look), markersize=5,
+                      label=WORK.get(work, work))
         axis.set_yticks(range(len(sets)), sets)
         axis.set_xscale("log")
         axis.axvline(1, color="#8f8f8f", linewidth=0.8)
-        for target, work in ((8, "off"), (15, "drift")):
-            axis.axvline(target, color=COLOURS[work], linewidth=0.7, linestyle=":")
-        axis.set_title(f"{count:,} boxes".replace(",", " "))
+        axis.set_title(f"{method}, {number(count)} boxes")
         axis.set_xlabel("times as fast as the best peer")
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncol=4, frameon=False, bbox_to_anchor=(0.5, -0.06))
     figure.tight_layout()
+    style.legend_below(figure, *axes[0, 0].get_legend_handles_labels())
     return style.save(figure, out, name)
 
 

@@ -15,8 +15,15 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
+import charts
+import records
 import style
 from arguments import record_arguments
+from figures import Figure
+from points import points_of
+
+TERMS = {"posing_ns": ("posing $N_u C_u$", "#41a5c4"), "volumes_ns": ("volumes $N_v C_v$", "#1b1b1b"),
+         "triangles_ns": ("triangles $N_p C_p$", "#d95f0e")}
 
 
 def unit_costs(path):
@@ -38,94 +45,78 @@ def unit_costs(path):
     return costs, triangles[("exact", "apart")]
 
 
-def predicted(rows, costs, triangle):
-    """Adds the terms of T in microseconds per pair and frame."""
-    pairs = rows.pairs
-    of = lambda key: rows.volume.map(lambda v: costs[v][key])
-    rows["us_u"] = rows.n_u * of("pose") / pairs / 1e3
-    rows["us_v"] = rows.n_v * of("batched") / pairs / 1e3
-    rows["us_p"] = rows.n_p * triangle / pairs / 1e3
-    rows["us_placed"] = rows.frames * rows.objects * of("place") / pairs / 1e3
-    rows["us_model"] = rows.us_u + rows.us_v + rows.us_p
-    rows["us_measured"] = rows.time_ns / pairs / 1e3
-    return rows
-
-
 def read(record):
-    rows = pd.read_csv(Path(record) / "cost-model.csv")
-    wrong = rows[rows.differing != 0]
-    if len(wrong):
-        raise SystemExit(f"{record}: answers differ: {wrong.volume.unique()}")
-    keys = ["query", "motion", "density", "volume", "strategy"]
-    rows = rows.groupby(keys, sort=False, as_index=False).median(numeric_only=True)
+    """The rows with the terms of T in ns and their sum, predicted_ns; unit costs of volumes and of triangles."""
+    rows = records.read(record)
+    records.wrong_answers(rows)
     costs, triangle = unit_costs(Path(record) / "unit-costs.json")
-    return predicted(rows, costs, triangle), costs, triangle
+    records.say_left_out(rows[rows.peer != ""].peer, "which count nothing")
+    attrs, rows = rows.attrs, rows[rows.peer == ""]
+    records.say_left_out(set(rows.volume) - set(costs), "whose unit costs are not in unit-costs.json")
+    rows = rows[rows.volume.isin(costs)].copy()
+    rows["posing_ns"] = rows.n_u * rows.volume.map(lambda v: costs[v]["pose"])
+    rows["volumes_ns"] = rows.n_v * rows.volume.map(lambda v: costs[v]["batched"])
+    rows["triangles_ns"] = rows.n_p * triangle
+    rows["predicted_ns"] = rows[list(TERMS)].sum(axis=1)
+    rows.attrs.update(attrs, units={**attrs["units"], **{name: "ns" for name in [*TERMS, "predicted_ns"]}})
+    return rows, costs, triangle
 
 
 def draw_errors(rows, out):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(7.2, 3.4))
-    volumes = list(dict.fromkeys(rows.volume))
-    for density, marker in zip(dict.fromkeys(rows.density), "o^s"):
-        part = rows[rows.density == density]
-        left.plot(part.us_measured, part.us_model, marker, ms=3.5, alpha=0.7,
-                  color=style.DENSITY_COLOURS[density], label=density)
-    ends = [rows.us_measured.min() / 2, rows.us_measured.max() * 2]
-    left.plot(ends, ends, color="#8f8f8f", lw=1)
-    left.plot(ends, np.array(ends) / 2, color="#8f8f8f", lw=0.6, ls=":")
-    left.set(xscale="log", yscale="log", xlabel="measured, us per pair",
-             ylabel="$N_u C_u + N_v C_v + N_p C_p$, us per pair",
-             title="The model leaves out what a pair costs by itself")
-    left.legend(frameon=False)
-    busy = rows[rows.density != "sparse"]
-    ratio = [busy[busy.volume == v].us_model / busy[busy.volume == v].us_measured for v in volumes]
-    right.boxplot(ratio, vert=True, widths=0.6, medianprops=dict(color="#d95f0e"))
-    right.set_xticklabels(volumes, rotation=45)
-    right.axhline(1, color="#8f8f8f", lw=1)
-    right.set(ylabel="predicted / measured", title="dense and interlocked scenes", ylim=(0, None))
-    figure.tight_layout()
-    style.save(figure, out, "cost-model-error")
+    """What the model says over what was measured: medians over strategies and motions, with quartiles."""
+    figure = Figure(name="cost-model-error", x="volume", y="predicted_ns / time_ns", series="density",
+                    panels="query", log="none", y_label="predicted / measured time")
+    drawing = charts.draw(figure, points_of(rows, figure))
+    for axis in drawing.axes:
+        axis.axhline(1, color="#8f8f8f", linewidth=0.8, zorder=1)
+        axis.set_ylim(0, 1.05 * max(1, axis.get_ylim()[1]))
+    return style.save(drawing, out, figure.name)
 
 
 def draw_split(rows, out):
-    part = rows[(rows.strategy == "recursive") & (rows.motion == "5 degrees")]
-    panels = [(q, d) for q in dict.fromkeys(part["query"]) for d in ("dense", "interlocked")]
-    figure, axes = plt.subplots(1, len(panels), figsize=(7.2, 3.0))
-    terms = [("us_u", "posing $N_u C_u$", "#41a5c4"), ("us_v", "volumes $N_v C_v$", "#1b1b1b"),
-             ("us_p", "triangles $N_p C_p$", "#d95f0e")]
-    for axis, (query, density) in zip(axes, panels):
+    """One strategy and motion, where pairs cost more than to be looked at."""
+    part = rows[(rows.strategy == "recursive") & (rows.motion == rows.motion.iloc[0]) & (rows.density != "sparse")]
+    part = part.groupby(["query", "density", "volume"], sort=False, as_index=False).median(numeric_only=True)
+    panels = list(dict.fromkeys(zip(part["query"], part.density)))
+    figure, axes = plt.subplots(1, len(panels), figsize=(1.8 * len(panels), 3.0), squeeze=False)
+    for axis, (query, density) in zip(axes[0], panels):
         group = part[(part["query"] == query) & (part.density == density)]
         bottom = np.zeros(len(group))
-        for column, label, colour in terms:
-            axis.bar(group.volume, group[column], bottom=bottom, color=colour, label=label)
-            bottom += group[column].to_numpy()
-        axis.plot(group.volume, group.us_measured, "x", color="#b0413e", label="measured")
+        for column, (label, colour) in TERMS.items():
+            height = (group[column] / group.pairs / 1e3).to_numpy()
+            axis.bar(group.volume, height, bottom=bottom, color=colour, label=label)
+            bottom += height
+        axis.plot(group.volume, group.time_ns / group.pairs / 1e3, "x", color="#b0413e", label="measured")
         axis.set_title(f"{query}, {density}")
         axis.tick_params(axis="x", rotation=90)
-    axes[0].set_ylabel("us per pair")
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncols=4, frameon=False)
-    figure.tight_layout(rect=(0, 0.07, 1, 1))
-    style.save(figure, out, "cost-model-split")
+    axes[0, 0].set_ylabel("time a pair (µs)")
+    figure.tight_layout()
+    style.legend_below(figure, *axes[0, 0].get_legend_handles_labels())
+    return style.save(figure, out, "cost-model-split")
 
 
-def main():
-    arguments = record_arguments(__doc__)
-    out = arguments.out
-    rows, costs, triangle = read(arguments.record)
+def print_tables(rows, costs, triangle):
     table = pd.DataFrame({v: {"place": c["place"], "C_u": c["pose"], "C_v batched": c["batched"],
                               "C_v alone": c["alone"]} for v, c in costs.items()}).T
     print("Unit costs, ns:")
     print(table.round(1).to_string())
     print(f"C_p, batched: {triangle:.1f} ns")
-    ratio = rows.us_model / rows.us_measured
+    ratio = rows.predicted_ns / rows.time_ns
     print("Predicted / measured, median by density and strategy:")
-    print(ratio.groupby([rows.density, rows.strategy]).median().unstack().round(2).to_string())
+    print(ratio.groupby([rows.density, rows.strategy], sort=False).median().unstack().round(2).to_string())
+    print("Predicted / measured, quantiles over all:", ratio.quantile([0, 0.05, 0.5, 0.95, 1]).round(2).to_dict())
     busy = rows[rows.density != "sparse"]
-    loop = (busy.us_measured - busy.us_model) * 1e3 * busy.pairs / busy.n_v
+    loop = (busy.time_ns - busy.predicted_ns) / busy.n_v
     print("What is left over, ns a test of volumes (dense and interlocked):")
     print(loop.groupby(busy.volume, sort=False).describe()[["25%", "50%", "75%"]].round(1).to_string())
-    draw_errors(rows, out)
-    draw_split(rows, out)
+
+
+def main():
+    arguments = record_arguments(__doc__)
+    rows, costs, triangle = read(arguments.record)
+    print_tables(rows, costs, triangle)
+    print(draw_errors(rows, arguments.out))
+    print(draw_split(rows, arguments.out))
 
 
 if __name__ == "__main__":

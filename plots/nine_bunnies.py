@@ -9,12 +9,11 @@ nine-bunnies-runs (the talk's ten runs), nine-bunnies-tests (N_v per frame), nin
 (length of the front).
 """
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import matplotlib.pyplot as plt
 
+import records
 import style
 from arguments import record_arguments
 
@@ -27,14 +26,13 @@ PUBLISHED = pd.DataFrame(
      (1580.5, 1139.2, 865.7)],
     columns=["recursive", "separation-list", "deferred"], index=range(1, 11))
 LISTS = ["separation-list", "deferred"]
-VARIANTS = ["recursive", *LISTS]
+BASE = "recursive"
 
 
 def read(record):
     """One row per (reading, density, seed, variant): median time over repetitions, mean counts."""
-    rows = pd.read_csv(Path(record) / "nine-bunnies.csv", keep_default_na=False)
-    if (rows.differing != 0).any():
-        raise SystemExit("a variant's answers differ from the reference: refused")
+    rows = records.read(record)
+    records.wrong_answers(rows)
     keys = ["reading", "density", "seed", "variant"]
     runs = rows.groupby(keys, sort=False).agg(
         time_ns=("time_ns", "median"), pairs=("pairs", "first"), frames=("frames", "first"),
@@ -43,11 +41,17 @@ def read(record):
     return runs
 
 
+def lists_of(runs):
+    """The talk's two, then whatever else was run; not what the others are compared with."""
+    present = dict.fromkeys(runs.variant)
+    return [v for v in dict.fromkeys([*LISTS, *present]) if v in present and v != BASE]
+
+
 def speedups(runs, what="time_ns"):
-    """Recursive over list, one row per (reading, density, seed), one column per list."""
+    """Recursive over each other variant, one row per (reading, density, seed), one column per variant."""
     wide = runs.pivot_table(index=["reading", "density", "seed"], columns="variant", values=what,
                             sort=False)
-    return pd.DataFrame({name: wide["recursive"] / wide[name] for name in LISTS})
+    return pd.DataFrame({name: wide[BASE] / wide[name] for name in lists_of(runs)})
 
 
 def percent(ratio):
@@ -62,25 +66,25 @@ def print_table(runs):
     for (reading, density), group in runs.groupby(["reading", "density"], sort=False):
         touching = group.hits.sum() / group.pairs.sum()
         print(f"{reading}; {density} ({100 * touching:.1f}% of the pairs touch)")
-        print("run  recursive      separation list       deferred            "
-              "N_u, N_v, N_p per pair and frame: recursive | list (front) | deferred (front)")
-        wide = {name: group[group.variant == name].set_index("seed") for name in VARIANTS}
-        for seed in wide["recursive"].index:
-            print(table_line(str(seed), {name: wide[name].loc[seed] for name in VARIANTS}))
+        print("run  " + ", ".join([BASE, *lists_of(group)]) + "; N_u, N_v, N_p per pair and frame (front) of each")
+        variants = [BASE, *lists_of(group)]
+        wide = {name: group[group.variant == name].set_index("seed") for name in variants}
+        for seed in wide[BASE].index:
+            print(table_line(str(seed), {name: wide[name].loc[seed] for name in variants}))
         mean = {name: wide[name].drop(columns=["reading", "density", "variant"]).mean()
-                for name in VARIANTS}
+                for name in variants}
         print(table_line("ave", mean), "\n")
 
 
 def table_line(label, of):
-    seconds = {name: of[name].time_ns / 1e9 for name in VARIANTS}
+    seconds = {name: of[name].time_ns / 1e9 for name in of}
     counts = []
-    for name in VARIANTS:
+    for name in of:
         pairs = of[name].pairs
         text = " ".join(f"{of[name][n] / pairs:.1f}" for n in ("n_u", "n_v", "n_p"))
         counts.append(text if name == "recursive" else f"{text} ({of[name].front:.0f})")
     columns = [f"{label:>3}  {seconds['recursive']:8.4f} s"]
-    for name in LISTS:
+    for name in list(of)[1:]:
         columns.append(f"{seconds[name]:8.4f} s {percent(seconds['recursive'] / seconds[name]):>6}")
     return "  ".join(columns) + "   " + " | ".join(counts)
 
@@ -89,7 +93,7 @@ def nearest_reading(runs):
     """The (reading, density) whose two average speedups are nearest to the published ones."""
     average = speedups(runs).groupby(level=["reading", "density"], sort=False).mean()
     target = PUBLISHED.mean()
-    goal = np.log([target["recursive"] / target[name] for name in LISTS])
+    goal = np.log([target[BASE] / target[name] for name in LISTS])
     distance = ((np.log(average[LISTS]) - goal) ** 2).sum(axis=1)
     return distance.idxmin(), average
 
@@ -118,15 +122,18 @@ def draw_table(runs, out):
 
 
 def draw_speedups(axis, tables):
-    for k, name in enumerate(LISTS):
+    names = list(tables[0].columns)
+    looks, height = style.looks(names), 0.76 / len(names)
+    for k, name in enumerate(names):
         quartiles = np.array([table[name].quantile([0.25, 0.5, 0.75]) for table in tables])
-        places = np.arange(len(tables)) + (k - 0.5) * 0.38
-        axis.barh(places, quartiles[:, 1], height=0.36, label=name, **style.bar_style(name))
+        places = np.arange(len(tables)) + (k - (len(names) - 1) / 2) * height
+        axis.barh(places, quartiles[:, 1], height=height - 0.02, label=name, **style.bar_style(looks[name]))
         axis.errorbar(quartiles[:, 1], places, fmt="none", ecolor="black", elinewidth=0.8,
                       xerr=[quartiles[:, 1] - quartiles[:, 0], quartiles[:, 2] - quartiles[:, 1]])
-        published = PUBLISHED["recursive"].mean() / PUBLISHED[name].mean()
-        axis.axvline(published, linewidth=1.4, label=f"{name}, published time",
-                     **style.line_style(name))
+        if name in PUBLISHED:
+            published = PUBLISHED["recursive"].mean() / PUBLISHED[name].mean()
+            axis.axvline(published, linewidth=1.4, label=f"{name}, published time",
+                         **style.line_style(looks[name]))
     axis.axvline(1, color="black", linewidth=0.8)
     axis.grid(axis="y", visible=False)
 
@@ -139,17 +146,18 @@ def draw_runs(runs, out):
     published = pd.DataFrame({name: PUBLISHED["recursive"] / PUBLISHED[name] for name in LISTS})
     for axis, table, title in ((axes[0], published, "published"),
                                (axes[1], ratios, f"measured: {reading}; {density}")):
-        for k, name in enumerate(LISTS):
-            axis.bar(np.arange(len(table)) + (k - 0.5) * 0.4, table[name], width=0.38, label=name,
-                     **style.bar_style(name))
-            axis.axhline(table[name].mean(), linewidth=1.2, **style.line_style(name))
+        looks, width = style.looks(table.columns), 0.8 / len(table.columns)
+        for k, name in enumerate(table.columns):
+            axis.bar(np.arange(len(table)) + (k - (len(looks) - 1) / 2) * width, table[name], width=width - 0.02,
+                     label=name, **style.bar_style(looks[name]))
+            axis.axhline(table[name].mean(), linewidth=1.2, **style.line_style(looks[name]))
         axis.axhline(1, color="black", linewidth=0.8)
         axis.set_xticks(range(len(table)), table.index)
         axis.set_xlabel("run")
         axis.set_title(title)
         axis.grid(axis="x", visible=False)
     axes[0].set_ylabel("speedup over recursive")
-    axes[0].legend(loc="lower center", ncol=2, frameon=True, framealpha=1)
+    axes[1].legend(loc="lower center", ncol=2, frameon=True, framealpha=1)
     return style.save(figure, out, "nine-bunnies-runs")
 
 
@@ -158,19 +166,24 @@ SMOOTHED = 25  # frames
 
 def draw_over_time(frames, column, label, out, name):
     """A count per frame, all pairs together, as a running mean; one panel for each reading."""
-    readings = [r for r in dict.fromkeys(frames.reading) if "rejecting" not in r]
-    figure, axes = plt.subplots(2, 2, figsize=(7.2, 4.0), sharex=True)
+    every = list(dict.fromkeys(frames.reading))
+    readings = [reading for reading in every if "rejecting" not in reading]
+    records.say_left_out(set(every) - set(readings), f"of {name}")
+    lines = (len(readings) + 1) // 2
+    figure, axes = plt.subplots(lines, 2, figsize=(7.2, 2 * lines), sharex=True, squeeze=False)
+    variants = [BASE, *lists_of(frames)]
+    looks = style.looks(variants)
     for axis, reading in zip(axes.flat, readings):
-        for variant in VARIANTS:
-            if column == "front" and variant == "recursive":
+        for variant in variants:
+            if column == "front" and variant == BASE:
                 continue
             series = frames[(frames.reading == reading) & (frames.variant == variant)]
             mean = series[column].rolling(SMOOTHED, center=True, min_periods=1).mean()
             axis.plot(series.frame, mean, linewidth=1.1, label=variant,
-                      **style.line_style(variant))
+                      **style.line_style(looks[variant]))
         axis.set_title(reading)
         axis.set_ylim(bottom=0)
-    for axis in axes[1]:
+    for axis in axes[-1]:
         axis.set_xlabel("frame")
     for axis in axes[:, 0]:
         axis.set_ylabel(label)
@@ -197,7 +210,7 @@ def main():
     if arguments.table_only:
         return
     out = arguments.out
-    frames = pd.read_csv(arguments.record / "nine-bunnies.frames.csv")
+    frames = records.read(arguments.record, "frames")
     for path in (draw_table(runs, out), draw_runs(runs, out),
                  draw_over_time(frames, "n_v", "$N_v$ per frame", out, "nine-bunnies-tests"),
                  draw_over_time(frames, "front", "entries of all fronts", out, "nine-bunnies-front")):

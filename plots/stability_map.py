@@ -4,102 +4,99 @@
 its strategies) at each precision, and of each peer, under each stressor and level.
 
 usage: stability_map.py RECORD [--out FOLDER]
+
+Volumes, and peers, that are wrong in the same way everywhere stand on one line.
 """
 
-from pathlib import Path
+import textwrap
 
-import numpy as np
-import pandas as pd
 import matplotlib.pyplot as plt
-from matplotlib.colors import LogNorm, to_rgba
+import numpy as np
+from matplotlib.colors import LogNorm
 
+import records
 import style
 from arguments import record_arguments
+from words import number
 
 
 def read(record):
-    (table,) = Path(record).glob("*.csv")
-    rows = pd.read_csv(table, keep_default_na=False)
-    for column in ("false_positives", "false_negatives"):
-        rows[column] = pd.to_numeric(rows[column], errors="coerce")
+    rows = records.read(record)
     rows["wrong"] = rows.false_positives + rows.false_negatives
-    return rows, table.stem
+    return rows
 
 
 def print_totals(rows):
-    ours = rows[rows.source == "bvlab"]
-    per = ours.groupby("precision", sort=False)
     print("Ours: answers, false positives, false negatives, over all volumes and strategies")
-    for precision, group in per:
+    for precision, group in rows[rows.peer == ""].groupby("precision", sort=False):
         print(f"  {precision:8s} {group.answers.sum():8d} {group.false_positives.sum():8.0f} "
               f"{group.false_negatives.sum():8.0f}")
     print("Peers: answers, false positives, false negatives, cases without an answer")
-    for peer, group in rows[rows.source != "bvlab"].groupby("source", sort=False):
+    for peer, group in rows[rows.peer != ""].groupby("peer", sort=False):
         print(f"  {peer:12s} {group.answers.sum():8d} {group.false_positives.sum():8.0f} "
               f"{group.false_negatives.sum():8.0f} {(group.answers == 0).sum():4d}")
 
 
-def lines_of(rows):
-    """Label and rows of the record for each line of the map."""
-    ours = rows[rows.source == "bvlab"]
-    for precision in dict.fromkeys(ours.precision):
-        for volume in dict.fromkeys(ours.volume):
-            yield f"{precision}, {volume}", ours[(ours.precision == precision) &
-                                                 (ours.volume == volume)]
-    for peer in dict.fromkeys(rows[rows.source != "bvlab"].source):
-        yield peer, rows[rows.source == peer]
+def lines_of(rows, columns):
+    """For each precision of ours, and for peers: names, and the share of false answers under each stressor."""
+    lines = {}
+    for row, group in rows.groupby(["peer", "precision", "volume"], sort=False):
+        worst = (group.wrong / group.answers.where(group.answers > 0)).groupby([group.stressor, group.level]).max()
+        share = tuple(round(100 * worst.get(column, np.nan), 3) for column in columns)
+        lines.setdefault((row[1] if not row[0] else "peers", str(share)), (share, []))[1].append(row[0] or row[2])
+    kinds = list(dict.fromkeys(kind for kind, _ in lines))
+    return sorted(((kind, names, share) for (kind, _), (share, names) in lines.items()),
+                  key=lambda line: (line[0] == "peers", kinds.index(line[0])))
 
 
-def draw(rows, out, name):
-    columns = list(dict.fromkeys(zip(rows.stressor, rows.level)))
-    labels, cells = [], []
-    answers = rows.answers.max()
-    for label, group in lines_of(rows):
-        worst = group.groupby(["stressor", "level"]).wrong.max()
-        labels.append(label)
-        cells.append([worst.get(column, np.nan) for column in columns])
-    cells = np.array(cells)
-    figure, axis = plt.subplots(figsize=(7.2, 0.16 * len(labels) + 1.2))
+def label_of(kind, names, volumes):
+    if kind == "peers":
+        return textwrap.fill(", ".join(names), 34)
+    return kind if len(names) == volumes else textwrap.fill(f"{kind}: {', '.join(names)}", 34)
+
+
+def draw(rows, out):
+    cases = rows[["stressor", "level"]].drop_duplicates()
+    columns = [case for stressor in dict.fromkeys(cases.stressor) for case in
+               cases[cases.stressor == stressor].itertuples(index=False, name=None)]
+    lines = lines_of(rows, columns)
+    cells = np.array([share for _, _, share in lines], float)
+    labels = [label_of(kind, names, rows[rows.peer == ""].volume.nunique()) for kind, names, _ in lines]
+    heights = [1 + 0.6 * label.count("\n") for label in labels]
+    edges = np.concatenate([[0], np.cumsum(heights)])
+    figure, axis = plt.subplots(figsize=(7.2, 0.2 * edges[-1] + 1))
     shades = plt.get_cmap("YlOrRd").copy()
-    shades.set_bad("#bbbbbb")
-    zero = cells == 0
-    image = axis.imshow(np.where(zero, np.nan, cells / answers * 100), cmap=shades, aspect="auto",
-                        norm=LogNorm(vmin=0.5, vmax=100))
-    green = np.zeros((*cells.shape, 4))
-    green[zero] = to_rgba("#dcefd9")
-    axis.imshow(green, aspect="auto")
-    for y, x in zip(*np.nonzero(cells > 0)):
-        axis.text(x, y, f"{cells[y, x]:.0f}", ha="center", va="center", fontsize=3.6,
-                  color="white" if cells[y, x] > 0.4 * answers else "black")
-    for y, x in zip(*np.nonzero(np.isnan(cells))):
-        axis.text(x, y, "–", ha="center", va="center", fontsize=4)
-    axis.set_yticks(range(len(labels)), labels, fontsize=5)
-    axis.set_xticks(range(len(columns)), [f"{level:g}" for _, level in columns], fontsize=4.5,
-                    rotation=90)
-    stressors = [stressor for stressor, _ in columns]
-    for stressor in dict.fromkeys(stressors):
-        places = [i for i, each in enumerate(stressors) if each == stressor]
-        axis.axvline(places[0] - 0.5, color="white", linewidth=1.5)
-        axis.text(np.mean(places), -0.8, stressor, rotation=35, ha="left", va="bottom", fontsize=6)
-    groups = [label.split(",")[0] if "," in label else "peers" for label in labels]
-    for y in range(1, len(groups)):
-        if groups[y] != groups[y - 1]:
-            axis.axhline(y - 0.5, color="white", linewidth=1.5)
+    shades.set_bad("#cccccc")
+    shown = np.ma.masked_where(np.isnan(cells), np.maximum(cells, 1e-9))
+    shades.set_under("white")
+    image = axis.pcolormesh(np.arange(len(columns) + 1), edges, shown, cmap=shades, norm=LogNorm(0.5, 100))
+    for (y, x), share in np.ndenumerate(cells):
+        text = "–" if np.isnan(share) else "" if share == 0 else f"{share:.0f}" if share >= 0.95 else "<1"
+        axis.text(x + 0.5, (edges[y] + edges[y + 1]) / 2, text, ha="center", va="center", fontsize=4.6,
+                  color="white" if share > 24 else "black")
+    axis.set_yticks((edges[1:] + edges[:-1]) / 2, labels, fontsize=6)
+    axis.set_xticks(np.arange(len(columns)) + 0.5, [number(level) for _, level in columns], fontsize=5.5, rotation=90)
+    for place, (stressor, _) in enumerate(columns):
+        if place == 0 or columns[place - 1][0] != stressor:
+            axis.axvline(place, color="#8f8f8f", linewidth=0.7)
+            axis.text(place + 0.2, -0.25, stressor, rotation=35, ha="left", va="bottom", fontsize=7)
+    for y, (kind, _, _) in enumerate(lines[1:], 1):
+        axis.axhline(edges[y], color="#8f8f8f", linewidth=0.9 if lines[y - 1][0] != kind else 0.2)
+    axis.set(ylim=(edges[-1], 0), xlabel="level of the stressor")
     axis.grid(False)
     axis.tick_params(length=0)
-    for spine in axis.spines.values():
-        spine.set_visible(False)
-    bar = figure.colorbar(image, ax=axis, fraction=0.02, pad=0.01)
-    bar.set_label(f"% of {answers} answers false; green: none; grey: no answer", fontsize=6)
-    bar.ax.tick_params(labelsize=5)
-    return style.save(figure, out, name)
+    bar = figure.colorbar(image, ax=axis, fraction=0.02, pad=0.01, ticks=[1, 10, 100], format="%g %%")
+    bar.set_label(f"false answers of {rows.answers.max()}; white: none, grey: no answer", fontsize=6.5)
+    bar.ax.tick_params(labelsize=6)
+    bar.minorticks_off()
+    return style.save(figure, out, rows.attrs["name"])
 
 
 def main():
     arguments = record_arguments(__doc__)
-    rows, name = read(arguments.record)
+    rows = read(arguments.record)
     print_totals(rows)
-    print(draw(rows, arguments.out, name))
+    print(draw(rows, arguments.out))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One colour, marker and hatch per name, for good; figures legible in print and in greyscale."""
+"""How figures look: legible in print and in greyscale; names have the looks of looks.py."""
 
 from pathlib import Path
 
@@ -8,54 +8,10 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-# Chosen so that lightness alone tells neighbours apart; markers, dashes and hatches do so again.
-STYLES = {
-    "recursive": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "separation-list": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "deferred": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
-    "published": dict(color="#8f8f8f", marker="x", linestyle=":", hatch="xx"),
-    "fcl-obb": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
-    "fcl-obbrss": dict(color="#bc9fd1", marker="v", linestyle="-.", hatch="oo"),
-    "cgal": dict(color="#3c8d40", marker="P", linestyle=":", hatch="++"),
-    "fcl-kios": dict(color="#54336b", marker="d", linestyle=":", hatch="//"),
-    # Convex bodies by closest features.
-    "gjk": dict(color="#8f8f8f", marker="p", linestyle=":", hatch="xx"),
-    "fcl-gjk": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
-    "libccd-gjk": dict(color="#a6761d", marker="*", linestyle=":", hatch="**"),
-    "gjk-coherent": dict(color="#00796b", marker="h", linestyle="-.", hatch="..."),
-    "v-clip": dict(color="#c2185b", marker="8", linestyle="--", hatch="++"),
-    "recursive-both": dict(color="#6b6b6b", marker="p", linestyle="-", hatch="\\\\"),
-    "by-cost": dict(color="#8c6bb1", marker="D", linestyle=":", hatch="xx"),
-    "raise": dict(color="#b8860b", marker="X", linestyle=(0, (3, 1, 1, 1)), hatch="oo"),
-    "margins": dict(color="#31a354", marker="v", linestyle=(0, (5, 1)), hatch="\\\\\\"),
-    "adaptive": dict(color="#de2d26", marker="*", linestyle="-", hatch="++"),
-    "fcl-world": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
-    "bullet-world": dict(color="#b0413e", marker="<", linestyle="-.", hatch="--"),
-    # Volumes, where they stand beside each other.
-    "sphere": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "obb": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "aabb": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
-    "kdop14": dict(color="#c7e9c0", marker="v", linestyle=":", hatch="xx"),
-    "kdop18": dict(color="#74c476", marker="v", linestyle=":", hatch="xx"),
-    "kdop26": dict(color="#238b45", marker="v", linestyle=":", hatch="xx"),
-    "rss": dict(color="#8c6bb1", marker="D", linestyle="--", hatch="oo"),
-    "shell": dict(color="#fdae6b", marker="P", linestyle=":", hatch="++"),
-    # How K-DOPs are posed.
-    "realigned": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "corners": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "hull": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
-    # Precisions, and tests of two triangles.
-    "exact": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "float64": dict(color="#2b7bba", marker="s", linestyle="--", hatch="///"),
-    "float32": dict(color="#7fc4dd", marker="^", linestyle="-.", hatch="..."),
-    "guigue-devillers": dict(color="#d95f0e", marker="X", linestyle="--", hatch="xx"),
-    "moller": dict(color="#a6761d", marker="*", linestyle=":", hatch="**"),
-    "bullet": dict(color="#b0413e", marker="<", linestyle="-.", hatch="--"),
-    "ode": dict(color="#6f9a37", marker=">", linestyle=":", hatch="||"),
-    "fcl": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
-}
+from looks import STYLES, joint_looks, looks  # noqa: F401
 
-DENSITY_COLOURS = {"interlocked": "#b0413e", "dense": "#e69f00", "sparse": "#41a5c4"}
+DPI = 200  # of images
+FORMATS = {"pdf": dict(CreationDate=None), "png": dict(Software=None)}  # and what would differ from run to run
 
 plt.rcParams.update({
     "font.size": 9,
@@ -75,45 +31,59 @@ plt.rcParams.update({
 })
 
 
-def line_style(name):
+def line_style(look):
     """Keywords for plot: colour, dashes."""
-    style = STYLES[name]
-    return dict(color=style["color"], linestyle=style["linestyle"])
+    return dict(color=look["color"], linestyle=look["linestyle"])
 
 
-def marker_style(name):
-    """Keywords for plot without a line: colour, marker."""
-    style = STYLES[name]
-    return dict(color=style["color"], marker=style["marker"], linestyle="none")
+def marker_style(look):
+    """Keywords for plot without a line: colour, marker, its filling."""
+    return dict(point_style(look), linestyle="none")
 
 
-def world_style(variant):
-    """Keywords for plot: a peer by its own name, ours ("sphere deferred") by its strategy's, hollow
-    where the volume is not the sphere."""
-    volume, _, strategy = variant.partition(" ")
-    style = STYLES.get(strategy.partition(":")[0], STYLES["published"]) if strategy else STYLES[volume]
-    hollow = dict(markerfacecolor="white") if strategy and volume != "sphere" else {}
-    return dict(color=style["color"], marker=style["marker"], linestyle=style["linestyle"], **hollow)
+def point_style(look):
+    """Keywords for plot: colour, dashes, marker, its filling."""
+    fill = {"none": "white", "half": lighter(look["color"])}.get(look.get("fill"), look["color"])
+    return dict(color=look["color"], linestyle=look["linestyle"], marker=look["marker"], markerfacecolor=fill)
 
 
-def bar_style(name):
+def bar_style(look):
     """Keywords for bar: fill, hatch, edge."""
-    style = STYLES[name]
-    return dict(color=style["color"], hatch=style["hatch"], edgecolor="white", linewidth=0.5)
+    if look.get("fill", "full") == "full":
+        return dict(facecolor=look["color"], hatch=look["hatch"], edgecolor="white", linewidth=0.5)
+    colour = "white" if look["fill"] == "none" else lighter(look["color"])
+    return dict(facecolor=colour, hatch=look["hatch"], edgecolor=look["color"], linewidth=0.8)
 
 
-def legend_below(figure, axis):
-    """One row under the whole figure, of what is drawn in one of its axes."""
-    handles, labels = axis.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncol=len(labels), frameon=False,
-                  bbox_to_anchor=(0.5, -0.06))
+def lighter(colour):
+    return tuple(0.5 + 0.5 * channel for channel in matplotlib.colors.to_rgb(colour))
+
+
+def legend_below(figure, handles, labels, **keywords):
+    """Under the whole figure, in as many columns as its width holds."""
+    for columns in range(len(labels), 0, -1):
+        legend = figure.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, 0), ncols=columns,
+                               frameon=False, columnspacing=1.2, handlelength=2.4, borderaxespad=0.2, **keywords)
+        if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            return legend
+        legend.remove()
+    return None
+
+
+def labelled(axes):
+    """Handles and labels of several axes, each label once."""
+    found = {}
+    for axis in axes:
+        for handle, label in zip(*axis.get_legend_handles_labels()):
+            found.setdefault(label, handle)
+    return list(found.values()), list(found)
 
 
 def save(figure, folder, name):
     """Writes <folder>/<name>.pdf and .png, the same bytes for the same record."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    figure.savefig(folder / f"{name}.pdf", metadata={"CreationDate": None})
-    figure.savefig(folder / f"{name}.png", dpi=200, metadata={"Software": None})
+    for ending, metadata in FORMATS.items():
+        figure.savefig(folder / f"{name}.{ending}", dpi=DPI, metadata=metadata)
     plt.close(figure)
     return folder / f"{name}.png"

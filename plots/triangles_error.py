@@ -6,12 +6,11 @@ per call, one panel for each set, the Pareto front drawn.
 usage: triangles_error.py RECORD [--out FOLDER]
 """
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 import matplotlib.pyplot as plt
 
+import records
 import style
 from arguments import record_arguments
 
@@ -19,10 +18,9 @@ NONE = 3  # where zero stands on the logarithmic axis, in pairs per million
 
 
 def read(record):
-    (table,) = Path(record).glob("*.csv")
-    rows = pd.read_csv(table)
+    rows = records.read(record)
     rows["wrong"] = (rows.false_positives + rows.false_negatives) / rows.pairs * 1e6
-    return rows, table.stem
+    return rows, rows.attrs["name"]
 
 
 def name_of(test, source):
@@ -64,22 +62,23 @@ def draw(middle, out, name):
     sets = list(dict.fromkeys(middle.set))
     columns = 3
     lines = int(np.ceil(len(sets) / columns))
+    looks = style.looks(middle.test)
     figure, axes = plt.subplots(lines, columns, figsize=(7.2, 2.3 * lines), squeeze=False,
                                 sharey=True)
     for axis, which in zip(axes.flat, sets):
         group = middle[middle.set == which]
         front = front_of(zip(group.ns, group.wrong))
-        axis.step([p[0] for p in front] + [2e4], [max(p[1], NONE) for p in front] +
+        axis.step([p[0] for p in front] + [middle.ns.max() * 2], [max(p[1], NONE) for p in front] +
                   [max(front[-1][1], NONE)], where="post", color="#888888", linewidth=1, zorder=1)
         for _, row in group.iterrows():
-            marker = style.marker_style(row.test)
+            marker = style.marker_style(looks[row.test])
             if row.source == "one by one":
                 marker["markerfacecolor"] = "none"
             axis.plot(row.ns, max(row.wrong, NONE), markersize=5, zorder=2,
                       label=name_of(row.test, row.source), **marker)
         axis.set_xscale("log")
         axis.set_yscale("log")
-        axis.set_xlim(8, 1.5e4)
+        axis.set_xlim(middle.ns.min() / 2, middle.ns.max() * 2)
         axis.set_ylim(NONE / 2, 1e6)
         axis.set_yticks([NONE, 1e2, 1e4, 1e6], ["none", "$10^2$", "$10^4$", "$10^6$"])
         axis.set_yticks([], minor=True)
@@ -90,11 +89,13 @@ def draw(middle, out, name):
         axis.set_xlabel("ns a call")
     for axis in axes[:, 0]:
         axis.set_ylabel("wrong per million")
-    handles, labels = {}, []
+    handles = {}
     for axis in axes.flat:
         for handle, label in zip(*axis.get_legend_handles_labels()):
             handles.setdefault(label, handle)
-    labels = sorted(handles, key=lambda label: list(style.STYLES).index(label.split(",")[0]))
+    known = list(style.STYLES)
+    labels = sorted(handles, key=lambda label: known.index(label.split(",")[0]) if label.split(",")[0] in known
+                    else len(known))
     figure.legend([handles[label] for label in labels], labels, loc="lower center", ncol=4,
                   frameon=False, bbox_to_anchor=(0.5, -0.07))
     figure.tight_layout()

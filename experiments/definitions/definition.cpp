@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "experiments/definitions/figure_tables.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
 #include "experiments/scenes/scenes.hpp"
@@ -122,6 +123,8 @@ class Reader {
         definition.axes = axes(node);
       else if (key == "series")
         read_series(node, definition);
+      else if (key == "figure")
+        check_figures(node, name_);
       else
         fail(key.source(), "unknown key '" + std::string(key.str()) + "'");
     }

@@ -23,6 +23,10 @@
 ///     [series]                       # cells to write down frame by frame as well
 ///     seed = 1
 ///     until = 1000                   # this many frames of each, at most
+///
+///     [[figure]]                     # what plots/draw shows of it: see plots/figures.py
+///     name = "tests"
+///     x = "seed"
 #pragma once
 
 #include <set>

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "experiments/definitions/definition.hpp"
+#include "experiments/definitions/figure_tables.hpp"
 #include "experiments/files/unusable.hpp"
 
 namespace bvlab {
@@ -122,6 +123,8 @@ std::optional<StudyDefinition> study_from(const std::string& text, const std::st
         else
           list.push_back(scalar(file, value));
       }
+    } else if (key == "figure") {
+      check_figures(node, file);
     } else if (key != "kind" && key != "description") {
       fail(file, node, "unknown key '" + std::string(key.str()) + "' of a study");
     }

@@ -8,6 +8,7 @@
 ///     repetitions = 5
 ///     [parameters]                # numbers, strings, or lists of either; each kind knows its own
 ///     pairs = 50000
+///     [[figure]]                  # what plots/draw shows of it: see plots/figures.py
 #pragma once
 
 #include <filesystem>

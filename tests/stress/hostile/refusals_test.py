@@ -362,6 +362,26 @@ class Definitions(ProgramTest):
         self.refuse_definition(axis("name = 'way'\n[[axis.value]]\nmoving = 1\n"), "line 9", "name")
         self.refuse_definition(axis("name = 'seed'\n[[axis.value]]\nname = 'a'\n"), "seed", "values")
 
+    def test_figures(self):
+        for start, line in (("name = 'x'\n", 2), ("name = 'x'\nkind = 'triangles'\n", 3)):
+            def refuse(text, *mentions):
+                self.refuse_definition(start + text, *mentions)
+
+            good = "[[figure]]\nname = 'a'\nx = 'seed'\n"
+            refuse("figure = 3\n", f"line {line}", "[[figure]]")
+            refuse("[figure]\nname = 'a'\n", "[[figure]]")
+            refuse("[[figure]]\nx = 'seed'\n", f"line {line}", "name")
+            refuse("[[figure]]\nname = 'a'\n", f"line {line}", "an x")
+            refuse("[[figure]]\nname = 'a/b'\nx = 'seed'\n", f"line {line + 1}", "'/'")
+            refuse(good + "frob = 1\n", f"line {line + 3}", "frob", "panels", "where")
+            refuse(good + "y = 1\n", f"line {line + 3}", "y", "string")
+            refuse(good + "kind = 'frob'\n", f"line {line + 3}", "frob", "line, bars, map")
+            refuse(good + "kind = 'map'\n", f"line {line}", "'a'", "needs a y")
+            refuse(good + "log = 'z'\n", f"line {line + 3}", "none, x, y, xy")
+            refuse(good + "where = 'a=b'\n", f"line {line + 3}", "list of strings")
+            refuse(good + "where = [1]\n", f"line {line + 3}", "list of strings")
+            refuse(good + good, f"line {line + 3}", "second", "'a'")
+
     def test_names_and_numbers(self):
         kinds = {"scene": "scenes", "volume": "volumes", "strategy": "strategies",
                  "query": "queries", "build": "builds", "precision": "precisions", "peer": "peers"}

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A value over that of another variant in the same cell."""
+
+import re
+
+import numpy as np
+import pandas as pd
+
+import records
+from refused import Refused
+from selection import BEST, CONDITION, VARIANT, columns_of, has_value
+
+
+def tied(rows, names):
+    """The columns named, the labels of axes that set them, and what those axes set beside them."""
+    found = set(names)
+    for axis in rows.attrs["definition"].get("axis", []):
+        sets = {axis["name"]} | {key for value in axis.get("value", []) for key in value if key != "name"}
+        if sets & found:
+            found |= sets
+    return found
+
+
+def cell_columns(rows, but):
+    """The settings that distinguish cells, but for some."""
+    return [column for column in rows.attrs["settings"] if column not in but and rows[column].nunique() > 1]
+
+
+def base_of(rows, over):
+    """The rows that others are set in relation to, and the columns in which these may be others."""
+    if over in BEST:
+        base = rows[BEST[over](rows)]
+        if base.empty:
+            raise Refused(f"over {over}: there is none in these rows")
+        return base, set(VARIANT)
+    base, names = rows, []
+    for part in re.split(r",\s*(?=\w+\s*=)", over):
+        match = CONDITION.match(part)
+        if not match or match[2] != "=":
+            raise Refused(f"over '{over}': name=value, or one of {', '.join(BEST)}")
+        columns_of(rows, match[1], "over")
+        base, names = base[has_value(base, match[1], match[3], "over")], [*names, match[1]]
+    ours = base.peer == ""
+    return base[ours] if ours.any() and "peer" not in names else base, tied(rows, names)
+
+
+def denominators(rows, base, keys, best):
+    """For each row the base's value where the keys are the same: the median of its repetitions, and of the best the
+    least of the variants'."""
+    which = keys + (["variant"] if best else [])
+    values = base.groupby(which).value.median() if which else pd.Series([base.value.median()])
+    if best:
+        values = values.groupby(level=keys).min() if keys else pd.Series([values.min()])
+    if not keys:
+        return np.full(len(rows), values.iloc[0])
+    return rows[keys].merge(values.rename("base").reset_index(), how="left", on=keys).base.to_numpy()
+
+
+def ratios(rows, over, keep_value):
+    """The rows with their value over that of the base in the same cell, which is the same in all that was set but the
+    variant. A map keeps its values, and has beside them how many times as little they are."""
+    base, variant = base_of(rows, over)
+    cells = cell_columns(rows, variant)
+    # A peer has no leaf size and the like: it is compared in the rest.
+    peers = rows[rows.peer != ""]
+    shared = [c for c in cells if c not in VARIANT and not peers[c].astype(str).isin(["", "nan"]).any()]
+    result = pd.Series(np.nan, rows.index)
+    for part in (rows[rows.peer == ""], peers):
+        keys = shared if over in BEST or part is peers else cells
+        result[part.index] = part.value / denominators(part, base, keys, over in BEST)
+    alone = result.isna() & rows.value.notna()
+    if alone.all():
+        raise Refused(f"over {over}: no cell holds it beside another")
+    records.say_left_out(rows[alone].variant, f"in cells without {over}")
+    return rows.assign(value=rows.value if keep_value else result, ratio=1 / result if keep_value else result)[~alone]

@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Records as pandas frames.
+
+    import records
+    rows = records.read("experiments/record/2026-11-21.51")
+    rows.attrs["units"]["time_ns"]                     # "ns"
+    rows.groupby(["query", "variant"]).time_ns.median()
+"""
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+import words
+from looks import STYLES
+from refused import Refused
+
+# Where a table has no column `repetition`, the first column that is measured.
+MEASURED_FROM = {"tightness": "nodes", "stability": "answers"}
+WRONG = ["differing", "wrong", "outside"]  # counts of answers that should not be
+
+
+def read(record, table=""):
+    """The rows of a record as a frame, one for each variant, scene, seed and repetition, in the order of its
+    definition; of `table` "frames" or "disagreements", the rows of <name>.<table>.csv.
+
+    Numbers are numbers (lengths as "0.03body", too, where all of a column are in the same unit), NaN where there
+    is none; names are strings, "" where there is none. Added are: `peer`, the other library that a row is of, or
+    "" for ours; `variant`, what distinguishes what was run, as "sphere deferred", "blocks" or a peer's name;
+    later_ns and later_pairs, those of all frames but the first; and the columns of <name>.coherence.csv.
+
+    attrs: name and kind (of the study, "" for an experiment), definition (a dictionary), settings (the columns that
+    say what was run), units (of each column: ns, B, radii, °, or ""). Refused where it is no record.
+    """
+    record = Path(record)
+    definition = read_definition(record)
+    name, kind = definition["name"], definition.get("kind", "")
+    rows = read_table(record / (f"{name}.{table}.csv" if table else f"{name}.csv"))
+    if rows.empty:
+        raise Refused(f"{name}.csv has no rows")
+    if table:
+        rows.attrs.update(name=name, kind=kind, definition=definition, settings=[], units={})
+        return rows
+    settings = setting_columns(rows, kind)
+    rows, settings = with_peers(rows, definition, settings)
+    rows = with_coherence(rows, record / f"{name}.coherence.csv")
+    if {"time_ns", "first_ns", "frames", "pairs"} <= set(rows):
+        rows["later_ns"] = rows.time_ns - rows.first_ns
+        rows["later_pairs"] = rows.pairs * (rows.frames - 1) / rows.frames
+    units = {column: words.unit_of(column) for column in rows}
+    for column in settings:
+        rows[column], units[column] = as_lengths(rows[column], units[column])
+    if kind == "worlds":
+        units.update(step="radii", side="radii")
+    if "variant" not in rows:
+        rows["variant"] = variant_names(rows)
+    units.setdefault("variant", "")
+    rows = in_order(rows, definition, settings)
+    rows.attrs.update(name=name, kind=kind, definition=definition, settings=settings, units=units)
+    return rows
+
+
+def read_toml(path):
+    try:
+        definition = tomllib.loads(Path(path).read_text())
+        definition["name"]
+    except KeyError:
+        raise Refused(f"{path}: has no name") from None
+    except (OSError, ValueError) as fault:
+        raise Refused(f"{path}: {fault}".replace("\n", " ")) from None
+    return definition
+
+
+def read_definition(record):
+    """The definition that stands in a record, as a dictionary."""
+    if not (Path(record) / "definition.toml").is_file():
+        raise Refused(f"{record}: no record: it has no definition.toml")
+    return read_toml(Path(record) / "definition.toml")
+
+
+def read_table(path):
+    """Blanks are empty names, and NaN in columns of numbers."""
+    try:
+        rows = pd.read_csv(path, keep_default_na=False)
+    except (OSError, ValueError, UnicodeDecodeError) as fault:
+        raise Refused(f"{path}: {fault}".replace("\n", " ")) from None
+    for column in rows.columns[rows.dtypes == object]:
+        text = rows[column]
+        numbers = pd.to_numeric(text, errors="coerce")
+        if (text != "").any() and numbers[text != ""].notna().all():
+            rows[column] = numbers
+    return rows
+
+
+def setting_columns(rows, kind):
+    columns = list(rows.columns)
+    measured = "repetition" if "repetition" in columns else MEASURED_FROM.get(kind)
+    if measured in columns:
+        return columns[:columns.index(measured)]
+    return [column for column in columns if rows[column].dtype == object]
+
+
+def with_peers(rows, definition, settings):
+    """The same column `peer` for every kind, and nothing in settings that a peer does not have."""
+    if "peer" in rows:
+        return without_ours(rows), settings
+    asked = definition.get("parameters", {}).get("peers", [])
+    peers = [asked] if isinstance(asked, str) else asked
+    if "source" in rows:
+        own = {"bvlab", "batched", "one by one"}
+        rows["peer"] = ["" if s in own else rows.test[i] if s == "peer" else s for i, s in rows.source.items()]
+    elif "method" in rows:
+        rows["peer"] = rows.method.where(rows.method.isin(peers), "")
+        for mode in {"coherent", "changes"} & set(rows):
+            rows[mode] = rows[mode].where(rows.peer == "", "")
+    else:
+        rows["peer"] = ""
+    return rows, settings + ["peer"]
+
+
+def without_ours(rows):
+    """A peer has neither a volume nor a strategy of ours, whatever an older record says."""
+    for column in {"volume", "strategy"} & set(rows):
+        rows[column] = rows[column].where(rows.peer == "", "")
+    return rows
+
+
+def with_coherence(rows, path):
+    if not path.is_file():
+        return rows
+    coherence = read_table(path)
+    shared = [column for column in coherence if column in rows]
+    return rows.merge(coherence, how="left", on=shared)
+
+
+def as_lengths(column, unit):
+    """"0.03body" as 0.03 in radii, where all are written so."""
+    if column.dtype == object:
+        for suffix, name in words.LENGTHS.items():
+            numbers = pd.to_numeric(column.str.removesuffix(suffix), errors="coerce")
+            if column.str.endswith(suffix).all() and numbers.notna().all():
+                return numbers.astype(float), name
+    return column, unit
+
+
+def variant_names(rows):
+    """For each row what was run: "volume strategy", the part alone of which there is more than one, or the peer."""
+    for column in ("method", "test", "policy"):
+        if column in rows:
+            return rows[column].where(rows.peer == "", rows.peer)
+    ours = rows[rows.peer == ""]
+    parts = [part for part in ("volume", "strategy") if part in rows]
+    several = [part for part in parts if ours[part].nunique() > 1] or parts[-1:]
+    named = rows[several].agg(" ".join, axis=1) if several else ""
+    return pd.Series(np.where(rows.peer == "", named, rows.peer), rows.index)
+
+
+def in_order(rows, definition, settings):
+    """Rows are run in random order: here as the definition's lists have them."""
+    lists = [[str(v["name"]) for v in axis.get("value", [])] or list(map(str, axis.get("values", [])))
+             for axis in definition.get("axis", [])]
+    lists += [list(map(str, v)) if isinstance(v, list) else [str(v)] for v in definition.get("parameters", {}).values()]
+    place = {name: i for i, name in enumerate(name for names in lists for name in names)}
+    # Names that the definition leaves open: as in STYLES, and then in the order in which they come first.
+    found = [name for column in settings if rows[column].dtype == object for name in dict.fromkeys(rows[column])]
+    place = {**{name: len(place) + i for i, name in enumerate(dict.fromkeys([*STYLES, *found]))}, **place}
+    for column in reversed(settings):
+        named = rows[column].dtype == object
+        rows = rows.sort_values(column, key=lambda c, named=named: c.map(place) if named else c, kind="stable")
+    return rows.sort_values("peer", key=lambda c: c != "", kind="stable").reset_index(drop=True)
+
+
+def wrong_answers(rows):
+    """Which rows hold answers that differ from the reference; refused where one of ours does."""
+    wrong = pd.Series(False, rows.index)
+    for column in set(WRONG) & set(rows):
+        wrong |= rows[column].fillna(0) != 0
+    names = list(dict.fromkeys(rows[wrong & (rows.peer == "")].variant))
+    if names:
+        raise Refused(f"answers of {', '.join(names)} differ from the reference")
+    return wrong
+
+
+def say_left_out(names, why):
+    """Nothing is left out in silence."""
+    names = sorted(set(map(str, names)))
+    if names:
+        print(f"left out, {why}: {', '.join(names)}")

@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""plots/draw: every record in the repository, names that nobody has heard of, and what it refuses."""
+
+import contextlib
+import importlib.machinery
+import importlib.util
+import io
+import tempfile
+import unittest
+from pathlib import Path
+
+from drawing import PLOTS, Seen
+from small_records import COUNTS, ROOT, STRATEGIES, names_added, own_record, small_record, stranger
+
+import figures
+import records
+
+loader = importlib.machinery.SourceFileLoader("draw", str(PLOTS / "draw"))
+draw = importlib.util.module_from_spec(importlib.util.spec_from_loader("draw", loader))
+loader.exec_module(draw)
+
+
+def winning(name, rows):
+    """Each stranger is the fastest somewhere, since a map of winners shows those alone."""
+    if "time_ns" in rows:
+        strangers = [("volume", stranger("volume")), ("peer", stranger("peer")), *(("strategy", n) for n in STRATEGIES)]
+        for (column, who), field in zip(strangers, list(dict.fromkeys(zip(rows.step, rows.degrees)))):
+            here = (rows.step == field[0]) & (rows.degrees == field[1])
+            rows.loc[here & (rows[column] == who), "time_ns"] = 1000
+    return rows
+
+
+RECURSIVE = dict(strategy="recursive")
+METHODS = ("hybrid", [stranger("method"), "grid", "brute-force"])
+# Definition, how much of its record, the strangers added, and what a peer is made of.
+STRANGE = [
+    ("best-rebuilds", dict(motion=3), dict(strategy=("deferred", STRATEGIES)), RECURSIVE),
+    ("boxes-displacement", dict(set=1, displacement=4), dict(method="blocks", set="random"), None),
+    ("boxes-events", dict(set=1), dict(set="adjacent", motion="drift"), None),
+    ("boxes-fast", dict(set=2), dict(method=("blocks", METHODS[1]), set="random", motion="drift"), None),
+    ("boxes-figure-4", dict(boxes=3), dict(method=METHODS), None),
+    ("boxes-precision", dict(set=1, offset=3), dict(method="blocks", numbers="float, nearest", set="random"), None),
+    ("budget", dict(budget=3), dict(volume="sphere", mesh="bunny"), None),
+    ("closest-features", dict(motion=2, mesh=2), dict(strategy=("recursive", STRATEGIES), mesh="icosphere:80"),
+     RECURSIVE),
+    ("distance-error", dict(relative_error=3), dict(volume="sphere", mesh="knot"), None),
+    ("fits", dict(volume=2, build=["top-down-principal", "bottom-up"]), dict(volume="sphere", fit="tight"), None),
+    ("hierarchies", dict(work=2, motion=1), dict(volume="sphere", strategy=("recursive", STRATEGIES), density="dense"),
+     RECURSIVE),
+    ("peers", dict(size=1), dict(variant=("sphere deferred", STRATEGIES), density="dense"), RECURSIVE),
+    ("posing", dict(k=2), dict(policy="corners", query="contacts"), None),
+    ("tightness", dict(volume=2, mesh=2), dict(volume="sphere", fit="tight", mesh="bunny:500"), None),
+    ("winners-motion", dict(volume=["sphere", "obb"]), dict(volume="obb", strategy=("margins", STRATEGIES)),
+     dict(volume="obb", strategy="recursive"), winning),
+    ("workloads", {}, dict(volume="obb", strategy=("deferred", STRATEGIES), workload="pile"), None),
+    ("worlds", dict(objects=1), dict(volume="obb", strategy=("deferred", STRATEGIES)), RECURSIVE),
+]
+
+
+class Draws(unittest.TestCase):
+    def test_every_record_of_the_repository(self):
+        folders = sorted(path.parent for path in (ROOT / "experiments" / "record").glob("*/definition.toml"))
+        self.assertTrue(folders)
+        for folder in folders:
+            with self.subTest(folder.name), tempfile.TemporaryDirectory() as out:
+                seen = Seen(self, lambda: draw.main([str(folder), "--out", out]))
+                self.assertEqual(seen.result, 0)
+                self.assertTrue(seen.paths)
+
+    def test_every_definition_declares_figures_that_are_taken(self):
+        declared = 0
+        for path in (ROOT / "experiments" / "definitions").glob("*.toml"):
+            with self.subTest(path.name):
+                declared += len(figures.declared(records.read_toml(path)))
+        self.assertGreater(declared, 30)
+
+    def test_names_that_nobody_has_heard_of(self):
+        for name, keep, strangers, peer_like, *change in STRANGE:
+            with self.subTest(name), tempfile.TemporaryDirectory() as folder:
+                record = small_record(name, Path(folder) / "record", keep, strangers, peer_like, *change)
+                seen = Seen(self, lambda: draw.main([str(record), "--out", folder]))
+                self.assertEqual(seen.result, 0)
+                seen.check(self, names_added(strangers, peer_like))
+
+    def test_a_definition_that_declares_nothing_has_a_figure_of_each_axis(self):
+        with tempfile.TemporaryDirectory() as folder:
+            seen = Seen(self, lambda: draw.main([str(own_record(folder)), "--out", folder]))
+            self.assertEqual({path.stem for path in seen.paths}, {"by-degrees", "by-volume", "by-strategy"})
+
+    def test_declared_in_the_record_itself_and_by_the_command_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            table = '[[figure]]\nname = "mine"\nx = "degrees"\nover = "strategy=recursive"\nseries = "strategy"\n'
+            record = own_record(folder, more=table + 'panels = "volume"\n')
+            seen = Seen(self, lambda: draw.main([str(record)]), formats=("pdf", "png"))
+            self.assertEqual(seen.paths, [record / "figures" / "mine.png"])
+            self.assertIn("time a pair over recursive's", " ".join(seen.texts).replace("\n", " "))
+            for words in (["--x", "degrees", "--y", "n_v / pairs", "--series", "volume"],
+                          ["--x", "volume, strategy", "--kind", "bars", "--over", "best"],
+                          ["--x", "degrees", "--y", "volume", "--kind", "map", "--series", "strategy"],
+                          ["--x", "n_v", "--panels", "volume, strategy", "--where", "degrees!=1"]):
+                seen = Seen(self, lambda: draw.main([str(record), "--out", folder, *words]))
+                self.assertEqual((seen.result, len(seen.paths)), (0, 1), words)
+                seen = Seen(self, lambda: draw.main([str(record), "--table", *words]))
+                self.assertEqual((seen.result, len(seen.paths)), (0, 0), words)
+                self.assertIn("sphere", seen.printed)
+
+
+    def test_odd_names(self):
+        names = {"deferred": "_x$y_$\\frac", "obb": "a_b%c#$"}
+        with tempfile.TemporaryDirectory() as folder:
+            record = own_record(folder, change=lambda rows: rows.replace(names))
+            for words in ([], ["--x", "volume, degrees", "--y", "strategy", "--kind", "map"],
+                          ["--x", "degrees", "--y", "n_v", "--kind", "map", "--series", "variant", "--over", "best"],
+                          ["--x", "variant", "--series", "variant", "--kind", "bars"]):
+                seen = Seen(self, lambda: draw.main([str(record), "--out", folder, *words]))
+                self.assertEqual(seen.result, 0)
+                self.assertIn("x\\$y_", " ".join(seen.texts))
+
+    def test_records_of_hardly_anything(self):
+        for change in (lambda rows: rows.iloc[:1], lambda rows: rows.assign(time_ns=0),
+                       lambda rows: rows.assign(time_ns=-rows.time_ns), lambda rows: rows.assign(volume="")):
+            with tempfile.TemporaryDirectory() as folder:
+                record = own_record(folder, change=change)
+                self.assertEqual(Seen(self, lambda: draw.main([str(record), "--out", folder])).result, 0)
+
+
+class Refuses(unittest.TestCase):
+    """One line that names what there is instead, exit 2, and nothing written."""
+
+    def refuse(self, record, *words, mentions=()):
+        said = io.StringIO()
+        out = Path(record) / "never"
+        with contextlib.redirect_stderr(said), contextlib.redirect_stdout(io.StringIO()):
+            code = draw.main([str(record), "--out", str(out), *words])
+        self.assertEqual((code, said.getvalue().count("\n")), (2, 1), said.getvalue())
+        self.assertFalse(out.exists())
+        for mention in (str(record), *mentions):
+            self.assertIn(mention, said.getvalue())
+
+    def test_columns_expressions_and_variants(self):
+        with tempfile.TemporaryDirectory() as folder:
+            record = own_record(folder)
+            for words, mentions in (
+                    (["--x", "frob"], ["'frob'", "degrees", "time_ns"]),
+                    (["--x", "degrees, frob"], ["'frob'", "degrees"]),
+                    (["--x", "degrees", "--y", "time_ns / frob"], ["'frob'", "pairs"]),
+                    (["--x", "degrees", "--y", "time_ns /"], ["'time_ns /'"]),
+                    (["--x", "degrees", "--y", "__import__('os')"], ["no expression"]),
+                    (["--x", "degrees", "--y", "time_ns.mean"], ["no expression"]),
+                    (["--x", "degrees", "--y", "volume / 2"], ["'volume' holds names"]),
+                    (["--x", "degrees", "--y", "volume"], ["holds names"]),
+                    (["--x", "degrees", "--y", "time_ns + pairs"], ["same unit"]),
+                    (["--x", "degrees", "--y", "time_ns ** 9 ** 9 ** 9"], ["time_ns ** 9"]),
+                    (["--x", "degrees", "--series", "frob"], ["series", "'frob'", "volume"]),
+                    (["--x", "degrees", "--panels", "frob"], ["panels", "'frob'", "volume"]),
+                    (["--x", "degrees", "--over", "strategy=frob"], ["'frob'", "'recursive'", "'deferred'"]),
+                    (["--x", "degrees", "--over", "frob=1"], ["'frob'", "strategy"]),
+                    (["--x", "degrees", "--over", "frob"], ["best peer"]),
+                    (["--x", "degrees", "--over", "best peer"], ["best peer"]),
+                    (["--x", "degrees", "--where", "volume=frob"], ["'frob'", "'sphere'"]),
+                    (["--x", "degrees", "--where", "frob=1"], ["frob"]),
+                    (["--x", "degrees", "--where", "pairs"], ["no condition"]),
+                    (["--x", "degrees", "--where", "pairs>1000000"], ["no row is left"]),
+                    (["--x", "degrees", "--kind", "pie"], ["'pie'", "line, bars, map"]),
+                    (["--x", "degrees", "--kind", "map"], ["needs a y"]),
+                    (["--x", "degrees", "--log", "z"], ["'z'", "xy"]),
+                    (["--x", "degrees", "--name", "a/b"], ["'/'"]),
+                    (["--y", "time_ns"], ["--x"])):
+                with self.subTest(words):
+                    self.refuse(record, *words, mentions=mentions)
+
+    def test_figures_of_definitions(self):
+        for table, mention in (('name = "a"\n', "needs an x"), ('x = "degrees"\n', "needs a name"),
+                               ('name = "a"\nx = 3\n', "x must be a string"),
+                               ('name = "a"\nx = "degrees"\nwhere = "volume=obb"\n', "list of strings"),
+                               ('name = "a"\nx = "degrees"\nfrob = "1"\n', "'frob'"),
+                               ('name = "a"\nx = "degrees"\n[[figure]]\nname = "a"\nx = "degrees"\n', "second"),
+                               # The first would do: none is drawn where one is refused.
+                               ('name = "a"\nx = "degrees"\n[[figure]]\nname = "b"\nx = "frob"\n', "'frob'")):
+            with self.subTest(table), tempfile.TemporaryDirectory() as folder:
+                self.refuse(own_record(folder, more="[[figure]]\n" + table), mentions=[mention])
+
+    def test_answers_that_differ(self):
+        def differing(rows):
+            rows.loc[rows.index[3], "differing"] = 1
+            return rows
+
+        with tempfile.TemporaryDirectory() as folder:
+            self.refuse(own_record(folder, change=differing), mentions=["differ from the reference"])
+
+    def test_what_is_no_record(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.refuse(Path(folder), mentions=["no record"])
+            record = own_record(folder)
+            for content, mention in (("", "own.csv"), ("degrees,time_ns\n", "no rows")):
+                (record / "own.csv").write_text(content)
+                self.refuse(record, mentions=[mention])
+            for value in (float("nan"), float("inf")):
+                with tempfile.TemporaryDirectory() as other:
+                    self.refuse(own_record(other, change=lambda rows, v=value: rows.assign(time_ns=v)),
+                                mentions=["time_ns"])
+            (record / "own.csv").unlink()
+            self.refuse(record, mentions=["own.csv"])
+            (record / "definition.toml").write_text("name = \n")
+            self.refuse(record, mentions=["definition.toml"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every script of plots/ that computes something draws records in which a volume, a strategy, a peer and others have
+never been heard of: nothing fails, nothing is missing in silence, and no stranger looks like its neighbour."""
+
+import importlib
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+from drawing import PLOTS, Seen
+from small_records import STRATEGIES, names_added, small_record, stranger
+
+RECURSIVE = dict(strategy="recursive")
+# Script: the record it draws, how much of it, and the strangers added, each like a name that is there.
+SPECS = {
+    "boxes_fast": ("boxes-fast", dict(set=2), dict(method=("blocks", [stranger("method"), "grid", "brute-force"]),
+                                                   set="random", motion="drift"), None),
+    "coherence": ("coherence", dict(mesh=2, motion=2, manner=1), dict(volume="obb", strategy=("deferred", STRATEGIES)),
+                  RECURSIVE),
+    "cost_model": ("cost-model", dict(volume=3), dict(volume="sphere", strategy="deferred", density="dense"),
+                   RECURSIVE),
+    "hierarchies": ("hierarchies", dict(work=2, motion=1), dict(volume="sphere", strategy=("recursive", STRATEGIES)),
+                    RECURSIVE),
+    "nine_bunnies": ("nine-bunnies", dict(seed=2, reading=2, frame=50),
+                     dict(variant=("deferred", STRATEGIES), reading="one body, one freedom", density="dense"), None),
+    "stability_map": ("stability-map", dict(level=4), dict(volume="sphere", precision="float32", source="fcl-obb",
+                                                           stressor="offset"), None),
+    "triangles_error": ("triangles-error", dict(set=2), dict(test="moller", set="random"), None),
+}
+PRINTS = {"hierarchies"}  # and draws nothing
+# Drawn together with others, without a name of their own; or on one line with all that are the same.
+POOLED = {"cost_model": ["strategy"], "stability_map": ["volume"]}
+
+
+class Scripts(unittest.TestCase):
+    def test_every_script(self):
+        scripts = {path.stem for path in PLOTS.glob("*.py") if "def main(" in path.read_text()}
+        self.assertEqual(scripts, set(SPECS), "a script that is not tested, or is no more")
+        for script, (name, keep, strangers, peer_like) in SPECS.items():
+            with self.subTest(script), tempfile.TemporaryDirectory() as folder:
+                record = small_record(name, Path(folder) / "record", keep, strangers, peer_like)
+                words = [f"{script}.py", str(record)] + ([] if script in PRINTS else ["--out", folder])
+                with mock.patch.object(sys, "argv", words):
+                    seen = Seen(self, importlib.import_module(script).main)
+                self.assertEqual(bool(seen.paths), script not in PRINTS)
+                seen.said += seen.printed if script in PRINTS else ""
+                pooled = [stranger(column) for column in POOLED.get(script, [])]
+                seen.check(self, [n for n in names_added(strangers, peer_like) if n not in pooled])
+
+
+if __name__ == "__main__":
+    unittest.main()
