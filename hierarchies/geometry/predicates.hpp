@@ -50,8 +50,8 @@ int wide_orientation(const double* a, const double* b, const double* c, int i, i
       .sign();
 }
 
-/// Float64 coordinates as 60-bit integers of one common unit, where they are such: a scaling, a
-/// conversion and a comparison each, and most of what a filter leaves open passes.
+/// Float64 coordinates as 60-bit integers of one common unit, where they are such: two scalings,
+/// two conversions and a comparison each, and most of what a filter leaves open passes.
 template <int N>
 struct FixedPoint {
   std::int64_t at[N];
@@ -63,16 +63,18 @@ struct FixedPoint {
     for (int i = 0; i < N; ++i)
       largest = std::max(largest, std::bit_cast<std::uint64_t>(std::abs(x[i])));
     const int exponent = static_cast<int>(largest >> 52);
-    // 2^60 / 2^(exponent - 1022) has to be a normal number.
+    // 2^60 / 2^(exponent - 1022) and its inverse, the unit, have to be normal numbers.
     exact = exponent > 60 && exponent < 2046;
     if (!exact) return;
     const auto scale =
         std::bit_cast<double>(static_cast<std::uint64_t>(2045 + 60 - exponent) << 52);
+    const auto unit = std::bit_cast<double>(static_cast<std::uint64_t>(exponent - 59) << 52);
     int off = 0;
     for (int i = 0; i < N; ++i) {
-      const double scaled = x[i] * scale;
-      at[i] = static_cast<std::int64_t>(scaled);
-      off |= static_cast<double>(at[i]) != scaled;
+      at[i] = static_cast<std::int64_t>(x[i] * scale);
+      // Held against x, not against its scaling: that is 0 where x is small enough beside the
+      // largest, by a factor of about 2^1133.
+      off |= static_cast<double>(at[i]) * unit != x[i];
     }
     exact = off == 0;
   }
@@ -169,12 +171,15 @@ static_assert(33 * 64 - 3 >= 1074 + 1024);
 /// they turn counterclockwise, 0 where all four lie in one plane, else -1. Exact for finite
 /// coordinates.
 ///
-/// Filter: each difference carries one rounding (factor 1+u), each of the six triple products two
-/// more and the subtraction inside its minor one, the two last sums two: in all at most 7u + O(u^2)
-/// of the sum P of the magnitudes of the six products, and P as computed is at most 7u + O(u^2)
-/// of itself too small, so that (7 + 56 u) u P bounds the error [shewchuk1997adaptive, orient3d's bound A].
-/// Underflow adds at most 2^-1075 to each product: to a minor's products, where it is multiplied
-/// by a difference below 2^340, and to the three last ones; 2^-700 bounds that, in P too.
+/// Filter: each of three differences carries one rounding (factor 1+u), each of the six triple
+/// products two more, the subtraction inside its minor one and the first of the two last sums one;
+/// the last sum's own rounding changes no sign. In all that is at most 7u + O(u^2) of the sum P of
+/// the magnitudes of the six products, and P as computed is at most 7u + O(u^2) of itself too
+/// small, so that (7 + 56 u) u P bounds the error [shewchuk1997adaptive, orient3d's bound A].
+/// Range: differences of float64 never underflow. Each product is off by at most 2^-1075 more: a
+/// minor's two, which are multiplied by a difference below 2^340 (`reach`), and the three last
+/// ones; 2^-700 bounds the sum, in P too. What overflows makes P infinite or no number, and the
+/// question goes to the integers.
 inline int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c,
                        const Vec3<double>& d) {
   constexpr double u = unit_roundoff<double>;
@@ -194,8 +199,9 @@ inline int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<
 }
 
 /// The same in the plane of the coordinates i and j: 1 where a, b, c turn counterclockwise.
-/// Filter: (3 + 16 u) u times the magnitudes [shewchuk1997adaptive, orient2d's bound A], and 2^-1000 for
-/// what may underflow.
+/// Filter: (3 + 16 u) u times the magnitudes [shewchuk1997adaptive, orient2d's bound A], and
+/// 2^-1000 for the two products, which may underflow. Where one overflows, the magnitude is not
+/// below 2^1020.
 inline int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c, int i,
                        int j) {
   constexpr double u = unit_roundoff<double>;
