@@ -50,8 +50,8 @@ int wide_orientation(const double* a, const double* b, const double* c, int i, i
       .sign();
 }
 
-/// Float64 coordinates as 60-bit integers of one common unit, where they are such: two scalings,
-/// two conversions and a comparison each, and most of what a filter leaves open passes.
+/// Float64 coordinates as 60-bit integers of one common unit, where they are such: a scaling, a
+/// conversion and a comparison each, and most of what a filter leaves open passes.
 template <int N>
 struct FixedPoint {
   std::int64_t at[N];
@@ -63,19 +63,21 @@ struct FixedPoint {
     for (int i = 0; i < N; ++i)
       largest = std::max(largest, std::bit_cast<std::uint64_t>(std::abs(x[i])));
     const int exponent = static_cast<int>(largest >> 52);
-    // 2^60 / 2^(exponent - 1022) and its inverse, the unit, have to be normal numbers.
+    // 2^60 / 2^(exponent - 1022) has to be a normal number.
     exact = exponent > 60 && exponent < 2046;
     if (!exact) return;
     const auto scale =
         std::bit_cast<double>(static_cast<std::uint64_t>(2045 + 60 - exponent) << 52);
-    const auto unit = std::bit_cast<double>(static_cast<std::uint64_t>(exponent - 59) << 52);
     int off = 0;
     for (int i = 0; i < N; ++i) {
-      at[i] = static_cast<std::int64_t>(x[i] * scale);
-      // Held against x, not against its scaling: that is 0 where x is small enough beside the
-      // largest, by a factor of about 2^1133.
-      off |= static_cast<double>(at[i]) * unit != x[i];
+      const double scaled = x[i] * scale;
+      at[i] = static_cast<std::int64_t>(scaled);
+      off |= static_cast<double>(at[i]) != scaled;
     }
+    // Scaled down (the largest is above 2^60), a number that is small enough has become 0, which
+    // looks like an integer: nothing but 0 may be one.
+    if (exponent > 1082)
+      for (int i = 0; i < N; ++i) off |= at[i] == 0 && x[i] != 0;
     exact = off == 0;
   }
 
