@@ -173,6 +173,27 @@ TEST(TriangleDistance, FeetNextToTheEndsOfLongEdges) {
     }
 }
 
+/// The same in any direction, and at any distance from the edge.
+TEST(TriangleDistance, CornersNextToTheEndsOfLongEdges) {
+  constexpr double u = unit_roundoff<double>;
+  TriangleSource source(19);
+  expect_right_on(4000, [&] {
+    const double length = std::ldexp(1 + source.uniform() / 2, source.integer(0, 57));
+    const Vec3<double> far = length * source.point();
+    const Vec3<double> across = far.cross(source.point()).normalized();
+    const double height = std::ldexp(1 + source.uniform() / 2, source.integer(-60, 2));
+    const Vec3<double> corner =
+        height * across + (source.integer(0, 8) * u * source.uniform() * length) * far.normalized();
+    const Vec3<double> beyond =
+        far + source.point() - (length * std::abs(source.uniform())) * across;
+    TrianglePair pair = {
+        Triangle{corner, corner + across + 0.3 * source.point(), corner + across + source.point()},
+        Triangle{far, Vec3<double>::Zero(), beyond}};
+    if (source.integer(0, 1)) std::swap(pair[1][0], pair[1][1]);
+    return pair;
+  });
+}
+
 /// Corners near each other, or far away by up to 10^17 times as much: in any direction, along an
 /// edge, or beside the other's.
 TEST(TriangleDistance, TrianglesFarLargerThanTheirDistance) {
@@ -224,6 +245,23 @@ TEST(TriangleDistance, SmallDifferencesOfUsualCoordinates) {
         return Vec3<double>(level, std::ldexp(p[1], exponent), std::ldexp(p[2], exponent));
       });
     });
+}
+
+/// Triangles so small that the squares of their areas underflow, but for a corner or two.
+TEST(TriangleDistance, SmallBesideOneCorner) {
+  TriangleSource source(20);
+  expect_right_on(2000, [&] {
+    TrianglePair pair = source.random();
+    const Vec3<double> by = 2 * source.point();
+    for (auto& p : pair[1]) p += by;
+    const int exponent = -source.integer(200, 560);
+    pair = TriangleSource::mapped(pair, [&](const auto& p) -> Vec3<double> {
+      return p.unaryExpr([&](double x) { return std::ldexp(x, exponent); });
+    });
+    for (auto& t : pair)
+      if (source.integer(0, 1)) t[source.integer(0, 2)] = source.grid_point();
+    return pair;
+  });
 }
 
 }  // namespace

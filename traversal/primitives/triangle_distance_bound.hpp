@@ -8,6 +8,9 @@
 /// triangles are apart. Squares are compared, with u the unit roundoff:
 /// - a vector r = w - s e - t f is off by 3 u R, R = |w| + 2 |s e| + 2 |t f| >= |r|, so its square
 ///   by less than 8 u R^2;
+/// - s of a point on an edge is off by less than 14 u M / |e|, M the longest w, so that a point
+/// that
+///   was clamped to an end may be inside: its square is too large by less than 2^-98 M^2;
 /// - s of two crossing directions, by cross products, is off by less than 32 u M / (|e| sin^2), M =
 ///   |w| + |e| + |f|, and t, made from s, by as much times |e| / |f| (each minor is off by 4 u of
 ///   its factors' lengths, three of them in a product divided by |e|^2 |f|^2 sin^2). A candidate is
@@ -18,8 +21,12 @@
 ///   both can be moved along until one is at an end (or, in a sliver, to an edge): r is orthogonal
 ///   to the way, and the square of the distance grows by at most min(|e|, |f|)^2 sin^2. The sine as
 ///   computed is off by less than 8 u.
-/// Magnitudes between 2^-100 and 2^100 keep products of four differences, multiples of 2^-153 then,
-/// from under- and overflowing; elsewhere the bound is 0.
+/// Range: no number is above 2^100, so that products of six differences are finite. Edges may be as
+/// short as they like, and what is made of their squares underflows: where |e|^2 |f|^2 is below
+/// 2^-800 the two are not crossed either, and to leave that out raises the square of the distance
+/// by less than min(|e|, |f|)^2 < 2^-399. Else |n|^2 is above 2^-840 where it counts. A point on an
+/// edge whose square underflows stands anywhere between its ends, which adds less than 2^-399, too,
+/// or is covered by the rounding of w.
 #pragma once
 
 #include "traversal/primitives/triangle_filter.hpp"
@@ -61,7 +68,11 @@ class DistanceBound {
   }
 
   S lower() const {
-    const S square = max(square_ - skipped_, S(0));
+    S longest = w_size_[0][0];
+    for (const auto& row : w_size_)
+      for (const S& size : row) longest = max(longest, size);
+    const S clamped = S(0x1p-98) * (longest * longest) + S(0x1p-399);
+    const S square = max(square_ - (skipped_ + clamped), S(0));
     constexpr double below = 1 - 8 * u;
     if constexpr (Batched<S>)
       return S([&](auto lane) { return std::sqrt(square[lane]) * below; });
@@ -117,7 +128,8 @@ class DistanceBound {
     const Vector<S> n = cross<S>(e, f);
     const S square = dot<S>(n, n), product = e_square * f_square;
     const S over_square = S(1) / square;
-    const Mask<S> wide = square >= 0x1p-40 * product && square > S(0);
+    const Mask<S> normal = product > S(0x1p-800);
+    const Mask<S> wide = normal && square >= 0x1p-40 * product;
     const S s = dot<S>(cross<S>(w, f), n) * over_square;
     const Vector<S> rest = {w[0] - s * e[0], w[1] - s * e[1], w[2] - s * e[2]};
     const S t = dot<S>(rest, f) * over_f_square;
@@ -131,9 +143,8 @@ class DistanceBound {
     const S lowered =
         dot<S>(r, r) - (S(8 * u) * (rounding * rounding) + S(0x1p-96) * (over_sine * (m * m)));
     square_ = min(square_, pick<S>(wide && inside, lowered, square_));
-    // Nothing to skip where an edge has no length.
     const S narrow = min(e_square, f_square) * (2 * (square / product) + S(0x1p-98));
-    skipped_ = max(skipped_, pick<S>(wide || product == S(0), S(0), narrow));
+    skipped_ = max(skipped_, pick<S>(normal && !wide, narrow, S(0)));
   }
 
   Vector<S> w_[3][3];
