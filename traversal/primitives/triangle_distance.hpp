@@ -98,6 +98,15 @@ Candidate<T> reached(const Vector<T>& w, const T& s, const Vector<T>& e, const T
   return candidate;
 }
 
+/// The vector w between two corners.
+template <class T>
+Candidate<T> corners_apart(const Vector<T>& w) {
+  Candidate<T> candidate;
+  candidate.squared = dot(w, w);
+  candidate.rounding = magnitude(w);
+  return candidate;
+}
+
 /// Corner p, edge a b: the point of the edge is a + s (b - a).
 ///
 /// s |e| is off by up to 12 u |w|, so that a point said to be at an end may be inside by as much.
@@ -108,9 +117,9 @@ template <class T>
 Candidate<T> corner_edge(const Vec3<double>& p, const Vec3<double>& a, const Vec3<double>& b) {
   const Vector<T> e = difference<T>(b, a), w = difference<T>(p, a);
   const T along = dot(w, e), length = dot(e, e);
-  if (!(along > T(0))) return reached<T>(w, T(0), e, T(0), e);
+  if (!(along > T(0))) return corners_apart<T>(w);
   if (!(along < length)) {
-    Candidate<T> end = reached<T>(difference<T>(p, b), T(0), e, T(0), e);
+    Candidate<T> end = corners_apart<T>(difference<T>(p, b));
     end.s = T(1);
     if (!(static_cast<double>(end.squared) > 0x1p-48 * static_cast<double>(length)))
       end.doubt = Doubt::open;
@@ -284,23 +293,21 @@ inline TriangleDistance apart(const Triangle& a, const Triangle& b) {
   std::array<Candidate<double>, candidates> all;
   double least = infinity;
   int best = 0;
-  bool parallel = false;
   for (int k = 0; k < candidates; ++k) {
     all[k] = candidate<double>(a, b, k);
     if (all[k].squared < least) least = all[k].squared, best = k;
-    parallel = parallel || all[k].doubt == Doubt::parallel;
   }
   // Below `reach` lies the nearest for certain, but for the doubtful.
   const auto error = [](const auto& c) { return 16 * u * c.rounding; };
-  const double reach = std::sqrt(least) + error(all[best]);
-  const bool far_apart = parallel && Extent(a, b).longest() <= 0x1p20 * std::sqrt(least);
+  const double nearest = std::sqrt(least), reach = nearest + error(all[best]);
+  const auto far_apart = [&] { return Extent(a, b).longest() <= 0x1p20 * nearest; };
   least = infinity;
   double s = 0, t = 0;
   for (int k = 0; k < candidates; ++k) {
     const auto& rough = all[k];
     const double value = std::sqrt(rough.squared);
     const bool certain =
-        rough.doubt == Doubt::none || (rough.doubt == Doubt::parallel && far_apart);
+        rough.doubt == Doubt::none || (rough.doubt == Doubt::parallel && far_apart());
     if (certain && (!(value < infinity) || value - error(rough) > reach)) continue;
     if (certain && rough.rounding <= 20 * value) {
       if (rough.squared < least) least = rough.squared, best = k, s = rough.s, t = rough.t;

@@ -8,9 +8,8 @@
 /// triangles are apart. Squares are compared, with u the unit roundoff:
 /// - a vector r = w - s e - t f is off by 3 u R, R = |w| + 2 |s e| + 2 |t f| >= |r|, so its square
 ///   by less than 8 u R^2;
-/// - s of a point on an edge is off by less than 14 u M / |e|, M the longest w, so that a point
-/// that
-///   was clamped to an end may be inside: its square is too large by less than 2^-98 M^2;
+/// - s of a point on an edge is off by less than 14 u M / |e|, M the longest w, so that a point put
+///   at an end may be inside: its square is too large by less than 2^-98 M^2;
 /// - s of two crossing directions, by cross products, is off by less than 32 u M / (|e| sin^2), M =
 ///   |w| + |e| + |f|, and t, made from s, by as much times |e| / |f| (each minor is off by 4 u of
 ///   its factors' lengths, three of them in a product divided by |e|^2 |f|^2 sin^2). A candidate is
@@ -21,6 +20,7 @@
 ///   both can be moved along until one is at an end (or, in a sliver, to an edge): r is orthogonal
 ///   to the way, and the square of the distance grows by at most min(|e|, |f|)^2 sin^2. The sine as
 ///   computed is off by less than 8 u.
+/// The latter two may add up for one candidate: the larger is taken twice.
 /// Range: no number is above 2^100, so that products of six differences are finite. Edges may be as
 /// short as they like, and what is made of their squares underflows: where |e|^2 |f|^2 is below
 /// 2^-800 the two are not crossed either, and to leave that out raises the square of the distance
@@ -45,6 +45,10 @@ class DistanceBound {
     const Edges edges_a(a), edges_b(b);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) w_[i][j] = a[i] - b[j], w_size_[i][j] = size_of(w_[i][j]);
+    // `longest`: at least as long as any w.
+    const S longest =
+        w_size_[0][0] + ((edges_a.size[0] + edges_a.size[2]) + (edges_b.size[0] + edges_b.size[2]));
+    skipped_ = S(0x1p-97) * (longest * longest) + S(0x1p-398);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         const int next = j == 2 ? 0 : j + 1;
@@ -54,25 +58,23 @@ class DistanceBound {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         crossing<Inside::edges>(negative(w_[i][j]), w_size_[i][j], edges_a.vector[i],
-                                edges_a.square[i], edges_a.size[i], negative(edges_b.vector[j]),
-                                edges_b.square[j], edges_b.over_square[j], edges_b.size[j]);
+                                edges_a.square[i], edges_a.over_square[i], edges_a.size[i],
+                                negative(edges_b.vector[j]), edges_b.square[j],
+                                edges_b.over_square[j], edges_b.size[j]);
     for (int i = 0; i < 3; ++i) {
       // The face's directions from its first corner: its first edge, and its last one turned.
       crossing<Inside::face>(w_[i][0], w_size_[i][0], edges_b.vector[0], edges_b.square[0],
-                             edges_b.size[0], negative(edges_b.vector[2]), edges_b.square[2],
-                             edges_b.over_square[2], edges_b.size[2]);
+                             edges_b.over_square[0], edges_b.size[0], negative(edges_b.vector[2]),
+                             edges_b.square[2], edges_b.over_square[2], edges_b.size[2]);
       crossing<Inside::face>(negative(w_[0][i]), w_size_[0][i], edges_a.vector[0],
-                             edges_a.square[0], edges_a.size[0], negative(edges_a.vector[2]),
-                             edges_a.square[2], edges_a.over_square[2], edges_a.size[2]);
+                             edges_a.square[0], edges_a.over_square[0], edges_a.size[0],
+                             negative(edges_a.vector[2]), edges_a.square[2], edges_a.over_square[2],
+                             edges_a.size[2]);
     }
   }
 
   S lower() const {
-    S longest = w_size_[0][0];
-    for (const auto& row : w_size_)
-      for (const S& size : row) longest = max(longest, size);
-    const S clamped = S(0x1p-98) * (longest * longest) + S(0x1p-399);
-    const S square = max(square_ - (skipped_ + clamped), S(0));
+    const S square = max(square_ - skipped_, S(0));
     constexpr double below = 1 - 8 * u;
     if constexpr (Batched<S>)
       return S([&](auto lane) { return std::sqrt(square[lane]) * below; });
@@ -123,8 +125,9 @@ class DistanceBound {
   /// The least of w - s e - t f, where that is inside or nearly so.
   template <Inside kInside>
   [[gnu::always_inline]] void crossing(const Vector<S>& w, const S& w_size, const Vector<S>& e,
-                                       const S& e_square, const S& e_size, const Vector<S>& f,
-                                       const S& f_square, const S& over_f_square, const S& f_size) {
+                                       const S& e_square, const S& over_e_square, const S& e_size,
+                                       const Vector<S>& f, const S& f_square,
+                                       const S& over_f_square, const S& f_size) {
     const Vector<S> n = cross<S>(e, f);
     const S square = dot<S>(n, n), product = e_square * f_square;
     const S over_square = S(1) / square;
@@ -143,13 +146,15 @@ class DistanceBound {
     const S lowered =
         dot<S>(r, r) - (S(8 * u) * (rounding * rounding) + S(0x1p-96) * (over_sine * (m * m)));
     square_ = min(square_, pick<S>(wide && inside, lowered, square_));
-    const S narrow = min(e_square, f_square) * (2 * (square / product) + S(0x1p-98));
+    // Twice min(|e|, |f|)^2 (2 sin^2 + 2^-98), without a division.
+    const S narrow =
+        4 * (square * min(over_e_square, over_f_square)) + S(0x1p-97) * min(e_square, f_square);
     skipped_ = max(skipped_, pick<S>(normal && !wide, narrow, S(0)));
   }
 
   Vector<S> w_[3][3];
   S w_size_[3][3];
-  S square_, skipped_{0};
+  S square_, skipped_;
 };
 
 }  // namespace filter
