@@ -187,7 +187,7 @@ class Traversal {
       open_.push({0, 0});
     }
     while (!open_.empty() && !stopped) stopped = look_at<false>(take_open(), 0);
-    stopped = stopped || flush();
+    stopped = stopped || finish();
     if constexpr (Keeping::kept) {
       // What was pushed but not reached stays to be looked at next time.
       while (!open_.empty()) keeping_.front.add(open_.pop());
@@ -260,7 +260,7 @@ class Traversal {
       const Node &a = a_.hierarchy().node(pair.a), &b = b_.hierarchy().node(pair.b);
       if (keeping_.front.take_brief_look() && hits_still(a, b, witness)) return true;
       hold(a, b, witness);
-      if (flush()) return true;
+      if (finish()) return true;
     }
     auto& due = due_;
     keeping_.front.collect(now + query_.limit(), due);
@@ -281,6 +281,7 @@ class Traversal {
   /// dear as ten such looks.
   bool hits_still(const Node& a, const Node& b, std::uint32_t witness) requires Keeping::margins {
     if constexpr (Query::one_hit_is_enough && !wants_bound()) {
+      if (std::size_t{a.count} * b.count > portion) return false;
       hold(a, b, witness);
       const Outcome outcome = query_.primitives(pending_);
       if (outcome.enough) {
@@ -316,7 +317,7 @@ class Traversal {
       const Node& b = b_.hierarchy().node(pair.b);
       if (a.count && b.count) {
         hold(a, b, Outcome::none);
-        return flush();
+        return finish();
       }
       count_tests(2);
       if (descends_b(a, b)) {
@@ -385,7 +386,7 @@ class Traversal {
     // Margins are found for a batch at once.
     constexpr std::size_t patience =
         std::max<std::size_t>(Query::patience, Keeping::margins ? 7 : 0);
-    return pending_.size() > patience && flush();
+    return stopped_in_leaves() || (pending_.size() > patience && flush());
   }
 
   /// A pair that is not excluded: its triangles are held, or it is descended.
@@ -502,12 +503,44 @@ class Traversal {
     }
   }
 
+  /// The triangles of two leaves, to be tested with others.
   void hold(const Node& a, const Node& b, std::size_t slot) {
+    if (pending_.size() + std::size_t{a.count} * b.count > room_)
+      return hand_over_in_portions(a, b, slot);
     for (std::uint32_t i = a.first; i < a.first + a.count; ++i)
       for (std::uint32_t j = b.first; j < b.first + b.count; ++j)
         pending_.push_back({&a_.triangle(i), &b_.triangle(j), a_.hierarchy().primitive(i),
                             b_.hierarchy().primitive(j), slot});
   }
+
+  /// The same where they are too many to be held at once: they are tested, until the query has had
+  /// enough. After that nothing is: what is added to the front is to be looked at next time.
+  [[gnu::noinline]] void hand_over_in_portions(const Node& a, const Node& b, std::size_t slot) {
+    const auto test = [&] {
+      if (!stopped_in_leaves() && flush()) room_ = 0;
+    };
+    test();  // those of other leaves
+    float deadline = std::numeric_limits<float>::infinity();
+    const auto test_these = [&] {
+      test();
+      // Each portion gives the entry a deadline of its own; the first of them counts.
+      if constexpr (Keeping::margins)
+        if (slot != Outcome::none) deadline = std::min(deadline, keeping_.front.deadline(slot));
+    };
+    for (std::uint32_t i = a.first; i < a.first + a.count && !stopped_in_leaves(); ++i)
+      for (std::uint32_t j = b.first; j < b.first + b.count && !stopped_in_leaves(); ++j) {
+        pending_.push_back({&a_.triangle(i), &b_.triangle(j), a_.hierarchy().primitive(i),
+                            b_.hierarchy().primitive(j), slot});
+        if (pending_.size() == portion) test_these();
+      }
+    if (!pending_.empty()) test_these();
+    if constexpr (Keeping::margins)
+      if (slot != Outcome::none)
+        keeping_.front.expire_at(slot, stopped_in_leaves() ? MarginFront::passed : deadline);
+  }
+
+  bool stopped_in_leaves() const { return room_ == 0; }
+  bool finish() { return stopped_in_leaves() || flush(); }
 
   bool flush() {
     if (pending_.empty()) return false;
@@ -554,6 +587,10 @@ class Traversal {
       first = i;
     }
   }
+
+  /// So many candidates are held at once, whatever the size of leaves.
+  static constexpr std::size_t portion = 4096;
+  std::size_t room_ = portion;  // 0 once the query has had enough of a pair of leaves
 
   static constexpr double lasting = 8;  // runs for which a witness is worth its margin
 

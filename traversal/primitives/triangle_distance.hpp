@@ -9,7 +9,7 @@
 ///
 /// Error: with d the true distance and L the largest difference of coordinates in the pair, the
 /// distance is off by at most 1e-14 d + 2^-90 L + 2^-1074, whatever finite corners: where the
-/// triangles are 10^12 times as large as their distance, that is still 1e-14 of it. (It is infinite
+/// triangles are 10^13 times as large as their distance, that is still 1e-14 of it. (It is infinite
 /// where it is beyond the largest number.) A candidate's vector r = w - s e - t f carries the
 /// roundings of its terms, 3 u R, R = |w| + 2 |s e| + 2 |t f|, to first order. An error of s and t,
 /// at most 12 u R along e and f, stays in r at a right angle, since r is stationary in them: in
