@@ -76,6 +76,7 @@ class Budgeted {
                             const PatchSizes& sizes_b, std::uint64_t budget, TriangleTest test,
                             Counter& counter) {
     queue_.clear();
+    pending_.clear();
     BudgetedAnswer answer;
     a.require(0, counter);
     b.require(0, counter);
@@ -85,10 +86,10 @@ class Budgeted {
       answer.tests += static_cast<std::uint64_t>(count);
       counter.tested(static_cast<std::uint64_t>(count));
       std::uint64_t open = ~excluded(a, b, count) & ((std::uint64_t{2} << (count - 1)) - 1);
-      pending_.clear();
-      for (; open; open &= open - 1) split(a, sizes_a, b, sizes_b, std::countr_zero(open), counter);
-      counter.primitives(pending_.size());
-      if (for_each_hit(pending_, test, [](std::size_t) { return true; }) < pending_.size()) {
+      bool hit = false;
+      for (; open && !hit; open &= open - 1)
+        hit = split(a, sizes_a, b, sizes_b, std::countr_zero(open), test, counter);
+      if (hit || one_touches(test, counter)) {
         answer.known = Known::touching;
         return answer;
       }
@@ -131,16 +132,31 @@ class Budgeted {
                            gather<B>(b.volumes(), nodes_b_.data())));
   }
 
+  /// Whether one of the candidates held does; they are let go.
   template <class Counter>
-  void split(Body<V>& a, const PatchSizes& sizes_a, Body<V>& b, const PatchSizes& sizes_b, int lane,
-             Counter& counter) {
+  bool one_touches(TriangleTest test, Counter& counter) {
+    counter.primitives(pending_.size());
+    const bool hit =
+        for_each_hit(pending_, test, [](std::size_t) { return true; }) < pending_.size();
+    pending_.clear();
+    return hit;
+  }
+
+  /// Two children are put in the queue, or candidates held. Says whether one touches: they are
+  /// tested where they become too many, however large the leaves are.
+  template <class Counter>
+  bool split(Body<V>& a, const PatchSizes& sizes_a, Body<V>& b, const PatchSizes& sizes_b, int lane,
+             TriangleTest test, Counter& counter) {
+    constexpr std::size_t portion = 4096;
     const std::uint32_t i = nodes_a_[lane], j = nodes_b_[lane];
     const auto& node_a = a.hierarchy().node(i);
     const auto& node_b = b.hierarchy().node(j);
     if (node_a.count && node_b.count) {
       for (std::uint32_t s = node_a.first; s < node_a.first + node_a.count; ++s)
-        for (std::uint32_t t = node_b.first; t < node_b.first + node_b.count; ++t)
+        for (std::uint32_t t = node_b.first; t < node_b.first + node_b.count; ++t) {
           pending_.push_back({&a.triangle(s), &b.triangle(t), 0, 0, 0});
+          if (pending_.size() == portion && one_touches(test, counter)) return true;
+        }
     } else if (node_a.count || (!node_b.count && sizes_b[j] > sizes_a[i])) {
       b.require(node_b.first, counter);
       for (const std::uint32_t child : {node_b.first, node_b.first + 1})
@@ -150,6 +166,7 @@ class Budgeted {
       for (const std::uint32_t child : {node_a.first, node_a.first + 1})
         push({std::min(sizes_a[child], sizes_b[j]), child, j});
     }
+    return false;
   }
 
   /// What a rotation that is not quite one, and rounding to float64, make of the largest size.

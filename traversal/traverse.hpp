@@ -136,6 +136,7 @@ class Traversal {
         query_(query),
         counter_(counter),
         keeping_(keeping),
+        workspace_(workspace),
         open_(workspace.open),
         pending_(workspace.pending),
         verdicts_(workspace.verdicts),
@@ -162,7 +163,7 @@ class Traversal {
       open_.push({0, 0});
     }
     while (!open_.empty() && !stopped) stopped = look_at<false>(take_open(), 0);
-    stopped = stopped || flush();
+    stopped = stopped || flush_unless_enough();
     if constexpr (Keeping::kept) {
       // What was pushed but not reached stays to be looked at next time.
       while (!open_.empty()) keeping_.front.add(open_.pop());
@@ -235,7 +236,7 @@ class Traversal {
       const Node &a = a_.hierarchy().node(pair.a), &b = b_.hierarchy().node(pair.b);
       if (keeping_.front.take_brief_look() && hits_still(a, b, witness)) return true;
       hold(a, b, witness);
-      if (flush()) return true;
+      if (flush_unless_enough()) return true;
     }
     auto& due = due_;
     keeping_.front.collect(now + query_.limit(), due);
@@ -256,6 +257,7 @@ class Traversal {
   /// dear as ten such looks.
   bool hits_still(const Node& a, const Node& b, std::uint32_t witness) requires Keeping::margins {
     if constexpr (Query::one_hit_is_enough && !wants_bound()) {
+      if (std::size_t{a.count} * b.count > portion) return false;
       hold(a, b, witness);
       const Outcome outcome = query_.primitives(pending_);
       if (outcome.enough) {
@@ -291,7 +293,7 @@ class Traversal {
       const Node& b = b_.hierarchy().node(pair.b);
       if (a.count && b.count) {
         hold(a, b, Outcome::none);
-        return flush();
+        return flush_unless_enough();
       }
       count_tests(2);
       if (descends_b(a, b)) {
@@ -360,7 +362,7 @@ class Traversal {
     // Margins are found for a batch at once.
     constexpr std::size_t patience =
         std::max<std::size_t>(Query::patience, Keeping::margins ? 7 : 0);
-    return pending_.size() > patience && flush();
+    return (enough_ || pending_.size() > patience) && flush_unless_enough();
   }
 
   /// A pair that is not excluded: its triangles are held, or it is descended.
@@ -477,27 +479,90 @@ class Traversal {
     }
   }
 
+  /// The triangles of two leaves, to be tested with others; by themselves, so many at a time, where
+  /// they are too many to be held at once.
   void hold(const Node& a, const Node& b, std::size_t slot) {
+    if (std::size_t{a.count} * b.count > portion) [[unlikely]] {
+      const Portions done =
+          in_portions(a_, b_, query_, counter_, keeping_, workspace_, a, b, slot, enough_);
+      enough_ = done.enough;
+      walked_.triangles += done.triangles;
+      if (done.witness != Outcome::none) witness_ = done.witness;
+      return;
+    }
     for (std::uint32_t i = a.first; i < a.first + a.count; ++i)
-      for (std::uint32_t j = b.first; j < b.first + b.count; ++j)
-        pending_.push_back({&a_.triangle(i), &b_.triangle(j), a_.hierarchy().primitive(i),
-                            b_.hierarchy().primitive(j), slot});
+      for (std::uint32_t j = b.first; j < b.first + b.count; ++j) hold_pair(i, j, slot);
   }
 
-  bool flush() {
+  void hold_pair(std::uint32_t i, std::uint32_t j, std::size_t slot) {
+    pending_.push_back({&a_.triangle(i), &b_.triangle(j), a_.hierarchy().primitive(i),
+                        b_.hierarchy().primitive(j), slot});
+  }
+
+  struct Portions {
+    bool enough;
+    std::size_t triangles, witness;
+  };
+
+  /// Tests all that is held, then the triangles of two leaves until the query has had enough. By
+  /// a traversal of its own, so that no other one has to stay in memory for what is so rare.
+  [[gnu::noinline]] static Portions in_portions(Body<V>& body_a, Body<V>& body_b, Query& query,
+                                                Counter& counter, Keeping keeping,
+                                                Workspace& workspace, const Node& a, const Node& b,
+                                                std::size_t slot, bool enough) {
+    Traversal own(body_a, body_b, query, counter, keeping, workspace);
+    enough = enough || own.flush();
+    float deadline = std::numeric_limits<float>::infinity();
+    const auto test = [&] {
+      enough = own.flush();
+      // Each portion gives the entry a deadline of its own; the first of them counts.
+      if constexpr (Keeping::margins)
+        if (slot != Outcome::none) deadline = std::min(deadline, keeping.front.deadline(slot));
+    };
+    for (std::uint32_t i = a.first; i < a.first + a.count && !enough; ++i)
+      for (std::uint32_t j = b.first; j < b.first + b.count && !enough; ++j) {
+        own.hold_pair(i, j, slot);
+        if (own.pending_.size() == portion) test();
+      }
+    if (!enough && !own.pending_.empty()) test();
+    if constexpr (Keeping::margins)
+      if (slot != Outcome::none)
+        keeping.front.expire_at(slot, enough ? MarginFront::passed : deadline);
+    return {enough, own.walked_.triangles, own.witness_};
+  }
+
+  /// Tests what is held; nothing where the query has had enough of two leaves by themselves: what
+  /// came after them is to be looked at next time.
+  bool flush_unless_enough() {
+    if (!enough_) return flush();
+    if constexpr (Keeping::margins)
+      for (const Candidate& candidate : pending_)
+        if (candidate.slot != Outcome::none)
+          keeping_.front.expire_at(candidate.slot, MarginFront::passed);
+    pending_.clear();
+    return true;
+  }
+
+  // Small without margins, and the whole traversal stays in registers if it is inlined.
+  [[gnu::always_inline]] bool flush() {
     if (pending_.empty()) return false;
-    Outcome outcome;
     if constexpr (Keeping::margins) {
-      verdicts_.assign(pending_.size(), {});
-      outcome = query_.primitives(pending_, verdicts_);
-      settle();
+      return flush_with_margins();
     } else {
-      outcome = query_.primitives(pending_);
+      const Outcome outcome = query_.primitives(pending_);
+      if (outcome.witness != Outcome::none) witness_ = pending_[outcome.witness].slot;
+      count_primitives(outcome);
+      return outcome.enough;
     }
+  }
+
+  bool flush_with_margins() requires Keeping::margins {
+    verdicts_.assign(pending_.size(), {});
+    const Outcome outcome = query_.primitives(pending_, verdicts_);
+    settle();
     if (outcome.witness != Outcome::none) {
       witness_ = pending_[outcome.witness].slot;
-      if constexpr (Keeping::margins)
-        keeping_.front.expect(verdicts_[outcome.witness].margin < lasting * keeping_.step);
+      keeping_.front.expect(verdicts_[outcome.witness].margin < lasting * keeping_.step);
     }
     count_primitives(outcome);
     return outcome.enough;
@@ -530,6 +595,10 @@ class Traversal {
     }
   }
 
+  /// Two leaves with more candidates are tested by themselves, so many at a time.
+  static constexpr std::size_t portion = 512;
+  bool enough_ = false;  // the query has had enough of two such leaves
+
   static constexpr double lasting = 8;  // runs for which a witness is worth its margin
 
   Body<V>& a_;
@@ -537,6 +606,7 @@ class Traversal {
   Query& query_;
   Counter& counter_;
   Keeping keeping_;
+  Workspace& workspace_;
   OpenPairs& open_;
   std::vector<Candidate>& pending_;
   std::vector<Verdict>& verdicts_;

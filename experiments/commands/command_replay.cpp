@@ -156,6 +156,7 @@ void run(const Arguments& arguments) {
   std::vector<TriangleMesh> meshes;
   for (const auto& file : arguments.meshes) meshes.push_back(read_mesh(file));
   const Trace trace = read_trace(arguments.trace);
+  require_finite_corners(trace, arguments.trace, meshes);
   const Count count = arguments.count == "on" ? Count::on : Count::off;
   if (arguments.budget) {
     const BudgetedResult result =

@@ -58,6 +58,16 @@ Rational corners_to_hull(const Triangle& corners, const Triangle& t) {
 
 }  // namespace
 
+int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c,
+                const Vec3<double>& d) {
+  return static_cast<int>(CGAL::orientation(point(a), point(b), point(c), point(d)));
+}
+
+int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c, int i, int j) {
+  const auto seen = [&](const Vec3<double>& p) { return Kernel::Point_2(p[i], p[j]); };
+  return static_cast<int>(CGAL::orientation(seen(a), seen(b), seen(c)));
+}
+
 bool without_area(const Triangle& t) {
   return CGAL::collinear(point(t[0]), point(t[1]), point(t[2]));
 }

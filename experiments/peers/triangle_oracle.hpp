@@ -10,6 +10,11 @@ namespace bvlab::oracle {
 /// Whether the closed triangles share a point; either may be a segment or a point.
 bool intersect(const Triangle& a, const Triangle& b);
 
+/// The sign of det [b-a, c-a, d-a], and of the same in the plane of the coordinates i and j.
+int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c,
+                const Vec3<double>& d);
+int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c, int i, int j);
+
 /// Whether the corners lie in one line.
 bool without_area(const Triangle& t);
 

@@ -121,8 +121,12 @@ class Values {
     if (!TextScanner::parse(word, value))
       text_.fault(TextScanner::shown(word) + " is not a number");
     // The file declares how many digits count.
-    return type == Type::float32 ? static_cast<double>(static_cast<float>(value)) : value;
+    if (type == Type::float32) value = static_cast<double>(static_cast<float>(value));
+    vanished_ = TextScanner::vanishes(word, value);
+    return value;
   }
+  /// Whether the last one was written as a number other than 0, and is 0.
+  bool vanished() const { return vanished_; }
   std::size_t bytes_left() const {
     return format_ == Format::text ? text_.bytes_left() : binary_.size();
   }
@@ -167,6 +171,7 @@ class Values {
   TextScanner text_;
   std::string_view binary_;
   Format format_;
+  bool vanished_ = false;
 };
 
 class Reader {
@@ -215,7 +220,11 @@ class Reader {
       if (!property.count) {
         const double x = value(element, number, property.type);
         for (int d = 0; d < 3; ++d)
-          if (property.name.size() == 1 && property.name[0] == 'x' + d) point[d] = x;
+          if (property.name.size() == 1 && property.name[0] == 'x' + d) {
+            if (values_.vanished())
+              fault(element, number, "a coordinate is too small for its type");
+            point[d] = x;
+          }
         continue;
       }
       const double length = value(element, number, *property.count);

@@ -22,7 +22,8 @@ namespace bvlab {
 
 /// The mesh in a file, its format told by the name's extension. Throws Unusable, with one line that
 /// names the file, what is wrong and where, if the file is missing, truncated or no mesh, if it has
-/// no triangle, an index out of range, or a coordinate that is NaN or infinite.
+/// no triangle, an index out of range, or a coordinate that is NaN or infinite, or that is written
+/// as a number too small to be told from 0.
 TriangleMesh read_mesh(const std::filesystem::path& path);
 
 /// The same from bytes in memory; `name` stands in for the file, in messages and for its extension.

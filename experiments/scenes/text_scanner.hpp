@@ -61,6 +61,7 @@ class TextScanner {
     double value = 0;
     if (!parse(text, value)) fault(shown(text) + " is not a number");
     if (!std::isfinite(value)) fault("coordinate " + shown(text) + " is not finite");
+    if (vanishes(text, value)) fault("coordinate " + shown(text) + " is too small for float64");
     return value;
   }
 
@@ -89,6 +90,12 @@ class TextScanner {
     if (error == std::errc::result_out_of_range)
       value = std::strtod(std::string(text).c_str(), nullptr);
     return error == std::errc{} || error == std::errc::result_out_of_range;
+  }
+
+  /// Whether a number that is not 0 has become 0.
+  static bool vanishes(std::string_view text, double value) {
+    const std::string_view digits = text.substr(0, text.find_first_of("eE"));
+    return value == 0 && digits.find_first_of("123456789") != std::string_view::npos;
   }
 
   std::size_t line_number() const { return number_; }

@@ -36,6 +36,33 @@ Trace parse_trace(std::string_view bytes, const std::string& name) {
   return trace;
 }
 
+void require_finite_corners(const Trace& trace, const std::string& name,
+                            std::span<const TriangleMesh> meshes) {
+  // No component of R v + t is above 3.1 |v| + |t|, summed up as it may be.
+  constexpr double safe = std::numeric_limits<double>::max() / 8;
+  std::vector<bool> small;
+  for (const TriangleMesh& mesh : meshes)
+    small.push_back(std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                                [](const auto& v) { return v.cwiseAbs().maxCoeff() < safe; }));
+  std::vector<Pose> poses(trace.objects);
+  for (std::size_t frame = 0; frame < trace.frames && trace.objects > 0; ++frame) {
+    const double* v = trace.values.data() + frame * trace.objects * 7;
+    bool posed = false;
+    for (std::size_t object = 0; object < trace.objects; ++object, v += 7) {
+      const auto small_number = [](double x) { return std::abs(x) < safe; };
+      const std::size_t mesh = object % meshes.size();
+      if (small[mesh] && std::all_of(v, v + 3, small_number)) continue;
+      if (!posed) trace.poses(frame, poses), posed = true;
+      for (const auto& triangle : meshes[mesh].triangles)
+        for (const auto vertex : triangle)
+          if (!poses[object](meshes[mesh].vertices[vertex]).allFinite())
+            throw Unusable(name, "vertex " + std::to_string(vertex) +
+                                     " is beyond the largest number in frame " +
+                                     std::to_string(frame) + ", object " + std::to_string(object));
+    }
+  }
+}
+
 Trace read_trace(const std::string& path) { return parse_trace(read_whole(path), path); }
 
 }  // namespace bvlab

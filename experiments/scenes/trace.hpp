@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hierarchies/geometry/pose.hpp"
+#include "hierarchies/geometry/triangle_mesh.hpp"
 
 namespace bvlab {
 
@@ -29,5 +30,11 @@ Trace read_trace(const std::string& path);
 
 /// The same from bytes in memory; `name` stands in for the file in messages.
 Trace parse_trace(std::string_view bytes, const std::string& name);
+
+/// Refuses a trace by which a corner of a triangle does not stand in float64: where it overflows.
+/// Object i uses mesh i mod their number; `name` is the trace's, for the message. O(frames objects)
+/// unless numbers are near the largest there are.
+void require_finite_corners(const Trace& trace, const std::string& name,
+                            std::span<const TriangleMesh> meshes);
 
 }  // namespace bvlab

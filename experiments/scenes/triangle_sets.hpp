@@ -67,6 +67,61 @@ class TriangleSource {
       return p;
     });
   }
+  /// Numbers from all over the range of doubles, made of a few powers of two from `least` to `most`
+  /// so that sums and products of some meet others: zeros, single powers, sums of two of them with
+  /// nothing between, and the same with all their digits.
+  class AnyMagnitude {
+   public:
+    AnyMagnitude(TriangleSource& source, int least, int most) : source_(source) {
+      for (int& exponent : exponents_) exponent = source.integer(least, most);
+      // The ends of the range oftener than chance has it.
+      if (source.integer(0, 2) == 0) exponents_[0] = least;
+      if (source.integer(0, 2) == 0) exponents_[1] = most;
+    }
+    double operator()() {
+      switch (source_.integer(0, 7)) {
+        case 0:
+        case 1:
+          return 0;
+        case 2:
+          return some() + some();
+        case 3:
+          return some() * source_.uniform();
+        default:
+          return some();
+      }
+    }
+    Vec3<double> point() {
+      const double x = (*this)(), y = (*this)(), z = (*this)();
+      return {x, y, z};
+    }
+
+   private:
+    double some() { return std::ldexp(source_.integer(-3, 3), exponents_[source_.integer(0, 2)]); }
+    TriangleSource& source_;
+    int exponents_[3];
+  };
+
+  /// Corners of such numbers, finite up to most = 1020; sometimes
+  /// all in a plane, or one of them an inner point of the other triangle, up to rounding.
+  TrianglePair any_magnitude(int least = -1074, int most = 1020) {
+    AnyMagnitude number(*this, least, most);
+    TrianglePair pair = corners([&] { return number.point(); });
+    if (integer(0, 3) == 0) {
+      const int flat = integer(0, 2);
+      const double level = number();
+      pair = mapped(pair, [&](Vec3<double> p) {
+        p[flat] = level;
+        return p;
+      });
+    }
+    if (integer(0, 3) == 0) {
+      const auto& [a, b, c] = pair[0];
+      pair[1][integer(0, 2)] = 0.5 * a + 0.25 * b + 0.25 * c;
+    }
+    return pair;
+  }
+
   TrianglePair rotated(const TrianglePair& pair) {
     const Mat3<double> turn = rotation();
     return mapped(pair, [&](const auto& p) -> Vec3<double> { return turn * p; });

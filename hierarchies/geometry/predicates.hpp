@@ -74,6 +74,10 @@ struct FixedPoint {
       at[i] = static_cast<std::int64_t>(scaled);
       off |= static_cast<double>(at[i]) != scaled;
     }
+    // Scaled down (the largest is above 2^60), a number that is small enough has become 0, which
+    // looks like an integer: nothing but 0 may be one.
+    if (exponent > 1082)
+      for (int i = 0; i < N; ++i) off |= at[i] == 0 && x[i] != 0;
     exact = off == 0;
   }
 
@@ -169,13 +173,15 @@ static_assert(33 * 64 - 3 >= 1074 + 1024);
 /// they turn counterclockwise, 0 where all four lie in one plane, else -1. Exact for finite
 /// coordinates.
 ///
-/// Filter: each difference carries one rounding (factor 1+u), each of the six triple products two
-/// more and the subtraction inside its minor one, the two last sums two: in all at most 7u + O(u^2)
-/// of the sum P of the magnitudes of the six products, and P as computed is at most 7u + O(u^2)
-/// of itself too small, so that (7 + 56 u) u P bounds the error [shewchuk1997adaptive, orient3d's
-/// bound A]. Underflow adds at most 2^-1075 to each product: to a minor's products, where it is
-/// multiplied by a difference below 2^340, and to the three last ones; 2^-700 bounds that, in P
-/// too.
+/// Filter: each of three differences carries one rounding (factor 1+u), each of the six triple
+/// products two more, the subtraction inside its minor one and the first of the two last sums one;
+/// the last sum's own rounding changes no sign. In all that is at most 7u + O(u^2) of the sum P of
+/// the magnitudes of the six products, and P as computed is at most 7u + O(u^2) of itself too
+/// small, so that (7 + 56 u) u P bounds the error [shewchuk1997adaptive, orient3d's bound A].
+/// Range: differences of float64 never underflow. Each product is off by at most 2^-1075 more: a
+/// minor's two, which are multiplied by a difference below 2^340 (`reach`), and the three last
+/// ones; 2^-700 bounds the sum, in P too. What overflows makes P infinite or no number, and the
+/// question goes to the integers.
 inline int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c,
                        const Vec3<double>& d) {
   constexpr double u = unit_roundoff<double>;
@@ -196,7 +202,8 @@ inline int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<
 
 /// The same in the plane of the coordinates i and j: 1 where a, b, c turn counterclockwise.
 /// Filter: (3 + 16 u) u times the magnitudes [shewchuk1997adaptive, orient2d's bound A], and
-/// 2^-1000 for what may underflow.
+/// 2^-1000 for the two products, which may underflow. Where one overflows, the magnitude is not
+/// below 2^1020.
 inline int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c, int i,
                        int j) {
   constexpr double u = unit_roundoff<double>;

@@ -67,8 +67,10 @@ void expect_right(const TrianglePair& pair) {
   expect_bounded(pair, truth);
   ASSERT_EQ(found.distance == 0, truth == 0) << shown(pair);
   ++(truth == 0 ? meeting : apart);
-  const long double allowed =
-      1e-14L * truth + std::ldexp(extent(pair), -90) + std::numeric_limits<double>::denorm_min();
+  // The bound that the header states.
+  const long double allowed = 1e-14L * truth +
+                              std::ldexp(static_cast<long double>(extent(pair)), -90) +
+                              std::numeric_limits<double>::denorm_min();
   ASSERT_LE(std::abs(found.distance - truth), allowed)
       << shown(pair) << "off by " << (found.distance - truth) / truth << " of " << truth;
   ASSERT_LE(std::abs(found.distance - distance(b, a).distance), 2 * allowed) << shown(pair);
@@ -143,6 +145,123 @@ TEST(TriangleDistance, EveryScale) {
           return p.unaryExpr([&](double x) { return std::ldexp(x, exponent); });
         });
       });
+}
+
+/// The foot of the perpendicular lies next to an end of an edge, by less than rounding can tell
+/// along so long an edge, whichever end that is.
+TEST(TriangleDistance, FeetNextToTheEndsOfLongEdges) {
+  constexpr double u = unit_roundoff<double>;
+  TriangleSource source(18);
+  const auto expect_right_at = [&](double length, double foot) {
+    const Triangle upright = {Vec3<double>(-foot, 1, 0), Vec3<double>(-foot, 3, 1),
+                              Vec3<double>(-foot, 3, -1)};
+    const Triangle lying = {Vec3<double>(-length, 0, 0), Vec3<double>(0, 0, 0),
+                            Vec3<double>(-length, -length, 0)};
+    for (int turn = 0; turn < 3; ++turn)
+      for (const bool reversed : {false, true}) {
+        Triangle turned = {lying[turn], lying[(turn + 1) % 3], lying[(turn + 2) % 3]};
+        if (reversed) std::swap(turned[0], turned[1]);
+        expect_right({upright, turned});
+        expect_right({turned, upright});
+      }
+  };
+  expect_right_at(1e11, 5e-6);
+  for (int digits = 0; digits <= 17; ++digits)
+    for (int round = 0; round < 20 && !testing::Test::HasFatalFailure(); ++round) {
+      const double length = std::pow(10, digits) * (1 + source.uniform() / 2);
+      expect_right_at(length, source.uniform() * u * length * source.integer(0, 3));
+    }
+}
+
+/// The same in any direction, and at any distance from the edge.
+TEST(TriangleDistance, CornersNextToTheEndsOfLongEdges) {
+  constexpr double u = unit_roundoff<double>;
+  TriangleSource source(19);
+  expect_right_on(4000, [&] {
+    const double length = std::ldexp(1 + source.uniform() / 2, source.integer(0, 57));
+    const Vec3<double> far = length * source.point();
+    const Vec3<double> across = far.cross(source.point()).normalized();
+    const double height = std::ldexp(1 + source.uniform() / 2, source.integer(-60, 2));
+    const Vec3<double> corner =
+        height * across + (source.integer(0, 8) * u * source.uniform() * length) * far.normalized();
+    const Vec3<double> beyond =
+        far + source.point() - (length * std::abs(source.uniform())) * across;
+    TrianglePair pair = {
+        Triangle{corner, corner + across + 0.3 * source.point(), corner + across + source.point()},
+        Triangle{far, Vec3<double>::Zero(), beyond}};
+    if (source.integer(0, 1)) std::swap(pair[1][0], pair[1][1]);
+    return pair;
+  });
+}
+
+/// Corners near each other, or far away by up to 10^17 times as much: in any direction, along an
+/// edge, or beside the other's.
+TEST(TriangleDistance, TrianglesFarLargerThanTheirDistance) {
+  TriangleSource source(15);
+  const auto direction = [&]() -> Vec3<double> {
+    if (source.integer(0, 1)) return source.point();
+    return Vec3<double>(source.integer(-1, 1), source.integer(-1, 1), source.integer(-1, 1));
+  };
+  for (const int most : {10, 20, 30, 40, 50, 57})
+    expect_right_on(700, [&] {
+      TrianglePair pair = source.random();
+      const Vec3<double> by = source.point() + direction();
+      for (auto& p : pair[1]) p += by;
+      const Vec3<double> common = direction();
+      for (auto& t : pair) {
+        if (source.integer(0, 3) == 0) continue;
+        const Vec3<double> along = source.integer(0, 1) ? common : direction();
+        for (int far = source.integer(0, 1); far >= 0; --far) {
+          const int i = source.integer(0, 2);
+          const double factor = std::ldexp(1 + source.uniform() / 2, source.integer(0, most));
+          t[i] += factor * (source.integer(0, 2) ? along : -along);
+        }
+      }
+      return pair;
+    });
+}
+
+/// Numbers from all over the range of doubles within one pair.
+TEST(TriangleDistance, AnyMagnitudes) {
+  TriangleSource source(16);
+  expect_right_on(300, [&] { return source.any_magnitude(); });
+  for (const int most : {-1000, -700, -300, -50, 0, 50, 99})
+    expect_right_on(100, [&] { return source.any_magnitude(-1074, most); });
+  for (const int least : {-300, -100, -99, -40, 0})
+    expect_right_on(100, [&] { return source.any_magnitude(least, 99); });
+}
+
+/// Coordinates of usual magnitude in one plane, and next to each other in it: what matters is how
+/// far they differ, not how large they are.
+TEST(TriangleDistance, SmallDifferencesOfUsualCoordinates) {
+  TriangleSource source(17);
+  for (const int exponent : {-60, -99, -110, -250, -340, -540, -1000, -1060, 300})
+    expect_right_on(100, [&] {
+      TrianglePair pair = source.random();
+      const Vec3<double> by = 3 * source.point();
+      for (auto& p : pair[1]) p += by;
+      const double level = source.integer(0, 1) ? 1 : source.uniform();
+      return TriangleSource::mapped(pair, [&](const auto& p) {
+        return Vec3<double>(level, std::ldexp(p[1], exponent), std::ldexp(p[2], exponent));
+      });
+    });
+}
+
+/// Triangles so small that the squares of their areas underflow, but for a corner or two.
+TEST(TriangleDistance, SmallBesideOneCorner) {
+  TriangleSource source(20);
+  expect_right_on(2000, [&] {
+    TrianglePair pair = source.random();
+    const Vec3<double> by = 2 * source.point();
+    for (auto& p : pair[1]) p += by;
+    const int exponent = -source.integer(200, 560);
+    pair = TriangleSource::mapped(pair, [&](const auto& p) -> Vec3<double> {
+      return p.unaryExpr([&](double x) { return std::ldexp(x, exponent); });
+    });
+    for (auto& t : pair)
+      if (source.integer(0, 1)) t[source.integer(0, 2)] = source.grid_point();
+    return pair;
+  });
 }
 
 }  // namespace

@@ -122,6 +122,61 @@ TEST(TriangleIntersection, MixedMagnitudes) {
     });
 }
 
+/// Zeros, the least numbers there are and nearly the largest, within one predicate.
+TEST(Orientation, AnyMagnitudes) {
+  TriangleSource source(12);
+  int zeros = 0, others = 0;
+  for (int round = 0; round < 20000; ++round) {
+    const TrianglePair pair = source.any_magnitude(-1074, source.integer(-1000, 1020));
+    const auto& [a, b, c] = pair[0];
+    for (const auto& d : pair[1]) {
+      const int truth = oracle::orientation(a, b, c, d);
+      ++(truth == 0 ? zeros : others);
+      ASSERT_EQ(orientation(a, b, c, d), truth) << shown(pair);
+      ASSERT_EQ(orientation(b, a, c, d), -truth) << shown(pair);
+      ASSERT_EQ(orientation(d, c, b, a), truth) << shown(pair);
+    }
+    for (int i = 0; i < 3; ++i)
+      for (const auto& d : pair[1])
+        ASSERT_EQ(orientation(a, b, d, i, (i + 1) % 3),
+                  oracle::orientation(a, b, d, i, (i + 1) % 3))
+            << shown(pair);
+  }
+  EXPECT_GT(zeros, 5000);
+  EXPECT_GT(others, 5000);
+}
+
+/// Coordinates whose ratio is beyond 2^1133, so that the least vanish when the largest are scaled
+/// to integers of 60 digits: the first pair is apart (x > y at all corners of the second), the
+/// other one touches.
+TEST(TriangleIntersection, NumbersThatVanishBesideOthers) {
+  const Pair apart_by_the_least = {
+      Triangle{Vec3<double>(0, 0, 0), Vec3<double>(1e20, 1e20, 0), Vec3<double>(0, 0, 1e20)},
+      Triangle{Vec3<double>(5e-324, 0, 1e19), Vec3<double>(1e20, 0, 1e19),
+               Vec3<double>(1e20, 0, 2e19)}};
+  const Pair touching = {
+      Triangle{Vec3<double>(-1e-323, -2e-323, 0), Vec3<double>(0, 0, 0),
+               Vec3<double>(-5e-324, 7.378697629483821e19, 0)},
+      Triangle{Vec3<double>(-1.5e-323, 1e-323, 0), Vec3<double>(5e-324, -1.8446744073709552e19, 0),
+               Vec3<double>(2e-323, 0, 0)}};
+  for (const auto& [pair, truth] : {std::pair(apart_by_the_least, false), {touching, true}}) {
+    ASSERT_EQ(oracle::intersect(pair[0], pair[1]), truth);
+    expect_right(pair);
+    std::vector<Pair> batch(3, pair);
+    expect_right_at_once(batch);
+  }
+}
+
+TEST(TriangleIntersection, AnyMagnitudes) {
+  TriangleSource source(13);
+  expect_right_on(500, [&] { return source.any_magnitude(); });
+  // Nothing out of the filters' reach, so that all of them have their say.
+  for (const int most : {-1000, -700, -300, 0, 100, 300})
+    expect_right_on(150, [&] { return source.any_magnitude(-1074, most); });
+  for (const int least : {-300, -100, -40, 0})
+    expect_right_on(150, [&] { return source.any_magnitude(least, 330); });
+}
+
 TEST(TriangleIntersection, FarFromTheOrigin) {
   TriangleSource source(8);
   for (const double offset : {1e2, 1e4, 1e8, 1e12, 1e16})

@@ -57,6 +57,10 @@ TEST(ReadMesh, OffFaultsSayWhere) {
   EXPECT_EQ(off("OFF\n1 1 0\n0 0\n"), "a.off: line 3: a coordinate is missing");
   EXPECT_EQ(off("OFF\n1 1 0\n0 nan 0\n"), "a.off: line 3: coordinate 'nan' is not finite");
   EXPECT_EQ(off("OFF\n1 1 0\n0 1e999 0\n"), "a.off: line 3: coordinate '1e999' is not finite");
+  EXPECT_EQ(off("OFF\n1 1 0\n0 1e-400 0\n"),
+            "a.off: line 3: coordinate '1e-400' is too small for float64");
+  EXPECT_EQ(off("OFF\n1 1 0\n0 -0.00025E-323 0\n"),
+            "a.off: line 3: coordinate '-0.00025E-323' is too small for float64");
   EXPECT_EQ(off("OFF\n1 1 0\n0 x 0\n"), "a.off: line 3: 'x' is not a number");
   EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n3 0 0 1\n"),
             "a.off: line 4: vertex 1 does not exist: there are 1, from 0");
@@ -128,12 +132,21 @@ TEST(ReadMesh, PlyTextAndBinary) {
   EXPECT_EQ(ply("3 0 1 2", "3 0 1 -1"),
             "a.ply: face 0: a vertex that does not exist: there are 3, from 0");
   EXPECT_EQ(ply("3 0 1 2", "1e300 0 1 2"), "a.ply: face 0: a list of impossible length");
+  EXPECT_EQ(ply("0.1", "1e-400"), "a.ply: vertex 0: a coordinate is too small for its type");
   EXPECT_EQ(ply("0.1", "nan"), "a.ply: vertex 0: a coordinate is not finite");
   EXPECT_EQ(ply("vertex 3", "vertex 4000000000"),
             "a.ply: truncated: holds 5 of 4000000000 of element vertex");
   EXPECT_EQ(ply("double z", "double w"), "a.ply: vertices without x, y, z");
   EXPECT_EQ(ply("end_header", "end"), "a.ply: line 11: unknown word 'end'");
   EXPECT_EQ(ply("ply", "pla"), "a.ply: not a PLY file");
+}
+
+/// The least numbers there are, and zeros however they are written.
+TEST(ReadMesh, SmallNumbers) {
+  const TriangleMesh mesh = parse_mesh(
+      "OFF\n3 1 0\n5e-324 -1e-310 2.5e-323\n-0.000e-999 0e5 .0\n1 0 0\n3 0 1 2\n", "a.off");
+  EXPECT_EQ(mesh.vertices[0], Vec3<double>(5e-324, -1e-310, 2.5e-323));
+  EXPECT_EQ(mesh.vertices[1], Vec3<double>(0, 0, 0));
 }
 
 TEST(ReadMesh, StlTextAndBinary) {

@@ -8,11 +8,19 @@
 /// for each gives points of the two triangles and so never too small a distance.
 ///
 /// Error: with d the true distance and L the largest difference of coordinates in the pair, the
-/// distance is off by at most 1e-14 d + 2^-90 L, while L is not below 2^-1000. A candidate's vector
-/// r = w - s e + t f carries the roundings of its terms, 3 u (|w| + 2 |s e| + 2 |t f|) to first
-/// order; an error of s and t enters only in second order, since r is stationary in them. A
-/// candidate whose value passes 60 u |r| in that sum is formed again with u = 2^-102, as are those
-/// of which float64 cannot tell where they are.
+/// distance is off by at most 1e-14 d + 2^-90 L + 2^-1074, whatever finite corners: where the
+/// triangles are 10^13 times as large as their distance, that is still 1e-14 of it. (It is infinite
+/// where it is beyond the largest number.) A candidate's vector r = w - s e - t f carries the
+/// roundings of its terms, 3 u R, R = |w| + 2 |s e| + 2 |t f|, to first order. An error of s and t,
+/// at most 12 u R along e and f, stays in r at a right angle, since r is stationary in them: in
+/// |r|, that is second order unless r itself is that short. So a candidate whose value passes R /
+/// 20 is right to 60 u; one whose value, lowered by 16 u R, is above the least is not the nearest;
+/// the others are formed again with u = 2^-102, as are those of which float64 cannot tell where
+/// they are.
+///
+/// Range: `apart` is for pairs in which no number is above 2^100 and L is not below 2^-100. What
+/// underflows is then an edge, or a difference, too short by 2^-300 to matter beside 2^-90 L; all
+/// other pairs are moved and scaled there first, without error as far as that matters.
 #pragma once
 
 #include <algorithm>
@@ -55,9 +63,9 @@ T dot(const Vector<T>& u, const Vector<T>& v) {
 
 /// Whether float64 can be trusted on where, or whether, a candidate is. `parallel`: two edges, or a
 /// face's own, at an angle below 2^-48. Then some end or edge is as near in all but the second
-/// order, (2^-48 L)^2 / d, which matters only where d is much smaller than L. `open`: an angle
+/// order, (2^-48 L)^2 / 2d, which matters only where d is much smaller than L. `open`: an angle
 /// below 2^-20, or points so close to where the candidate ends that rounding may have put them
-/// outside.
+/// outside, and that would matter.
 enum class Doubt { none, parallel, open };
 
 /// One way in which two triangles can be nearest: the vector from a's point to b's and the
@@ -90,15 +98,31 @@ Candidate<T> reached(const Vector<T>& w, const T& s, const Vector<T>& e, const T
   return candidate;
 }
 
+/// The vector w between two corners.
+template <class T>
+Candidate<T> corners_apart(const Vector<T>& w) {
+  Candidate<T> candidate;
+  candidate.squared = dot(w, w);
+  candidate.rounding = magnitude(w);
+  return candidate;
+}
+
 /// Corner p, edge a b: the point of the edge is a + s (b - a).
+///
+/// s |e| is off by up to 12 u |w|, so that a point said to be at an end may be inside by as much.
+/// At a that is next to nothing beside |r| = |w|. At b, where |w| <= |e| + |r|, it makes |r| too
+/// long by a factor of up to 1 + (12 u |w| / |r|)^2 / 2, which is below 1 + 2u only if |r| > 2^-24
+/// |e|.
 template <class T>
 Candidate<T> corner_edge(const Vec3<double>& p, const Vec3<double>& a, const Vec3<double>& b) {
   const Vector<T> e = difference<T>(b, a), w = difference<T>(p, a);
   const T along = dot(w, e), length = dot(e, e);
-  if (!(along > T(0))) return reached<T>(w, T(0), e, T(0), e);
+  if (!(along > T(0))) return corners_apart<T>(w);
   if (!(along < length)) {
-    Candidate<T> end = reached<T>(difference<T>(p, b), T(0), e, T(0), e);
+    Candidate<T> end = corners_apart<T>(difference<T>(p, b));
     end.s = T(1);
+    if (!(static_cast<double>(end.squared) > 0x1p-48 * static_cast<double>(length)))
+      end.doubt = Doubt::open;
     return end;
   }
   return reached<T>(w, along / length, e, T(0), e);
@@ -248,7 +272,21 @@ TriangleDistance touching(const Triangle& a, const Triangle& b) {
   return result;
 }
 
-/// For triangles that are apart and whose coordinates may be squared and multiplied freely.
+/// The box of all six corners.
+struct Extent {
+  Vec3<double> low, high;
+
+  Extent(const Triangle& a, const Triangle& b) : low(a[0]), high(a[0]) {
+    for (const Triangle* t : {&a, &b})
+      for (const auto& p : *t) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  }
+  /// Its longest side; at most the largest number.
+  double longest() const {
+    return std::min((high - low).maxCoeff(), std::numeric_limits<double>::max());
+  }
+};
+
+/// For triangles that are apart, of coordinates and extents in the range said above.
 template <class = double>
 TriangleDistance apart(const Triangle& a, const Triangle& b) {
   constexpr double u = unit_roundoff<double>;
@@ -261,18 +299,18 @@ TriangleDistance apart(const Triangle& a, const Triangle& b) {
     if (all[k].squared < least) least = all[k].squared, best = k;
   }
   // Below `reach` lies the nearest for certain, but for the doubtful.
-  const auto error = [](const auto& c) { return 3 * u * c.rounding; };
-  const double reach = std::sqrt(least) + error(all[best]);
-  const bool far_apart = error(all[best]) <= 60 * u * std::sqrt(least);
+  const auto error = [](const auto& c) { return 16 * u * c.rounding; };
+  const double nearest = std::sqrt(least), reach = nearest + error(all[best]);
+  const auto far_apart = [&] { return Extent(a, b).longest() <= 0x1p20 * nearest; };
   least = infinity;
   double s = 0, t = 0;
   for (int k = 0; k < candidates; ++k) {
     const auto& rough = all[k];
     const double value = std::sqrt(rough.squared);
     const bool certain =
-        rough.doubt == Doubt::none || (rough.doubt == Doubt::parallel && far_apart);
+        rough.doubt == Doubt::none || (rough.doubt == Doubt::parallel && far_apart());
     if (certain && (!(value < infinity) || value - error(rough) > reach)) continue;
-    if (certain && error(rough) <= 60 * u * value) {
+    if (certain && rough.rounding <= 20 * value) {
       if (rough.squared < least) least = rough.squared, best = k, s = rough.s, t = rough.t;
       continue;
     }
@@ -301,6 +339,35 @@ inline Vec3<double> scaled(const Vec3<double>& p, int exponent) {
   return {std::ldexp(p[0], exponent), std::ldexp(p[1], exponent), std::ldexp(p[2], exponent)};
 }
 
+inline Triangle scaled(const Triangle& t, int exponent) {
+  return {scaled(t[0], exponent), scaled(t[1], exponent), scaled(t[2], exponent)};
+}
+
+/// The same for any that are apart. Where all six coordinates along an axis lie within a factor of
+/// two they are taken from the lowest of them, which rounds nothing; all others are at most twice
+/// the extent along their axis. Divided by the power of two above the largest extent, none is above
+/// 4 then, and what underflows loses less than 2^-1074 of the extent.
+template <class = double>
+TriangleDistance apart_at_any_scale(const Triangle& a, const Triangle& b) {
+  const Extent extent(a, b);
+  Vec3<double> origin = Vec3<double>::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const double low = extent.low[i], high = extent.high[i];
+    if ((low > 0 && high <= 2 * low) || (high < 0 && low >= 2 * high)) origin[i] = low;
+  }
+  int exponent;
+  std::frexp(extent.longest(), &exponent);
+  const auto moved = [&](const Triangle& t) {
+    return scaled(Triangle{t[0] - origin, t[1] - origin, t[2] - origin}, -exponent);
+  };
+  TriangleDistance result = apart(moved(a), moved(b));
+  result.distance =
+      std::max(std::ldexp(result.distance, exponent), std::numeric_limits<double>::denorm_min());
+  result.on_a = scaled(result.on_a, exponent) + origin;
+  result.on_b = scaled(result.on_b, exponent) + origin;
+  return result;
+}
+
 }  // namespace nearest
 
 /// The distance of two closed triangles with finite corners; 0 if and only if they share a point.
@@ -308,18 +375,18 @@ inline Vec3<double> scaled(const Vec3<double>& p, int exponent) {
 template <class = double>
 TriangleDistance distance(const Triangle& a, const Triangle& b) {
   using namespace nearest;
-  if (const int k = exponent_of(a, b); k != 0) {
-    const Triangle x = {scaled(a[0], -k), scaled(a[1], -k), scaled(a[2], -k)};
-    const Triangle y = {scaled(b[0], -k), scaled(b[1], -k), scaled(b[2], -k)};
-    const bool touch = intersect(a, b);
-    TriangleDistance result = touch ? touching<double>(x, y) : apart(x, y);
+  const int k = exponent_of(a, b);
+  if (intersect(a, b)) {
+    if (k == 0) return touching<double>(a, b);
+    TriangleDistance result = touching<double>(scaled(a, -k), scaled(b, -k));
     result.on_a = scaled(result.on_a, k), result.on_b = scaled(result.on_b, k);
-    if (!touch)
-      result.distance =
-          std::max(std::ldexp(result.distance, k), std::numeric_limits<double>::denorm_min());
     return result;
   }
-  return intersect(a, b) ? touching<double>(a, b) : apart(a, b);
+  if (k != 0) return apart_at_any_scale(a, b);
+  const TriangleDistance result = apart(a, b);
+  // Coordinates may be neither large nor small and yet stand next to each other: only so can the
+  // distance be this small, be it right or not.
+  return result.distance < 0x1p-98 ? apart_at_any_scale(a, b) : result;
 }
 
 }  // namespace bvlab

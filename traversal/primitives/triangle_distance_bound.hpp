@@ -8,6 +8,8 @@
 /// triangles are apart. Squares are compared, with u the unit roundoff:
 /// - a vector r = w - s e - t f is off by 3 u R, R = |w| + 2 |s e| + 2 |t f| >= |r|, so its square
 ///   by less than 8 u R^2;
+/// - s of a point on an edge is off by less than 14 u M / |e|, M the longest w, so that a point put
+///   at an end may be inside: its square is too large by less than 2^-98 M^2;
 /// - s of two crossing directions, by cross products, is off by less than 32 u M / (|e| sin^2), M =
 ///   |w| + |e| + |f|, and t, made from s, by as much times |e| / |f| (each minor is off by 4 u of
 ///   its factors' lengths, three of them in a product divided by |e|^2 |f|^2 sin^2). A candidate is
@@ -18,8 +20,13 @@
 ///   both can be moved along until one is at an end (or, in a sliver, to an edge): r is orthogonal
 ///   to the way, and the square of the distance grows by at most min(|e|, |f|)^2 sin^2. The sine as
 ///   computed is off by less than 8 u.
-/// Magnitudes between 2^-100 and 2^100 keep products of four differences, multiples of 2^-153 then,
-/// from under- and overflowing; elsewhere the bound is 0.
+/// The latter two may add up for one candidate: the larger is taken twice.
+/// Range: no number is above 2^100, so that products of six differences are finite. Edges may be as
+/// short as they like, and what is made of their squares underflows: where |e|^2 |f|^2 is below
+/// 2^-800 the two are not crossed either, and to leave that out raises the square of the distance
+/// by less than min(|e|, |f|)^2 < 2^-399. Else |n|^2 is above 2^-840 where it counts. A point on an
+/// edge whose square underflows stands anywhere between its ends, which adds less than 2^-399, too,
+/// or is covered by the rounding of w.
 #pragma once
 
 #include "traversal/primitives/triangle_filter.hpp"
@@ -38,6 +45,10 @@ class DistanceBound {
     const Edges edges_a(a), edges_b(b);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) w_[i][j] = a[i] - b[j], w_size_[i][j] = size_of(w_[i][j]);
+    // `longest`: at least as long as any w.
+    const S longest =
+        w_size_[0][0] + ((edges_a.size[0] + edges_a.size[2]) + (edges_b.size[0] + edges_b.size[2]));
+    skipped_ = S(0x1p-97) * (longest * longest) + S(0x1p-398);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         const int next = j == 2 ? 0 : j + 1;
@@ -47,16 +58,18 @@ class DistanceBound {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         crossing<Inside::edges>(negative(w_[i][j]), w_size_[i][j], edges_a.vector[i],
-                                edges_a.square[i], edges_a.size[i], negative(edges_b.vector[j]),
-                                edges_b.square[j], edges_b.over_square[j], edges_b.size[j]);
+                                edges_a.square[i], edges_a.over_square[i], edges_a.size[i],
+                                negative(edges_b.vector[j]), edges_b.square[j],
+                                edges_b.over_square[j], edges_b.size[j]);
     for (int i = 0; i < 3; ++i) {
       // The face's directions from its first corner: its first edge, and its last one turned.
       crossing<Inside::face>(w_[i][0], w_size_[i][0], edges_b.vector[0], edges_b.square[0],
-                             edges_b.size[0], negative(edges_b.vector[2]), edges_b.square[2],
-                             edges_b.over_square[2], edges_b.size[2]);
+                             edges_b.over_square[0], edges_b.size[0], negative(edges_b.vector[2]),
+                             edges_b.square[2], edges_b.over_square[2], edges_b.size[2]);
       crossing<Inside::face>(negative(w_[0][i]), w_size_[0][i], edges_a.vector[0],
-                             edges_a.square[0], edges_a.size[0], negative(edges_a.vector[2]),
-                             edges_a.square[2], edges_a.over_square[2], edges_a.size[2]);
+                             edges_a.square[0], edges_a.over_square[0], edges_a.size[0],
+                             negative(edges_a.vector[2]), edges_a.square[2], edges_a.over_square[2],
+                             edges_a.size[2]);
     }
   }
 
@@ -112,12 +125,14 @@ class DistanceBound {
   /// The least of w - s e - t f, where that is inside or nearly so.
   template <Inside kInside>
   [[gnu::always_inline]] void crossing(const Vector<S>& w, const S& w_size, const Vector<S>& e,
-                                       const S& e_square, const S& e_size, const Vector<S>& f,
-                                       const S& f_square, const S& over_f_square, const S& f_size) {
+                                       const S& e_square, const S& over_e_square, const S& e_size,
+                                       const Vector<S>& f, const S& f_square,
+                                       const S& over_f_square, const S& f_size) {
     const Vector<S> n = cross<S>(e, f);
     const S square = dot<S>(n, n), product = e_square * f_square;
     const S over_square = S(1) / square;
-    const Mask<S> wide = square >= 0x1p-40 * product && square > S(0);
+    const Mask<S> normal = product > S(0x1p-800);
+    const Mask<S> wide = normal && square >= 0x1p-40 * product;
     const S s = dot<S>(cross<S>(w, f), n) * over_square;
     const Vector<S> rest = {w[0] - s * e[0], w[1] - s * e[1], w[2] - s * e[2]};
     const S t = dot<S>(rest, f) * over_f_square;
@@ -131,14 +146,15 @@ class DistanceBound {
     const S lowered =
         dot<S>(r, r) - (S(8 * u) * (rounding * rounding) + S(0x1p-96) * (over_sine * (m * m)));
     square_ = min(square_, pick<S>(wide && inside, lowered, square_));
-    // Nothing to skip where an edge has no length.
-    const S narrow = min(e_square, f_square) * (2 * (square / product) + S(0x1p-98));
-    skipped_ = max(skipped_, pick<S>(wide || product == S(0), S(0), narrow));
+    // Twice min(|e|, |f|)^2 (2 sin^2 + 2^-98), without a division.
+    const S narrow =
+        4 * (square * min(over_e_square, over_f_square)) + S(0x1p-97) * min(e_square, f_square);
+    skipped_ = max(skipped_, pick<S>(normal && !wide, narrow, S(0)));
   }
 
   Vector<S> w_[3][3];
   S w_size_[3][3];
-  S square_, skipped_{0};
+  S square_, skipped_;
 };
 
 }  // namespace filter

@@ -175,6 +175,23 @@ class Meshes(ProgramTest):
             self.refuse_mesh("odd.off", TRIANGLE.replace("1 0 0", f"1 {value} 0"), "line 4")
             self.refuse_mesh("odd.obj", f"v 0 0 0\nv 1 0 {value}\nv 0 1 0\nf 1 2 3\n", "line 2")
 
+    def test_too_small(self):
+        for value in ("1e-400", "-2e-324"):
+            self.refuse_mesh("odd.off", TRIANGLE.replace("1 0 0", f"1 {value} 0"), "line 4")
+            self.refuse_mesh("odd.obj", f"v 0 0 0\nv 1 0 {value}\nv 0 1 0\nf 1 2 3\n", "line 2")
+
+    def test_overflow_by_a_pose(self):
+        """Coordinates and poses are finite; what a vertex becomes is not."""
+        self.write("large.off", TRIANGLE.replace("1 0 0", "1.5e308 0 0"))
+        self.write("mesh.off", TETRAHEDRON)
+        trace = poses(3, 4)
+        trace[2, 3, 0] = 1.5e308
+        self.write("poses.npy", trace)
+        for query in ("touching", "contacts", "distance"):
+            self.refuse("replay", "--mesh", "mesh.off", "--mesh", "large.off", "--trace",
+                        "poses.npy", "--query", query, "--out", "out.npy",
+                        mentions=["poses.npy: ", "frame 2, object 3"])
+
 
 class Names(ProgramTest):
     """An unknown name is answered with those there are."""
