@@ -8,6 +8,7 @@
 #include "experiments/peers/fcl.hpp"
 #include "experiments/peers/fcl_convex.hpp"
 #include "experiments/peers/ode.hpp"
+#include "experiments/peers/opcode.hpp"
 
 namespace bvlab {
 namespace {
@@ -41,6 +42,12 @@ constexpr Peer list[] = {
      replay_bullet},
     {"ode", "ODE 0.16.2: trimesh (OPCODE), boxes in float32; one contact, not refined", yes_or_no,
      replay_ode},
+#ifdef BVLAB_HAS_OPCODE
+    {"opcode", "OPCODE 1.3, called directly, float32: no-leaf trees, boxes as they lie", meeting,
+     replay_opcode<OpcodeCoherence::off>},
+    {"opcode-coherent", "the same; the pair of triangles that met last is tried first", yes_or_no,
+     replay_opcode<OpcodeCoherence::on>},
+#endif
     {"embree",
      "Embree 3.13.5: rtcCollide, one thread, with our exact test of triangles; the scene of a body "
      "that moved is refitted",
