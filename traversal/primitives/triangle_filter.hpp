@@ -231,7 +231,9 @@ template <Scalar S>
   using namespace filter;
   using T = Element<S>;
   constexpr T u = unit_roundoff<S>;
-  constexpr T least = std::numeric_limits<T>::denorm_min();
+  // More than what underflows can lose, and quick: products of numbers that are not normal take
+  // microcode.
+  constexpr T tiny = std::numeric_limits<T>::min();
   constexpr T reach = sizeof(T) == 8 ? T(0x1p340) : T(0x1p41);
   S side[3], wrong[3];
   Mask<S> apart(false);
@@ -244,14 +246,14 @@ template <Scalar S>
     // Differences round, but not across `twice`, which is a number of S.
     apart = apart | (low_b - high_a > twice) | (low_a - high_b > twice);
     side[i] = max(high_a, high_b) - min(low_a, low_b);
-    wrong[i] = twice + u * side[i] + least;
+    wrong[i] = twice + u * side[i] + tiny;
     side[i] = side[i] + wrong[i];
   }
   const S longest = max(max(side[0], side[1]), max(side[2], S(1)));
   S bound = (1 + 64 * u) * (6 * (wrong[0] * side[1] * side[2] + side[0] * wrong[1] * side[2] +
                                  side[0] * side[1] * wrong[2]) +
                             (30 * u) * ((side[0] * side[1]) * side[2])) +
-            (16 * least) * longest;
+            tiny * longest;
   bound = pick<S>(longest < S(reach), bound, S(std::numeric_limits<T>::infinity()));
   return told_by_signs<S>(a, b, apart, bound);
 }
