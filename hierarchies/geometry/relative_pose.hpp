@@ -40,19 +40,17 @@ struct Standing {
   Standing(const Pose& pose, double reach_of_mesh)
       : rotation(pose.rotation), translation(pose.translation), reach(reach_of_mesh) {
     constexpr double u = unit_roundoff<double>;
-    const double defect = defect_of(rotation);
-    noise = 8 * u * (reach + translation.norm());
-    if (defect <= 32 * u) return;
+    noise = 8 * u * (reach + translation.lpNorm<1>());
+    double left = squared_defect_of(rotation);
+    if (left <= sound) return;
     // As Placement does: each step of Newton's iteration squares the defect.
-    double left = defect;
-    if (defect <= 0.01)
-      for (int step = 0; step < 8 && !(left <= 32 * u); ++step) {
-        rotation =
-            (rotation * (1.5 * Mat3<double>::Identity() - 0.5 * (rotation.transpose() * rotation)))
-                .eval();
-        left = defect_of(rotation);
+    if (left <= 1e-4)
+      for (int step = 0; step < 8 && !(left <= sound); ++step) {
+        const Mat3<double> product = rotation.transpose() * rotation;
+        rotation = (rotation * (1.5 * Mat3<double>::Identity() - 0.5 * product)).eval();
+        left = squared_defect_of(rotation);
       }
-    if (left <= 32 * u) {
+    if (left <= sound) {
       noise += ((pose.rotation - rotation).norm() + 8 * u) * reach;
     } else {
       rotation = Mat3<double>::Identity();
@@ -61,8 +59,17 @@ struct Standing {
   }
 
  private:
-  static double defect_of(const Mat3<double>& m) {
-    return (m.transpose() * m - Mat3<double>::Identity()).norm();
+  static constexpr double sound = 32 * 32 * unit_roundoff<double> * unit_roundoff<double>;
+
+  /// |M'M - I|_F^2.
+  static double squared_defect_of(const Mat3<double>& m) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double own = dot<double>(m.col(i), m.col(i)) - 1;
+      const double next = dot<double>(m.col(i), m.col((i + 1) % 3));
+      sum += own * own + 2 * (next * next);
+    }
+    return sum;
   }
 };
 

@@ -62,6 +62,16 @@ template <Scalar S>
   return S(1) / x;
 }
 
+/// Three numbers as four floats, the last 0: written as one, so that they can be read as one.
+inline Batch<float, 4> rounded_to_four(const Vec3<double>& v) {
+  return Batch<float, 4>([&](auto i) {
+    if constexpr (i() < 3)
+      return static_cast<float>(v[static_cast<int>(i())]);
+    else
+      return 0.0f;
+  });
+}
+
 namespace detail {
 
 /// Volumes are plain aggregates of their scalars: field by field, lane by lane.

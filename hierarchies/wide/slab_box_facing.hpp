@@ -42,13 +42,13 @@ struct SlabBoxFacing<float> {
     constexpr double e = unit_roundoff<float>;
     const double length = pose.translation.lpNorm<1>();
     Turn turn;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 4; ++j) {
-        turn.column[i][j] = j < 3 ? static_cast<float>(pose.rotation(j, i)) : 0;
-        turn.absolute[i][j] = std::abs(turn.column[i][j]);
-      }
-    for (int j = 0; j < 4; ++j)
-      turn.translation[j] = j < 3 ? static_cast<float>(pose.translation[j]) : 0;
+    using Four = Batch<float, 4>;
+    for (int i = 0; i < 3; ++i) {
+      const Four column = rounded_to_four(pose.rotation.col(i));
+      column.copy_to(turn.column[i], stdx::vector_aligned);
+      abs(column).copy_to(turn.absolute[i], stdx::vector_aligned);
+    }
+    rounded_to_four(pose.translation).copy_to(turn.translation, stdx::vector_aligned);
     // `slack` of Placement, and the rest.
     turn.margin =
         static_cast<float>((74 * e * (length + reach + reach_of_lanes) + pose.noise) * (1 + 8 * e) +

@@ -52,7 +52,7 @@ class WideHierarchy {
   static constexpr int fan_out = F;
 
   /// What is asked of a node before it is tested or opened.
-  struct Node {
+  struct alignas(32) Node {
     V volume;
     scalar size;
     std::uint32_t first;  ///< of its children; leaf: of its triangles, as triangle(lane) counts

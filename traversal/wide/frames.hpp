@@ -61,36 +61,36 @@ class WideBody {
 };
 
 /// Corners of a, where b's mesh is given: for the filter of triangles, whatever volumes do.
-template <class T>
 class CornersBetween {
  public:
-  /// Corners are rounded (e r), as are rotation and translation; then come four products and sums.
+  using Four = Batch<float, 4>;
+
+  /// Corners are rounded (e r), as are rotation and translation; then come three products and sums.
   void begin(const RelativePose& a_from_b, double reach_a, double reach_b) {
-    constexpr double e = unit_roundoff<T>;
-    const double length = a_from_b.translation.template lpNorm<1>();
-    off_ = static_cast<T>((16 * e * (reach_a + length) + 2 * e * reach_b + a_from_b.noise) *
-                          (1 + 8 * e)) +
-           std::numeric_limits<T>::min();
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) rotation_[j][i] = static_cast<T>(a_from_b.rotation(i, j));
-      translation_[i] = static_cast<T>(a_from_b.translation[i]);
-    }
+    constexpr double e = unit_roundoff<float>;
+    const double length = a_from_b.translation.lpNorm<1>();
+    off_ = static_cast<float>((16 * e * (reach_a + length) + 2 * e * reach_b + a_from_b.noise) *
+                              (1 + 8 * e)) +
+           std::numeric_limits<float>::min();
+    for (int i = 0; i < 3; ++i)
+      rounded_to_four(a_from_b.rotation.col(i)).copy_to(column_[i], stdx::vector_aligned);
+    rounded_to_four(a_from_b.translation).copy_to(translation_, stdx::vector_aligned);
   }
 
-  [[gnu::always_inline]] std::array<T, 3> turned(T x, T y, T z) const {
-    std::array<T, 3> result;
-    for (int i = 0; i < 3; ++i)
-      result[i] =
-          ((rotation_[0][i] * x + rotation_[1][i] * y) + rotation_[2][i] * z) + translation_[i];
-    return result;
+  /// The fourth number is none of its coordinates.
+  [[gnu::always_inline]] Four turned(float x, float y, float z) const {
+    const auto from = [](const float* p) { return Four(p, stdx::vector_aligned); };
+    return fused<Four>(from(column_[2]), Four(z),
+                       fused<Four>(from(column_[1]), Four(y),
+                                   fused<Four>(from(column_[0]), Four(x), from(translation_))));
   }
 
   /// How far any corner can be from where it is said to be, in each coordinate.
-  T off() const { return off_; }
+  float off() const { return off_; }
 
  private:
-  T rotation_[3][4], translation_[4];
-  T off_;
+  alignas(16) float column_[3][4], translation_[4];
+  float off_;
 };
 
 /// Bodies stay as their meshes are given; the relative pose takes one node at a time into the frame
@@ -139,12 +139,12 @@ struct RelativeFrame {
                                   Counter&) const {
       return Facing::template gaps<S>(one, turn_[side], hierarchies_[side]->children(node).volumes);
     }
-    const CornersBetween<T>& corners() const { return corners_; }
+    const CornersBetween& corners() const { return corners_; }
 
    private:
     std::array<const WideHierarchy<V, F>*, 2> hierarchies_;
     std::array<typename Facing::Turn, 2> turn_;  // into the frame of that side
-    CornersBetween<T> corners_;
+    CornersBetween corners_;
   };
 };
 
@@ -235,11 +235,11 @@ struct WorldFrame {
     S gaps(std::size_t side, std::uint32_t node, const One& one, Counter& counter) const {
       return gap(one.volume, bodies_[side]->lanes(node, counter));
     }
-    const CornersBetween<T>& corners() const { return corners_; }
+    const CornersBetween& corners() const { return corners_; }
 
    private:
     std::array<Body<V, F>*, 2> bodies_;
-    CornersBetween<T> corners_;
+    CornersBetween corners_;
   };
 };
 

@@ -122,9 +122,11 @@ class WideTraversal {
     const auto& lanes = bodies_[1]->hierarchy().corners(leaf.first).corner;
     const auto& own = bodies_[0]->hierarchy().corners(pair.a).corner;
     const std::size_t lane = pair.a % F;
-    std::array<std::array<T, 3>, 3> turned;
+    alignas(16) std::array<std::array<float, 4>, 3> turned;
     for (std::size_t i = 0; i < 3; ++i)
-      turned[i] = between_.corners().turned(own[i][0][lane], own[i][1][lane], own[i][2][lane]);
+      between_.corners()
+          .turned(own[i][0][lane], own[i][1][lane], own[i][2][lane])
+          .copy_to(turned[i].data(), stdx::vector_aligned);
 #if defined(__GNUC__)
     asm("" : "+m"(turned));  // to be broadcast from memory
 #endif
