@@ -91,6 +91,19 @@ void put_lane(Lanes& lanes, int lane, const V& volume) {
                 reinterpret_cast<const char*>(&volume) + sizeof(T) * field, sizeof(T));
 }
 
+/// The volume in one lane.
+template <class V, class Lanes>
+V lane_of(const Lanes& lanes, int lane) {
+  using T = typename V::scalar;
+  constexpr int fields = sizeof(V) / sizeof(T), width = detail::lanes_of<V, Lanes>;
+  V volume;
+  for (int field = 0; field < fields; ++field)
+    std::memcpy(reinterpret_cast<char*>(&volume) + sizeof(T) * field,
+                reinterpret_cast<const char*>(&lanes) + sizeof(T) * (field * width + lane),
+                sizeof(T));
+  return volume;
+}
+
 /// The same volume in every lane of S.
 template <Batched S, class V>
 [[gnu::always_inline]] inline Over<V, S> in_all_lanes(const V& volume) {

@@ -125,11 +125,30 @@ struct SlabBoxFacing<float> {
     return {apart > S(0.0f), apart * roughly_one_over<S>(sizes + S(one.size))};
   }
 
-  /// Normals are 1 + 2e long at most, and three roundings are made.
+  /// The distance of the boxes around one of them along the other's axes, or of a slab. Axes and
+  /// normals are 1 + 4e long at most, and fewer than ten roundings are made.
   template <Batched S>
   [[gnu::always_inline]] static S gaps(const One& one, const Turn& turn, const SlabBox<S>& lanes) {
+    using stdx::abs, stdx::max, stdx::min, stdx::sqrt;
+    const S zero(0.0f);
+    S squared_b = zero, squared_a = zero;
+    const Vec3<S> between(lanes.centre[0] - S(one.centre[0]), lanes.centre[1] - S(one.centre[1]),
+                          lanes.centre[2] - S(one.centre[2]));
+    for (int i = 0; i < 3; ++i) {
+      const S face_b = (abs(between[i]) - S(one.reached[i])) - lanes.half[i];
+      S face_a = zero;
+      for (int j = 0; j < 3; ++j) face_a = fused<S>(between[j], S(turn.column[i][j]), face_a);
+      face_a = abs(face_a) - S(one.grown[i]);
+      for (int j = 0; j < 3; ++j)
+        face_a = less_fused<S>(lanes.half[j], S(turn.absolute[i][j]), face_a);
+      // Written so that what is no number counts as nothing.
+      const S b = select(face_b > zero, face_b, zero), a = select(face_a > zero, face_a, zero);
+      squared_b = fused<S>(b, b, squared_b), squared_a = fused<S>(a, a, squared_a);
+    }
+    const S largest(std::numeric_limits<float>::max());
+    const S boxes = sqrt(min(largest, max(squared_a, squared_b)));
     const S apart = separation<S>(one, turn, lanes);
-    return select(apart > S(0.0f), apart * S(1 - 16 * unit_roundoff<float>), S(0.0f));
+    return max(boxes, select(apart > zero, apart, zero)) * S(1 - 32 * unit_roundoff<float>);
   }
 };
 

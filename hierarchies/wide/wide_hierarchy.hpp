@@ -83,7 +83,10 @@ class WideHierarchy {
     }
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const auto& node = topology.nodes[i];
-      if (node.leaf) keep_triangles(nodes_[i], mesh, topology, node);
+      if (node.leaf) {
+        keep_triangles(nodes_[i], mesh, topology, node);
+        leaves_.push_back(static_cast<std::uint32_t>(i));
+      }
       for (int lane = 0; lane < F; ++lane) {
         const std::uint32_t k = node.first + std::min<std::uint32_t>(lane, node.count - 1);
         const V volume = node.leaf ? fitted(mesh, topology, k, k + 1, fit) : nodes_[k].volume;
@@ -102,6 +105,8 @@ class WideHierarchy {
   const Siblings& children(std::uint32_t i) const { return siblings_[i]; }
   /// Leaf `first / F`'s, of a node of that `first`.
   const TriangleLanes<scalar, F>& corners(std::uint32_t first) const { return corners_[first / F]; }
+  /// The leaf that holds triangle k.
+  std::uint32_t leaf_of(std::uint32_t k) const { return leaves_[k / F]; }
   /// The mesh's index of the triangle in lane `k - first` of a leaf.
   std::uint32_t triangle(std::uint32_t k) const { return triangles_[k]; }
   /// No vertex is farther than this from the mesh's own origin, and no volume extends beyond.
@@ -148,6 +153,7 @@ class WideHierarchy {
   std::vector<Siblings> siblings_;
   std::vector<TriangleLanes<scalar, F>> corners_;
   std::vector<std::uint32_t> triangles_;
+  std::vector<std::uint32_t> leaves_;  // by what stands in corners_
   double reach_ = 0;
   MeshBall ball_;
   // Only while fitting:

@@ -4,7 +4,7 @@
 /// A frame's `Body<V, F>` stands somewhere; its `Between<V, F>` is two of them, whose sides are 0
 /// and 1:
 ///   begin(a, b)                            looks at two bodies
-///   one(side, node)                        one volume, ready to be tested
+///   one(side, node), one_child(...)        one volume, ready to be tested
 ///   compared(side, node, one), gaps(...)   tests it against the children of a node of `side`
 ///   corners()                              takes corners of a to where b's mesh is given
 #pragma once
@@ -128,6 +128,14 @@ struct RelativeFrame {
       const auto& of = hierarchies_[side]->node(node);
       return Facing::one(of.volume, of.size, turn_[1 - side]);
     }
+    /// One child of a node.
+    template <class Counter>
+    One one_child(std::size_t side, std::uint32_t node, int lane, Counter& counter) const {
+      counter.posed(1);
+      const auto& of = hierarchies_[side]->children(node);
+      return Facing::one(lane_of<V>(of.volumes, lane), T(of.size[static_cast<std::size_t>(lane)]),
+                         turn_[1 - side]);
+    }
     template <class Counter>
     [[gnu::always_inline]] Compared<S> compared(std::size_t side, std::uint32_t node,
                                                 const One& one, Counter&) const {
@@ -224,6 +232,12 @@ struct WorldFrame {
     One one(std::size_t side, std::uint32_t node, Counter& counter) const {
       return {in_all_lanes<S>(bodies_[side]->node(node, counter)),
               S(bodies_[side]->hierarchy().node(node).size)};
+    }
+    template <class Counter>
+    One one_child(std::size_t side, std::uint32_t node, int lane, Counter& counter) const {
+      const auto volume = lane_of<Posed<V>>(bodies_[side]->lanes(node, counter), lane);
+      const auto& sizes = bodies_[side]->hierarchy().children(node).size;
+      return {in_all_lanes<S>(volume), S(T(sizes[static_cast<std::size_t>(lane)]))};
     }
     template <class Counter>
     Compared<S> compared(std::size_t side, std::uint32_t node, const One& one,

@@ -69,8 +69,10 @@ class WideTraversal {
       // What is `order` apart, or less where they may meet.
       if (order > 0 && bits(query_->excludes(order))) return !frontier_.empty() || finish();
       step(pair);
-      while (!triangles_.empty())
-        if (open_distances(triangles_.take_last())) return false;
+      while (!triangles_.empty()) {
+        const NodePair next = triangles_.take_least(order);
+        if (!(order > 0 && bits(query_->excludes(order))) && open_distances(next)) return false;
+      }
     } else if constexpr (Query::one_hit_is_enough) {
       float order;
       step(frontier_.take_least(order));
@@ -150,11 +152,16 @@ class WideTraversal {
 
   /// The same where a distance is sought: pairs whose volumes are near enough are looked at.
   [[gnu::noinline]] bool open_distances(const NodePair& pair) {
+    const auto& a = bodies_[0]->hierarchy();
     const auto& leaf = bodies_[1]->hierarchy().node(pair.b);
-    const std::uint32_t triangle = bodies_[0]->hierarchy().triangle(pair.a);
-    counter_->primitives(static_cast<std::uint64_t>(std::popcount(leaf.lanes)));
-    for (std::uint64_t rest = leaf.lanes; rest; rest &= rest - 1)
-      if (hold(triangle, triangle_of_b(leaf.first, rest))) return true;
+    const auto one =
+        between_.one_child(0, a.leaf_of(pair.a), static_cast<int>(pair.a % F), *counter_);
+    counter_->tested(static_cast<std::uint64_t>(std::popcount(leaf.lanes)));
+    const S gaps = between_.gaps(1, pair.b, one, *counter_);
+    std::uint64_t left = leaf.lanes & ~bits(query_->excludes(gaps));
+    counter_->primitives(static_cast<std::uint64_t>(std::popcount(left)));
+    for (; left; left &= left - 1)
+      if (hold(a.triangle(pair.a), triangle_of_b(leaf.first, left))) return true;
     return pending_ > 0 && flush();
   }
 
