@@ -8,6 +8,7 @@
 #include "experiments/peers/fcl.hpp"
 #include "experiments/peers/fcl_convex.hpp"
 #include "experiments/peers/ode.hpp"
+#include "experiments/peers/opcode.hpp"
 
 namespace bvlab {
 namespace {
@@ -46,6 +47,12 @@ constexpr Peer list[] = {
 #if BVLAB_ODE
     {"ode", "ODE 0.16.2: trimesh (OPCODE), boxes in float32; one contact, not refined", yes_or_no,
      replay_ode},
+#endif
+#if BVLAB_HAS_OPCODE
+    {"opcode", "OPCODE 1.3, called directly, float32: no-leaf trees, boxes as they lie", meeting,
+     replay_opcode<OpcodeCoherence::off>},
+    {"opcode-coherent", "the same; the pair of triangles that met last is tried first", yes_or_no,
+     replay_opcode<OpcodeCoherence::on>},
 #endif
 #if BVLAB_EMBREE
     {"embree",

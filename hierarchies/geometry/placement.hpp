@@ -73,6 +73,24 @@ struct Placement {
       columns_[k] = Quad{rotation(0, k), rotation(1, k), rotation(2, k), 0};
   }
 
+  /// The same for a rotation that is known to be orthonormal to 128u (float volumes only: theirs is
+  /// the larger rounding by far), and `noise` beside what is said above.
+  struct Orthonormal {};
+  Placement(Orthonormal, const Mat3<double>& exactly, const Vec3<double>& offset, double reach,
+            double noise) {
+    constexpr double e = unit_roundoff<T>;
+    static_assert(e > 0x1p-30);
+    rotation = exactly.cast<T>();
+    translation = rounded<T>(offset);
+    constexpr double room = 1 + 4 * e;
+    stretch = static_cast<T>(1 + 8 * e);
+    tilt = static_cast<T>(9 * e);
+    const double tiny = std::ldexp(1.0, std::numeric_limits<T>::min_exponent / 2 + 2);
+    slack = rounded_up<T>((10 * e * (reach + offset.norm()) + noise + tiny) * room);
+    for (int k = 0; k < 3; ++k)
+      columns_[k] = Quad{rotation(0, k), rotation(1, k), rotation(2, k), 0};
+  }
+
   /// The point c, given in the mesh's frame, relative to the origin. S is T or a batch of it.
   template <Scalar S>
   Vec3<S> moved(const Vec3<S>& c) const {

@@ -39,9 +39,9 @@ inline std::optional<Pose> pose_from(const Vec3<double>& translation, double w, 
   const double largest = quaternion.cwiseAbs().maxCoeff();
   if (!quaternion.allFinite() || !translation.allFinite() || largest == 0) return std::nullopt;
   // A power of two changes no digit, and keeps the squares from under- and overflowing.
-  int exponent = 0;
-  std::frexp(largest, &exponent);
-  if (exponent < -300 || exponent > 300) {
+  if (largest < 0x1p-301 || largest >= 0x1p300) {
+    int exponent = 0;
+    std::frexp(largest, &exponent);
     w = std::ldexp(w, -exponent), x = std::ldexp(x, -exponent);
     y = std::ldexp(y, -exponent), z = std::ldexp(z, -exponent);
   }

@@ -21,10 +21,10 @@ template <class T, int K>
 struct KdopOffsets {
   std::array<T, K / 2> along, opposite;
 
-  KdopOffsets(const Pose& pose, const Vec3<double>& origin, double reach) {
+  KdopOffsets(const Pose& pose, const Vec3<double>& origin, double reach, double noise = 0) {
     using Directions = detail::KdopDirections<K>;
     const Vec3<double> offset = pose.translation - origin;
-    double slack = Placement<T>(pose, origin, reach).slack;
+    double slack = Placement<T>(pose, origin, reach).slack + noise;
     // Sums of numbers this large could overflow on their way.
     if (!(16 * (reach + offset.norm()) < std::numeric_limits<T>::max()))
       slack = std::numeric_limits<double>::infinity();
@@ -65,8 +65,9 @@ struct Realignment {
     for (int k = 0; k < K / 2; ++k) rows[k] = {{1, 0, 0}, {2 * k, 2 * k, 2 * k}, 0, 0};
   }
 
-  Realignment(const Pose& pose, const Vec3<double>& origin, double reach) {
-    const KdopOffsets<T, K> offsets(pose, origin, reach);
+  /// `noise`: how much farther than that a point can be from where the pose puts it.
+  Realignment(const Pose& pose, const Vec3<double>& origin, double reach, double noise = 0) {
+    const KdopOffsets<T, K> offsets(pose, origin, reach, noise);
     for (int k = 0; k < K / 2; ++k) {
       const auto* d = Directions::direction(k);
       rows[k] = combination(pose.rotation.transpose() * Vec3<double>(d[0], d[1], d[2]));

@@ -185,13 +185,14 @@ struct Certainly {
   Mask<S> apart, meeting;
 };
 
-/// Neither is set where rounding leaves the question open.
-template <Scalar S, CornersAre corners = CornersAre::given>
-[[gnu::always_inline]] inline Certainly<S> certainly(const Corners<S>& a, const Corners<S>& b) {
-  using namespace filter;
-  const BoxAndBound<S, corners> box(a, b);
-  const S bound = box.bound;
-  Certainly<S> verdict{box.apart, Mask<S>(false)};
+namespace filter {
+
+/// What the signs of determinants tell, given what the boxes do and how wrong a determinant is.
+template <Scalar S>
+[[gnu::always_inline]] inline Certainly<S> told_by_signs(const Corners<S>& a, const Corners<S>& b,
+                                                         const Mask<S>& boxes_apart,
+                                                         const S& bound) {
+  Certainly<S> verdict{boxes_apart, Mask<S>(false)};
   if (everywhere<S>(verdict.apart)) return verdict;
   const Vector<S> sides_b = sides_of<S>(a, b);
   verdict.apart = verdict.apart | all_beyond<S>(sides_b, bound);
@@ -210,6 +211,51 @@ template <Scalar S, CornersAre corners = CornersAre::given>
   verdict.apart = verdict.apart | (known & (max(first, second) > bound));
   verdict.meeting = known & !verdict.apart & (max(first, second) < -bound);
   return verdict;
+}
+
+}  // namespace filter
+
+/// Neither is set where rounding leaves the question open.
+template <Scalar S, CornersAre corners = CornersAre::given>
+[[gnu::always_inline]] inline Certainly<S> certainly(const Corners<S>& a, const Corners<S>& b) {
+  const filter::BoxAndBound<S, corners> box(a, b);
+  return filter::told_by_signs<S>(a, b, box.apart, box.bound);
+}
+
+/// The same of triangles whose corners lie within `off` of those given, in each coordinate: a
+/// difference of coordinates is off by 2 off, and by its own rounding; what follows from that is
+/// said above.
+template <Scalar S>
+[[gnu::always_inline]] inline Certainly<S> certainly_within(const Corners<S>& a,
+                                                            const Corners<S>& b, const S& off) {
+  using namespace filter;
+  using T = Element<S>;
+  constexpr T u = unit_roundoff<S>;
+  // More than what underflows can lose, and quick: products of numbers that are not normal take
+  // microcode.
+  constexpr T tiny = std::numeric_limits<T>::min();
+  constexpr T reach = sizeof(T) == 8 ? T(0x1p340) : T(0x1p41);
+  S side[3], wrong[3];
+  Mask<S> apart(false);
+  const S twice = (off + off) * T(1 + 4 * u);
+  for (int i = 0; i < 3; ++i) {
+    const S low_a = min(min(a[0][i], a[1][i]), a[2][i]),
+            high_a = max(max(a[0][i], a[1][i]), a[2][i]);
+    const S low_b = min(min(b[0][i], b[1][i]), b[2][i]),
+            high_b = max(max(b[0][i], b[1][i]), b[2][i]);
+    // Differences round, but not across `twice`, which is a number of S.
+    apart = apart | (low_b - high_a > twice) | (low_a - high_b > twice);
+    side[i] = max(high_a, high_b) - min(low_a, low_b);
+    wrong[i] = twice + u * side[i] + tiny;
+    side[i] = side[i] + wrong[i];
+  }
+  const S longest = max(max(side[0], side[1]), max(side[2], S(1)));
+  S bound = (1 + 64 * u) * (6 * (wrong[0] * side[1] * side[2] + side[0] * wrong[1] * side[2] +
+                                 side[0] * side[1] * wrong[2]) +
+                            (30 * u) * ((side[0] * side[1]) * side[2])) +
+            tiny * longest;
+  bound = pick<S>(longest < S(reach), bound, S(std::numeric_limits<T>::infinity()));
+  return told_by_signs<S>(a, b, apart, bound);
 }
 
 }  // namespace bvlab

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Where one body stands as seen from another, and what that view can be off by.
+///
+/// Let w_a = fl64(R_a v + t_a) be a vertex of a as it stands in the world, likewise w_b, and u =
+/// 2^-53. Let Q_a, Q_b be matrices with |Q'Q - I| <= 32u next to the rotations (R itself where that
+/// is so, see Placement), and P_b the orthonormal matrix next to Q_b, |P_b - Q_b| <= 17u. The map
+///
+///   x -> P_b' (x - t_b)
+///
+/// moves nothing relative to anything else: two triangles of the world share a point where their
+/// images do, and are as far apart. It takes
+///
+///   w_a  to within  8u (r_a + |t_a|) + |R_a - Q_a| r_a + 17u (r_a + |t_a - t_b|)
+///        of  Q_b' Q_a v + Q_b' (t_a - t_b)           (|v| <= r_a, the reach of a),
+///   w_b  to within  8u (r_b + |t_b|) + |R_b - Q_b| r_b + (17u + 32u) r_b   of  v.
+///
+/// The product Q_b' Q_a and the vector are computed in float64 with at most four roundings a
+/// component, less than 8u (r_a + |t_a - t_b|) in all. `noise` is at least the sum of everything,
+/// so that b can be taken to stand exactly where its mesh is given, and a within `noise` of where
+/// rotation and translation put it. All of it is below 64u of the lengths: in float volumes it is
+/// lost beside their own rounding unless bodies are far from the origin of the world, as it should
+/// be, for then float64 has lost it too.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "hierarchies/geometry/pose.hpp"
+
+namespace bvlab {
+
+/// What there is to know of one body, once whenever it moves.
+struct Standing {
+  Mat3<double> rotation = Mat3<double>::Identity();  ///< Q, orthonormal to 32u
+  Vec3<double> translation = Vec3<double>::Zero();
+  double reach = 0;  ///< of the mesh, from its own origin
+  double noise = 0;  ///< 8u (r + |t|) + |R - Q| r; infinite where R is off by more than 0.01
+
+  Standing() = default;
+  Standing(const Pose& pose, double reach_of_mesh)
+      : rotation(pose.rotation), translation(pose.translation), reach(reach_of_mesh) {
+    constexpr double u = unit_roundoff<double>;
+    noise = 8 * u * (reach + translation.lpNorm<1>());
+    double left = squared_defect_of(rotation);
+    if (left <= sound) return;
+    // As Placement does: each step of Newton's iteration squares the defect.
+    if (left <= 1e-4)
+      for (int step = 0; step < 8 && !(left <= sound); ++step) {
+        const Mat3<double> product = rotation.transpose() * rotation;
+        rotation = (rotation * (1.5 * Mat3<double>::Identity() - 0.5 * product)).eval();
+        left = squared_defect_of(rotation);
+      }
+    if (left <= sound) {
+      noise += ((pose.rotation - rotation).norm() + 8 * u) * reach;
+    } else {
+      rotation = Mat3<double>::Identity();
+      noise = std::numeric_limits<double>::infinity();
+    }
+  }
+
+ private:
+  static constexpr double sound = 32 * 32 * unit_roundoff<double> * unit_roundoff<double>;
+
+  /// |M'M - I|_F^2.
+  static double squared_defect_of(const Mat3<double>& m) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double own = dot<double>(m.col(i), m.col(i)) - 1;
+      const double next = dot<double>(m.col(i), m.col((i + 1) % 3));
+      sum += own * own + 2 * (next * next);
+    }
+    return sum;
+  }
+};
+
+/// a as seen from b.
+struct RelativePose {
+  Mat3<double> rotation;
+  Vec3<double> translation;
+  double noise;
+
+  RelativePose(const Standing& a, const Standing& b) {
+    const Vec3<double> between = a.translation - b.translation;
+    rotation = b.rotation.transpose().lazyProduct(a.rotation);
+    translation = b.rotation.transpose().lazyProduct(between);
+    noise = a.noise + b.noise +
+            128 * unit_roundoff<double> * (a.reach + b.reach + between.template lpNorm<1>());
+  }
+
+  /// b as seen from a. The same noise: the translation is off by one more multiplication, for which
+  /// there is room in the 128u.
+  RelativePose reversed() const {
+    RelativePose other = *this;
+    other.rotation = rotation.transpose();
+    other.translation = -(other.rotation.lazyProduct(translation));
+    return other;
+  }
+};
+
+}  // namespace bvlab

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A box along the axes of the mesh's own frame, cut by a slab across the normal of the surface in
+/// it. A patch of surface is flat: the slab is what makes the box thin, as slab-cut balls are
+/// (larsson2009slabcut), and costs a third of the nine edge axes of an oriented box.
+///
+/// Made to be compared as it lies, by the relative pose (see wide/facing.hpp); posed into the world
+/// it is an oriented box with a slab, and costs what one costs. The slab is the set of points x
+/// with |n.(x - centre) - middle| <= width for the normal n just as it is stored.
+#pragma once
+
+#include <Eigen/Eigenvalues>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string_view>
+
+#include "hierarchies/geometry/placement.hpp"
+#include "hierarchies/geometry/triangle_mesh.hpp"
+#include "hierarchies/volumes/obb.hpp"
+
+namespace bvlab {
+
+template <class S>
+struct SlabBoxFacing;
+
+template <Scalar S>
+struct SlabBox {
+  static constexpr std::string_view name = "slab-box";
+  static constexpr std::string_view description =
+      "box in the mesh's own frame, cut by a slab across the surface's normal";
+  using scalar = S;
+  template <class Other>
+  using over = SlabBox<Other>;
+  /// How it is compared as it lies: include wide/slab_box_facing.hpp.
+  using facing = SlabBoxFacing<S>;
+
+  Vec3<S> centre, half, normal;
+  S middle, width;
+
+  static SlabBox enclosing(std::span<const Vec3<double>> points) requires(!Batched<S>) {
+    SlabBox box = box_around(points);
+    Mat3<double> spread = Mat3<double>::Zero();
+    for (const auto& p : points) {
+      const Vec3<double> x = p - box.centre.template cast<double>();
+      spread += x * x.transpose();
+    }
+    box.cut(Eigen::SelfAdjointEigenSolver<Mat3<double>>(spread).eigenvectors().col(0), points);
+    return box;
+  }
+
+  /// The slab is the thinner one of those across the mean normal and across the direction that the
+  /// surface faces most.
+  static SlabBox enclosing(std::span<const Vec3<double>> points,
+                           std::span<const Triangle> triangles) requires(!Batched<S>) {
+    SlabBox box = box_around(points);
+    Vec3<double> mean = Vec3<double>::Zero();
+    Mat3<double> facing = Mat3<double>::Zero();
+    for (const auto& t : triangles) {
+      const Vec3<double> normal = (t[1] - t[0]).cross(t[2] - t[0]);
+      const double area = normal.norm();
+      mean += normal;
+      if (area > 0) facing += normal * normal.transpose() / area;
+    }
+    box.cut(Eigen::SelfAdjointEigenSolver<Mat3<double>>(facing).eigenvectors().col(2), points);
+    const double length = mean.norm();
+    if (length > 0) {
+      SlabBox other = box;
+      other.cut(mean / length, points);
+      if (other.width < box.width) return other;
+    }
+    return box;
+  }
+
+ private:
+  /// A difference of two coordinates is off by one rounding.
+  static SlabBox box_around(std::span<const Vec3<double>> points) {
+    Vec3<double> low = points[0], high = low;
+    for (const auto& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    SlabBox box;
+    box.centre = rounded<S>(low / 2 + high / 2);
+    for (int i = 0; i < 3; ++i) {
+      const double centre = box.centre[i];
+      box.half[i] = rounded_up<S>(std::max(high[i] - centre, centre - low[i]) *
+                                  (1 + 2 * unit_roundoff<double>));
+    }
+    return box;
+  }
+
+  /// Sums of three products of differences are off by less than 8u of their magnitudes, which are
+  /// at most |x|_1 for a normal of about unit length. One that is no direction becomes the x axis.
+  void cut(const Vec3<double>& direction, std::span<const Vec3<double>> points) {
+    normal = rounded<S>(direction.allFinite() && direction.squaredNorm() > 0.5
+                            ? direction
+                            : Vec3<double>(Vec3<double>::UnitX()));
+    const Vec3<double> n = normal.template cast<double>(), c = centre.template cast<double>();
+    double low = std::numeric_limits<double>::infinity(), high = -low, farthest = 0;
+    for (const auto& p : points) {
+      const Vec3<double> x = p - c;
+      const double at = dot<double>(n, x);
+      low = std::min(low, at), high = std::max(high, at);
+      farthest = std::max(farthest, x.template lpNorm<1>());
+    }
+    middle = static_cast<S>(low / 2 + high / 2);
+    const double tiny = std::ldexp(1.0, std::numeric_limits<double>::min_exponent / 2);
+    width = rounded_up<S>(std::max(high - double(middle), double(middle) - low) +
+                          16 * unit_roundoff<double> * farthest + tiny);
+  }
+};
+
+/// What it is in the world.
+template <Scalar S>
+struct TurnedSlabBox {
+  using scalar = S;
+  template <class Other>
+  using over = TurnedSlabBox<Other>;
+  Obb<S> box;
+  Vec3<S> normal;
+  S middle, width;
+};
+
+/// Around the corners of both: the slab is the box's thinnest side. Only where no triangles are at
+/// hand.
+template <class S>
+SlabBox<S> merge(const SlabBox<S>& a, const SlabBox<S>& b) {
+  std::array<Vec3<double>, 16> corners;
+  for (std::size_t i = 0; i < 16; ++i) {
+    const SlabBox<S>& box = i < 8 ? a : b;
+    for (int k = 0; k < 3; ++k) {
+      // One rounding; the half length is made to outweigh it.
+      const double half = double(box.half[k]) + 2 * unit_roundoff<double> * std::abs(box.centre[k]);
+      corners[i][k] = double(box.centre[k]) + (i >> k & 1 ? half : -half);
+    }
+  }
+  return SlabBox<S>::enclosing(corners);
+}
+
+/// A point centre + y of the slab arrives within slack of the posed centre plus Qy, and its normal
+/// within tilt of Qn (see Placement): |n'.(x' - centre') - middle| is wider than it was by at most
+/// tilt |y| + slack |n'|. Five roundings are made here.
+template <class S>
+TurnedSlabBox<S> posed(const SlabBox<S>& volume, const Placement<Element<S>>& placement) {
+  const S one(1), zero(0);
+  const Obb<S> box{
+      volume.centre, {{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}}, volume.half};
+  constexpr Element<S> e = unit_roundoff<S>;
+  const S blur =
+      S(placement.slack) + S(placement.tilt) * ((volume.half[0] + volume.half[1]) + volume.half[2]);
+  return {posed(box, placement), placement.directed(volume.normal), volume.middle,
+          (volume.width + blur * S(1 + 16 * e)) * S(1 + 8 * e)};
+}
+
+namespace detail {
+
+/// Whether the slab of a has all of b's box on one side.
+///
+/// n.t and n.b_k are off by less than 8e of |t| and 1; what they are summed with adds as much of
+/// itself. The margin of ObbPair is more than that: 256e of |t| and all half lengths, and `middle`
+/// is not farther out than the box.
+template <class S>
+Mask<S> apart_by_slab(const TurnedSlabBox<S>& a, const TurnedSlabBox<S>& b, const S& margin) {
+  using std::abs;
+  const Vec3<S> t = b.box.centre - a.box.centre;
+  S reached = a.width + margin;
+  for (int k = 0; k < 3; ++k)
+    reached = reached + b.box.half[k] * abs(dot<S>(a.normal, b.box.axes[k]));
+  return abs(dot<S>(a.normal, t) - a.middle) > reached;
+}
+
+}  // namespace detail
+
+/// A NaN (from an overflow) compares as not disjoint.
+template <class S>
+Mask<S> disjoint(const TurnedSlabBox<S>& a, const TurnedSlabBox<S>& b) {
+  const S margin = detail::ObbPair<S>(a.box, b.box).margin;
+  return disjoint(a.box, b.box) || detail::apart_by_slab<S>(a, b, margin) ||
+         detail::apart_by_slab<S>(b, a, margin);
+}
+
+template <class S>
+S gap(const TurnedSlabBox<S>& a, const TurnedSlabBox<S>& b) {
+  return gap(a.box, b.box);
+}
+
+template <class S>
+bool contains(const TurnedSlabBox<S>& volume, const Vec3<long double>& point) {
+  using Wide = Vec3<long double>;
+  const Wide x = point - volume.box.centre.template cast<long double>();
+  const long double at = volume.normal.template cast<long double>().dot(x);
+  return contains(volume.box, point) && !(std::abs(at - static_cast<long double>(volume.middle)) >
+                                          static_cast<long double>(volume.width));
+}
+template <class S>
+bool contains(const SlabBox<S>& volume, const Vec3<long double>& point) {
+  return contains(posed(volume, Placement<S>()), point);
+}
+
+/// Half the diagonal.
+template <class S>
+S size(const SlabBox<S>& volume) {
+  return volume.half.norm();
+}
+
+template <class S>
+S reach(const SlabBox<S>& volume) {
+  return volume.centre.norm() + volume.half.norm() * S(1 + 8 * unit_roundoff<S>);
+}
+
+}  // namespace bvlab

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What the siblings of a wide node need of vector registers: fused multiply-adds, one lane of a
+/// volume over batches, and one volume in all lanes.
+#pragma once
+
+#include <cstring>
+#include <type_traits>
+
+#include "hierarchies/bounding_volume.hpp"
+
+#if defined(__AVX512F__) || defined(__FMA__)
+#include <immintrin.h>
+#endif
+
+namespace bvlab {
+
+/// a * b + c, rounded once where the processor can, else twice: for sums that are culled by, whose
+/// margins hold either way, and never for where a vertex stands.
+template <Scalar S>
+[[gnu::always_inline]] inline S fused(const S& a, const S& b, const S& c) {
+#if defined(__AVX512F__)
+  if constexpr (std::is_same_v<S, Batch<float, 16>>)
+    return S(
+        _mm512_fmadd_ps(static_cast<__m512>(a), static_cast<__m512>(b), static_cast<__m512>(c)));
+#endif
+#if defined(__FMA__)
+  if constexpr (std::is_same_v<S, Batch<float, 8>>)
+    return S(
+        _mm256_fmadd_ps(static_cast<__m256>(a), static_cast<__m256>(b), static_cast<__m256>(c)));
+  if constexpr (std::is_same_v<S, Batch<float, 4>>)
+    return S(_mm_fmadd_ps(static_cast<__m128>(a), static_cast<__m128>(b), static_cast<__m128>(c)));
+#endif
+  return a * b + c;
+}
+
+/// c - a * b, likewise.
+template <Scalar S>
+[[gnu::always_inline]] inline S less_fused(const S& a, const S& b, const S& c) {
+#if defined(__AVX512F__)
+  if constexpr (std::is_same_v<S, Batch<float, 16>>)
+    return S(
+        _mm512_fnmadd_ps(static_cast<__m512>(a), static_cast<__m512>(b), static_cast<__m512>(c)));
+#endif
+#if defined(__FMA__)
+  if constexpr (std::is_same_v<S, Batch<float, 8>>)
+    return S(
+        _mm256_fnmadd_ps(static_cast<__m256>(a), static_cast<__m256>(b), static_cast<__m256>(c)));
+  if constexpr (std::is_same_v<S, Batch<float, 4>>)
+    return S(_mm_fnmadd_ps(static_cast<__m128>(a), static_cast<__m128>(b), static_cast<__m128>(c)));
+#endif
+  return c - a * b;
+}
+
+/// One over x, to ten digits or more where there is an instruction for that: only to put things in
+/// an order.
+template <Scalar S>
+[[gnu::always_inline]] inline S roughly_one_over(const S& x) {
+#if defined(__AVX512F__)
+  if constexpr (std::is_same_v<S, Batch<float, 16>>)
+    return S(_mm512_rcp14_ps(static_cast<__m512>(x)));
+#endif
+  return S(1) / x;
+}
+
+/// Three numbers as four floats, the last 0: written as one, so that they can be read as one.
+inline Batch<float, 4> rounded_to_four(const Vec3<double>& v) {
+  return Batch<float, 4>([&](auto i) {
+    if constexpr (i() < 3)
+      return static_cast<float>(v[static_cast<int>(i())]);
+    else
+      return 0.0f;
+  });
+}
+
+namespace detail {
+
+/// Volumes are plain aggregates of their scalars: field by field, lane by lane.
+template <class V, class Lanes>
+constexpr int lanes_of = sizeof(Lanes) / sizeof(V);
+
+}  // namespace detail
+
+/// Writes `volume` into one lane.
+template <class Lanes, class V>
+void put_lane(Lanes& lanes, int lane, const V& volume) {
+  using T = typename V::scalar;
+  constexpr int fields = sizeof(V) / sizeof(T), width = detail::lanes_of<V, Lanes>;
+  static_assert(std::is_standard_layout_v<V> && sizeof(Lanes) == sizeof(T) * fields * width);
+  for (int field = 0; field < fields; ++field)
+    std::memcpy(reinterpret_cast<char*>(&lanes) + sizeof(T) * (field * width + lane),
+                reinterpret_cast<const char*>(&volume) + sizeof(T) * field, sizeof(T));
+}
+
+/// The volume in one lane.
+template <class V, class Lanes>
+V lane_of(const Lanes& lanes, int lane) {
+  using T = typename V::scalar;
+  constexpr int fields = sizeof(V) / sizeof(T), width = detail::lanes_of<V, Lanes>;
+  V volume;
+  for (int field = 0; field < fields; ++field)
+    std::memcpy(reinterpret_cast<char*>(&volume) + sizeof(T) * field,
+                reinterpret_cast<const char*>(&lanes) + sizeof(T) * (field * width + lane),
+                sizeof(T));
+  return volume;
+}
+
+/// The same volume in every lane of S.
+template <Batched S, class V>
+[[gnu::always_inline]] inline Over<V, S> in_all_lanes(const V& volume) {
+  using T = typename V::scalar;
+  constexpr int fields = sizeof(V) / sizeof(T);
+  static_assert(sizeof(Over<V, S>) == sizeof(S) * fields);
+  Over<V, S> result;
+  for (int field = 0; field < fields; ++field) {
+    T x;
+    std::memcpy(&x, reinterpret_cast<const char*>(&volume) + sizeof x * field, sizeof x);
+    const S all(x);
+    std::memcpy(reinterpret_cast<char*>(&result) + sizeof all * field, &all, sizeof all);
+  }
+  return result;
+}
+
+}  // namespace bvlab

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Scenes that wide trees are tried on, and what brute force over all pairs of triangles says of
+/// them: bodies anywhere, turned by matrices that are hardly rotations, and made of triangles that
+/// are none.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <random>
+
+#include "experiments/scenes/formula_mesh.hpp"
+#include "hierarchies/builds.hpp"
+#include "traversal/counters.hpp"
+#include "traversal/queries.hpp"
+#include "traversal/wide/wide_pairs.hpp"
+
+namespace bvlab {
+
+using Frame = std::vector<Pose>;
+
+struct Scene {
+  const char* name;
+  std::vector<TriangleMesh> meshes;
+  std::vector<Frame> frames;
+};
+
+struct Truth {
+  std::vector<std::uint8_t> touching;
+  std::vector<double> distances;
+  std::vector<std::vector<Contact>> contacts;  // sorted
+};
+
+/// Triangles of no area, twice the same ones, and one far larger than the others.
+inline TriangleMesh degenerate_mesh() {
+  TriangleMesh mesh = formula_mesh("star", 24);
+  const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.triangles.push_back({0, 0, 0});
+  mesh.triangles.push_back({1, 2, 1});
+  mesh.triangles.push_back(mesh.triangles[3]);
+  mesh.vertices.push_back({3, 0.01, 0}), mesh.vertices.push_back({-3, 0, 0.02});
+  mesh.triangles.push_back({n, n + 1, 2});
+  return mesh;
+}
+
+inline TriangleMesh single_triangle() { return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}; }
+
+inline Frame random_frame(std::mt19937& random, std::size_t bodies, double side, double drift,
+                          const Vec3<double>& origin) {
+  std::uniform_real_distribution<double> at(-side, side), unit(-1, 1);
+  Frame frame;
+  for (std::size_t i = 0; i < bodies; ++i) {
+    Pose pose = *pose_from(Vec3<double>(at(random), at(random), at(random)) + origin, unit(random),
+                           unit(random), unit(random), unit(random) + 2);
+    for (int k = 0; k < 9; ++k) pose.rotation.data()[k] += drift * unit(random);
+    frame.push_back(pose);
+  }
+  return frame;
+}
+
+/// Turns by right angles and shifts by whole numbers: faces in common planes, edges on edges.
+inline Frame grid_frame(std::mt19937& random, std::size_t bodies) {
+  std::uniform_int_distribution<int> shift(-1, 1), turn(0, 3);
+  Frame frame;
+  for (std::size_t i = 0; i < bodies; ++i) {
+    Pose pose;
+    for (int k = turn(random); k > 0; --k)
+      pose.rotation = (Mat3<double>() << 0, -1, 0, 1, 0, 0, 0, 0, 1).finished() * pose.rotation;
+    pose.translation = Vec3<double>(shift(random), shift(random), shift(random));
+    frame.push_back(pose);
+  }
+  return frame;
+}
+
+inline std::vector<Scene> scenes(int frames) {
+  std::mt19937 random(20260701);
+  const auto made = [&](const char* name, std::vector<TriangleMesh> meshes, double side,
+                        double drift, const Vec3<double>& origin) {
+    Scene scene{name, std::move(meshes), {}};
+    for (int k = 0; k < frames; ++k)
+      scene.frames.push_back(random_frame(random, 4, side, drift, origin));
+    return scene;
+  };
+  const Vec3<double> here = Vec3<double>::Zero();
+  std::vector<Scene> all;
+  all.push_back(
+      made("dense", {formula_mesh("star", 60), formula_mesh("torus", 128)}, 0.7, 0, here));
+  all.push_back(made("sparse", {formula_mesh("knot", 96)}, 2, 0, here));
+  all.push_back(made("degenerate", {degenerate_mesh(), single_triangle()}, 1, 0, here));
+  all.push_back(made("drifting", {formula_mesh("torus", 64)}, 0.9, 1e-6, here));
+  all.push_back(made("hardly a rotation", {formula_mesh("torus", 64)}, 0.9, 0.2, here));
+  all.push_back(made("far", {formula_mesh("star", 60)}, 0.9, 0, {1e7, -3e6, 2e5}));
+  all.push_back(made("very far", {formula_mesh("star", 60)}, 0.9, 0, {1e15, 1e14, 0}));
+  Scene grid{"grid", {formula_mesh("box", 12), single_triangle()}, {}};
+  for (int k = 0; k < frames; ++k) grid.frames.push_back(grid_frame(random, 4));
+  all.push_back(grid);
+  return all;
+}
+
+inline Truth truth_of(const Scene& scene) {
+  Truth truth;
+  for (const Frame& frame : scene.frames) {
+    std::vector<std::vector<Triangle>> world;
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+      const TriangleMesh& mesh = scene.meshes[i % scene.meshes.size()];
+      world.emplace_back();
+      for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        world.back().push_back(mesh.corners(t));
+        for (auto& corner : world.back().back()) corner = frame[i](corner);
+      }
+    }
+    for (const auto& [i, j] : all_object_pairs(static_cast<std::uint32_t>(frame.size()))) {
+      std::vector<Contact> contacts;
+      double least = std::numeric_limits<double>::infinity();
+      for (std::uint32_t s = 0; s < world[i].size(); ++s)
+        for (std::uint32_t t = 0; t < world[j].size(); ++t) {
+          if (intersect(world[i][s], world[j][t])) contacts.push_back({s, t});
+          least = std::min(least, distance(world[i][s], world[j][t]).distance);
+        }
+      truth.touching.push_back(!contacts.empty());
+      truth.distances.push_back(contacts.empty() ? least : 0);
+      truth.contacts.push_back(std::move(contacts));
+    }
+  }
+  return truth;
+}
+
+inline const std::vector<std::pair<Scene, Truth>>& scenes_with_truth() {
+  static const auto all = [] {
+    std::vector<std::pair<Scene, Truth>> result;
+    for (auto& scene : scenes(12)) {
+      const Truth truth = truth_of(scene);
+      result.emplace_back(std::move(scene), truth);
+    }
+    return result;
+  }();
+  return all;
+}
+
+template <class V, int F, class FrameOfComparison>
+class PlayedWide {
+ public:
+  PlayedWide(const Scene& scene, std::uint32_t leaf_size) : scene_(scene) {
+    for (const auto& mesh : scene.meshes)
+      hierarchies_.emplace_back(mesh, builds::BottomUpLocal::topology(mesh, 1), Fit::published,
+                                leaf_size);
+    std::vector<WideShape<V, F>> shapes;
+    for (std::size_t i = 0; i < scene.frames[0].size(); ++i) {
+      const std::size_t k = i % scene.meshes.size();
+      shapes.push_back({&scene.meshes[k], &hierarchies_[k]});
+    }
+    engine_ = std::make_unique<WidePairs<V, F, FrameOfComparison>>(
+        shapes, all_object_pairs(static_cast<std::uint32_t>(shapes.size())));
+  }
+
+  void expect_touching(const Truth& truth) {
+    std::vector<std::uint8_t> found(truth.touching.size(), 2);
+    Counting counter;
+    for (std::size_t f = 0; f < scene_.frames.size(); ++f)
+      engine_->frame(
+          scene_.frames[f], counter, [](std::size_t) { return Touching(); },
+          [&](std::size_t p, const Touching& query) {
+            found[f * engine_->pairs().size() + p] = query.touching();
+          });
+    EXPECT_EQ(found, truth.touching) << where();
+    EXPECT_GT(counter.n_v, 0u);
+  }
+
+  void expect_contacts(const Truth& truth) {
+    NotCounting counter;
+    std::vector<std::vector<Contact>> found(engine_->pairs().size());
+    for (std::size_t f = 0; f < scene_.frames.size(); ++f) {
+      for (auto& each : found) each.clear();
+      engine_->frame(
+          scene_.frames[f], counter, [&](std::size_t p) { return Contacts(found[p]); },
+          [](std::size_t, const Contacts&) {});
+      for (std::size_t p = 0; p < found.size(); ++p) {
+        std::sort(found[p].begin(), found[p].end());
+        EXPECT_EQ(found[p], truth.contacts[f * found.size() + p]) << where() << ' ' << f;
+      }
+    }
+  }
+
+  void expect_distances(const Truth& truth) {
+    NotCounting counter;
+    for (std::size_t f = 0; f < scene_.frames.size(); ++f)
+      engine_->frame(
+          scene_.frames[f], counter, [](std::size_t) { return Distance(); },
+          [&](std::size_t p, const Distance& query) {
+            const double expected = truth.distances[f * engine_->pairs().size() + p];
+            EXPECT_EQ(query.distance() == 0, expected == 0) << where() << ' ' << f << ' ' << p;
+            EXPECT_NEAR(query.distance(), expected, 1e-13 * expected) << where() << ' ' << f;
+          });
+  }
+
+ private:
+  std::string where() const {
+    return std::string(scene_.name) + ' ' + std::string(V::name) + ' ' + std::to_string(F) + ' ' +
+           std::string(FrameOfComparison::name);
+  }
+
+  const Scene& scene_;
+  std::vector<WideHierarchy<V, F>> hierarchies_;
+  std::unique_ptr<WidePairs<V, F, FrameOfComparison>> engine_;
+};
+
+template <class V, int F, class FrameOfComparison, class Expect>
+void for_each_scene(Expect&& expect) {
+  for (const auto& [scene, truth] : scenes_with_truth())
+    for (const std::uint32_t leaf_size : {1u, static_cast<std::uint32_t>(F)}) {
+      PlayedWide<V, F, FrameOfComparison> played(scene, leaf_size);
+      expect(played, truth);
+    }
+}
+
+template <class V, int F, class FrameOfComparison>
+void expect_touching() {
+  for_each_scene<V, F, FrameOfComparison>(
+      [](auto& played, const Truth& truth) { played.expect_touching(truth); });
+}
+
+template <class V, int F, class FrameOfComparison>
+void expect_truth() {
+  for_each_scene<V, F, FrameOfComparison>([](auto& played, const Truth& truth) {
+    played.expect_touching(truth);
+    played.expect_contacts(truth);
+    played.expect_distances(truth);
+  });
+}
+
+}  // namespace bvlab

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// THE list of frames of comparison: where two volumes stand when they are tested.
+///
+/// A frame's `Body<V, F>` stands somewhere; its `Between<V, F>` is two of them, whose sides are 0
+/// and 1:
+///   begin(a, b)                            looks at two bodies
+///   one(side, node), one_child(...)        one volume, ready to be tested
+///   compared(side, node, one), gaps(...)   tests it against the children of a node of `side`
+///   corners()                              takes corners of a to where b's mesh is given
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <new>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "hierarchies/geometry/relative_pose.hpp"
+#include "hierarchies/geometry/type_list.hpp"
+#include "hierarchies/wide/facing.hpp"
+#include "hierarchies/wide/wide_hierarchy.hpp"
+
+namespace bvlab {
+
+/// What bodies have in common: vertices are posed when they are asked for, and not kept.
+template <BoundingVolume V, int F>
+class WideBody {
+ public:
+  WideBody(const TriangleMesh& mesh, const WideHierarchy<V, F>& hierarchy)
+      : mesh_(&mesh), hierarchy_(&hierarchy) {}
+
+  const WideHierarchy<V, F>& hierarchy() const { return *hierarchy_; }
+  const Standing& standing() const { return standing_; }
+  const Pose& pose() const { return pose_; }
+
+  /// Says whether it has moved.
+  bool stand(const Pose& pose) {
+    if (placed_ && pose == pose_) return false;
+    pose_ = pose, placed_ = true;
+    standing_ = Standing(pose, hierarchy_->reach());
+    return true;
+  }
+
+  /// In the world: what every verdict is on.
+  Triangle triangle(std::uint32_t index) const {
+    Triangle corners = mesh_->corners(index);
+    for (auto& corner : corners) corner = pose_(corner);
+    return corners;
+  }
+
+ private:
+  const TriangleMesh* mesh_;
+  const WideHierarchy<V, F>* hierarchy_;
+  Pose pose_;
+  Standing standing_;
+  bool placed_ = false;
+};
+
+/// Corners of a, where b's mesh is given: for the filter of triangles, whatever volumes do.
+class CornersBetween {
+ public:
+  using Four = Batch<float, 4>;
+
+  /// Corners are rounded (e r), as are rotation and translation; then come three products and sums.
+  void begin(const RelativePose& a_from_b, double reach_a, double reach_b) {
+    constexpr double e = unit_roundoff<float>;
+    const double length = a_from_b.translation.lpNorm<1>();
+    off_ = static_cast<float>((16 * e * (reach_a + length) + 2 * e * reach_b + a_from_b.noise) *
+                              (1 + 8 * e)) +
+           std::numeric_limits<float>::min();
+    for (int i = 0; i < 3; ++i)
+      rounded_to_four(a_from_b.rotation.col(i)).copy_to(column_[i], stdx::vector_aligned);
+    rounded_to_four(a_from_b.translation).copy_to(translation_, stdx::vector_aligned);
+  }
+
+  /// The fourth number is none of its coordinates.
+  [[gnu::always_inline]] Four turned(float x, float y, float z) const {
+    const auto from = [](const float* p) { return Four(p, stdx::vector_aligned); };
+    return fused<Four>(from(column_[2]), Four(z),
+                       fused<Four>(from(column_[1]), Four(y),
+                                   fused<Four>(from(column_[0]), Four(x), from(translation_))));
+  }
+
+  /// How far any corner can be from where it is said to be, in each coordinate.
+  float off() const { return off_; }
+
+ private:
+  alignas(16) float column_[3][4], translation_[4];
+  float off_;
+};
+
+/// Bodies stay as their meshes are given; the relative pose takes one node at a time into the frame
+/// of the other. A body is its pose.
+struct RelativeFrame {
+  static constexpr std::string_view name = "relative";
+  static constexpr std::string_view description =
+      "one body's node is posed into the frame of the other, whose nodes never are";
+
+  template <BoundingVolume V, int F>
+  using Body = WideBody<V, F>;
+
+  template <BoundingVolume V, int F>
+  class Between {
+    using Facing = FacingOf<V>;
+    using T = typename V::scalar;
+    using S = Batch<T, F>;
+
+   public:
+    using One = typename Facing::One;
+
+    void begin(Body<V, F>& a, Body<V, F>& b) {
+      hierarchies_ = {&a.hierarchy(), &b.hierarchy()};
+      const RelativePose a_from_b(a.standing(), b.standing());
+      const double reach_a = a.hierarchy().reach(), reach_b = b.hierarchy().reach();
+      turn_[1] = Facing::turn(a_from_b, reach_a, reach_b);
+      turn_[0] = Facing::turn(a_from_b.reversed(), reach_b, reach_a);
+      corners_.begin(a_from_b, reach_a, reach_b);
+    }
+
+    /// A volume of `side`, for the other side's lanes.
+    template <class Counter>
+    [[gnu::always_inline]] One one(std::size_t side, std::uint32_t node, Counter& counter) const {
+      counter.posed(1);
+      const auto& of = hierarchies_[side]->node(node);
+      return Facing::one(of.volume, of.size, turn_[1 - side]);
+    }
+    /// One child of a node.
+    template <class Counter>
+    One one_child(std::size_t side, std::uint32_t node, int lane, Counter& counter) const {
+      counter.posed(1);
+      const auto& of = hierarchies_[side]->children(node);
+      return Facing::one(lane_of<V>(of.volumes, lane), T(of.size[static_cast<std::size_t>(lane)]),
+                         turn_[1 - side]);
+    }
+    template <class Counter>
+    [[gnu::always_inline]] Compared<S> compared(std::size_t side, std::uint32_t node,
+                                                const One& one, Counter&) const {
+      const auto& lanes = hierarchies_[side]->children(node);
+      return Facing::template compared<S>(one, turn_[side], lanes.volumes, lanes.size);
+    }
+    template <class Counter>
+    [[gnu::always_inline]] S gaps(std::size_t side, std::uint32_t node, const One& one,
+                                  Counter&) const {
+      return Facing::template gaps<S>(one, turn_[side], hierarchies_[side]->children(node).volumes);
+    }
+    const CornersBetween& corners() const { return corners_; }
+
+   private:
+    std::array<const WideHierarchy<V, F>*, 2> hierarchies_;
+    std::array<typename Facing::Turn, 2> turn_;  // into the frame of that side
+    CornersBetween corners_;
+  };
+};
+
+/// Both bodies are posed into the world, about a common origin: a node with all its children, once
+/// whenever its body has moved, for all pairs.
+struct WorldFrame {
+  static constexpr std::string_view name = "world";
+  static constexpr std::string_view description =
+      "both bodies are posed into the world, each node once whenever its body has moved";
+
+  template <BoundingVolume V, int F>
+  class Body : public WideBody<V, F> {
+    using S = Batch<typename V::scalar, F>;
+
+   public:
+    Body(const TriangleMesh& mesh, const WideHierarchy<V, F>& hierarchy)
+        : WideBody<V, F>(mesh, hierarchy),
+          nodes_(hierarchy.size()),
+          lanes_(hierarchy.size()),
+          node_epochs_(hierarchy.size(), 0),
+          lane_epochs_(hierarchy.size(), 0) {}
+
+    void place(const Pose& pose, const Vec3<double>& origin) {
+      if (!this->stand(pose)) return;
+      placement_ = PlacementOf<V>(pose, origin, this->hierarchy().reach());
+      if (++epoch_ == 0) {
+        std::fill(node_epochs_.begin(), node_epochs_.end(), 0u);
+        std::fill(lane_epochs_.begin(), lane_epochs_.end(), 0u);
+        epoch_ = 1;
+      }
+    }
+
+    template <class Counter>
+    const Posed<V>& node(std::uint32_t i, Counter& counter) {
+      if (std::exchange(node_epochs_[i], epoch_) != epoch_) {
+        ::new (&nodes_[i]) Posed<V>(posed(this->hierarchy().node(i).volume, placement_));
+        counter.posed(1);
+      }
+      return nodes_[i];
+    }
+    template <class Counter>
+    const Over<Posed<V>, S>& lanes(std::uint32_t i, Counter& counter) {
+      if (std::exchange(lane_epochs_[i], epoch_) != epoch_) {
+        const auto& children = this->hierarchy().children(i).volumes;
+        ::new (&lanes_[i]) Over<Posed<V>, S>(posed(children, placement_));
+        counter.posed(static_cast<std::uint64_t>(std::popcount(this->hierarchy().node(i).lanes)));
+      }
+      return lanes_[i];
+    }
+
+   private:
+    PlacementOf<V> placement_;
+    std::vector<Posed<V>> nodes_;
+    std::vector<Over<Posed<V>, S>> lanes_;
+    std::vector<std::uint32_t> node_epochs_, lane_epochs_;
+    std::uint32_t epoch_ = 0;
+  };
+
+  template <BoundingVolume V, int F>
+  class Between {
+    using T = typename V::scalar;
+    using S = Batch<T, F>;
+
+   public:
+    struct One {
+      Over<Posed<V>, S> volume;
+      S size;
+    };
+
+    void begin(Body<V, F>& a, Body<V, F>& b) {
+      bodies_ = {&a, &b};
+      corners_.begin(RelativePose(a.standing(), b.standing()), a.hierarchy().reach(),
+                     b.hierarchy().reach());
+    }
+
+    template <class Counter>
+    One one(std::size_t side, std::uint32_t node, Counter& counter) const {
+      return {in_all_lanes<S>(bodies_[side]->node(node, counter)),
+              S(bodies_[side]->hierarchy().node(node).size)};
+    }
+    template <class Counter>
+    One one_child(std::size_t side, std::uint32_t node, int lane, Counter& counter) const {
+      const auto volume = lane_of<Posed<V>>(bodies_[side]->lanes(node, counter), lane);
+      const auto& sizes = bodies_[side]->hierarchy().children(node).size;
+      return {in_all_lanes<S>(volume), S(T(sizes[static_cast<std::size_t>(lane)]))};
+    }
+    template <class Counter>
+    Compared<S> compared(std::size_t side, std::uint32_t node, const One& one,
+                         Counter& counter) const {
+      return detail::compared_posed<S>(one.volume, bodies_[side]->lanes(node, counter), one.size,
+                                       bodies_[side]->hierarchy().children(node).size);
+    }
+    template <class Counter>
+    S gaps(std::size_t side, std::uint32_t node, const One& one, Counter& counter) const {
+      return gap(one.volume, bodies_[side]->lanes(node, counter));
+    }
+    const CornersBetween& corners() const { return corners_; }
+
+   private:
+    std::array<Body<V, F>*, 2> bodies_;
+    CornersBetween corners_;
+  };
+};
+
+using Frames = TypeList<RelativeFrame, WorldFrame>;
+
+/// Puts a body where its pose says; `origin` is the same for all that are to be compared.
+template <BoundingVolume V, int F>
+void place(WideBody<V, F>& body, const Pose& pose, const Vec3<double>&) {
+  body.stand(pose);
+}
+template <class Body>
+requires requires(Body body, Pose pose, Vec3<double> origin) { body.place(pose, origin); }
+void place(Body& body, const Pose& pose, const Vec3<double>& origin) { body.place(pose, origin); }
+
+}  // namespace bvlab

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Pairs of nodes that a traversal has yet to open. The one to be opened next is the least in order
+/// of the last 32, not of all: that one is found in registers without a branch, and is nearly
+/// always the least of all.
+///
+/// What is not taken in an order is taken as from a stack.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "hierarchies/geometry/scalar.hpp"
+#include "traversal/front.hpp"
+
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#endif
+
+namespace bvlab {
+
+namespace detail {
+
+/// Writes first + k for each set bit k of the mask, side by side. May write F numbers.
+template <int F>
+[[gnu::always_inline]] inline void write_numbers(std::uint32_t* out, std::uint64_t mask,
+                                                 std::uint32_t first) {
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+  if constexpr (F == 16) {
+    const __m512i lanes = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
+    const __m512i all = _mm512_add_epi32(_mm512_set1_epi32(static_cast<int>(first)), lanes);
+    _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), all));
+    return;
+  }
+  if constexpr (F == 8) {
+    const __m256i lanes = _mm256_set_epi32(7, 6, 5, 4, 3, 2, 1, 0);
+    const __m256i all = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first)), lanes);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
+                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), all));
+    return;
+  }
+#endif
+  for (; mask; mask &= mask - 1)
+    *out++ = first + static_cast<std::uint32_t>(std::countr_zero(mask));
+}
+
+/// Writes the lanes of `x` whose bits are set, side by side. May write F numbers.
+template <int F>
+[[gnu::always_inline]] inline void write_lanes(float* out, std::uint64_t mask,
+                                               const Batch<float, F>& x) {
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+  if constexpr (F == 16) {
+    _mm512_storeu_ps(
+        out, _mm512_maskz_compress_ps(static_cast<__mmask16>(mask), static_cast<__m512>(x)));
+    return;
+  }
+  if constexpr (F == 8) {
+    _mm256_storeu_ps(out,
+                     _mm256_maskz_compress_ps(static_cast<__mmask8>(mask), static_cast<__m256>(x)));
+    return;
+  }
+#endif
+  for (; mask; mask &= mask - 1) *out++ = x[static_cast<std::size_t>(std::countr_zero(mask))];
+}
+
+}  // namespace detail
+
+class Frontier {
+ public:
+  static constexpr std::size_t window = 32;
+
+  Frontier() { grow(512); }
+
+  void clear() { size_ = 0; }
+  bool empty() const { return size_ == 0; }
+  std::size_t size() const { return size_; }
+
+  void push(const NodePair& pair, float order) {
+    reserve();
+    id_[0][size_] = pair.a, id_[1][size_] = pair.b;
+    order_[window + size_++] = order;
+  }
+
+  /// Pairs of `other` with first, first + 1, ... of `side`, as bits of the mask say.
+  template <int F>
+  [[gnu::always_inline]] void push_lanes(int side, std::uint64_t mask, std::uint32_t first,
+                                         std::uint32_t other, const Batch<float, F>& order) {
+    reserve();
+    detail::write_numbers<F>(&id_[static_cast<std::size_t>(side)][size_], mask, first);
+    std::fill_n(&id_[static_cast<std::size_t>(1 - side)][size_], F, other);
+    detail::write_lanes<F>(&order_[window + size_], mask, order);
+    size_ += static_cast<std::size_t>(std::popcount(mask));
+  }
+
+  NodePair take_last() {
+    --size_;
+    return {id_[0][size_], id_[1][size_]};
+  }
+
+  /// The least in order of the last 32, of several the last; with its order.
+  [[gnu::always_inline]] NodePair take_least(float& order) {
+    const std::size_t at = least();
+    order = order_[window + at];
+    const NodePair pair{id_[0][at], id_[1][at]};
+    --size_;
+    id_[0][at] = id_[0][size_], id_[1][at] = id_[1][size_];
+    order_[window + at] = order_[window + size_];
+    return pair;
+  }
+
+ private:
+  [[gnu::always_inline]] std::size_t least() const {
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+    const float* end = &order_[window + size_];
+    const __m512 last = _mm512_loadu_ps(end - 16), first = _mm512_loadu_ps(end - 32);
+    const __m512 both = _mm512_min_ps(last, first);
+    const __m256 eight =
+        _mm256_min_ps(_mm512_castps512_ps256(both), _mm512_extractf32x8_ps(both, 1));
+    __m128 four = _mm_min_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
+    four = _mm_min_ps(four, _mm_permute_ps(four, 0x4e));
+    four = _mm_min_ps(four, _mm_permute_ps(four, 0xb1));
+    const __m512 value = _mm512_broadcastss_ps(four);
+    // Written so that what is no number is found, too.
+    const std::uint32_t found =
+        static_cast<std::uint32_t>(_mm512_cmp_ps_mask(last, value, _CMP_NGT_UQ)) << 16 |
+        _mm512_cmp_ps_mask(first, value, _CMP_NGT_UQ);
+    return size_ - 1 - static_cast<std::size_t>(std::countl_zero(found));
+#else
+    std::size_t at = size_ - 1;
+    for (std::size_t k = at; k-- > 0 && k + window >= size_;)
+      if (order_[window + k] < order_[window + at]) at = k;
+    return at;
+#endif
+  }
+
+  void reserve() {
+    if (size_ + 16 > id_[0].size()) grow(2 * id_[0].size());
+  }
+  /// In front of the first stand 32 that never are the least.
+  void grow(std::size_t capacity) {
+    id_[0].resize(capacity), id_[1].resize(capacity);
+    order_.resize(window + capacity + 16);
+    std::fill_n(order_.begin(), window, std::numeric_limits<float>::infinity());
+  }
+
+  std::array<std::vector<std::uint32_t>, 2> id_;
+  std::vector<float> order_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace bvlab

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Bodies over wide trees that move from frame to frame, and pairs of them asked in every frame,
+/// from the roots: AllPairs' sibling. Balls around the bodies dismiss what is far apart; what is
+/// near takes turns, two pairs at a time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "traversal/all_pairs.hpp"
+#include "traversal/wide/wide_traversal.hpp"
+
+namespace bvlab {
+
+/// A mesh and the wide hierarchy over it.
+template <BoundingVolume V, int F>
+struct WideShape {
+  const TriangleMesh* mesh;
+  const WideHierarchy<V, F>* hierarchy;
+};
+
+template <BoundingVolume V, int F, class Frame = RelativeFrame>
+class WidePairs {
+  using Body = typename Frame::template Body<V, F>;
+
+ public:
+  /// One body for each shape, which must outlive this.
+  WidePairs(std::span<const WideShape<V, F>> shapes, std::vector<ObjectPair> pairs)
+      : pairs_(std::move(pairs)) {
+    bodies_.reserve(shapes.size());
+    for (const auto& shape : shapes) {
+      bodies_.emplace_back(*shape.mesh, *shape.hierarchy);
+      balls_.push_back(shape.hierarchy->ball());
+    }
+    centres_.resize(bodies_.size()), reaches_.resize(bodies_.size());
+    near_.resize(pairs_.size());
+  }
+
+  /// As AllPairs::frame; answers are taken in the order of pairs that were far apart, then of those
+  /// that were not, as they come.
+  template <class Counter, class Ask, class Take>
+  void frame(std::span<const Pose> poses, Counter& counter, Ask&& ask, Take&& take) {
+    using Query = std::remove_cvref_t<decltype(ask(0))>;
+    if (!placed_) origin_ = middle_of(poses), placed_ = true;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      place(bodies_[i], poses[i], origin_);
+      centres_[i] = poses[i](balls_[i].centre);
+      // What is off, of a corner and of the centre, and of how far they are apart.
+      reaches_[i] =
+          (balls_[i].radius + 4 * bodies_[i].standing().noise) * (1 + 16 * unit_roundoff<double>);
+    }
+    std::size_t near = pairs_.size();
+    if constexpr (!SeeksDistance<Query>) {
+      near = find_near(counter);
+      for (std::size_t k = near; k < pairs_.size(); ++k) take(near_[k], ask(near_[k]));
+    } else {
+      for (std::size_t k = 0; k < near; ++k) near_[k] = static_cast<std::uint32_t>(k);
+    }
+    take_turns<Query>(near, counter, ask, take);
+  }
+
+  const std::vector<ObjectPair>& pairs() const { return pairs_; }
+
+ private:
+  static constexpr std::size_t at_once = 2;
+
+  /// Puts the pairs whose balls meet before the others; says how many they are.
+  template <class Counter>
+  std::size_t find_near(Counter& counter) {
+    std::size_t near = 0, far = pairs_.size();
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+      const auto [i, j] = pairs_[p];
+      const double reach = reaches_[i] + reaches_[j];
+      const bool meet = !((centres_[i] - centres_[j]).squaredNorm() > reach * reach);
+      near_[near] = static_cast<std::uint32_t>(p);
+      near += meet;
+      far -= !meet;
+      if (!meet) near_[far] = static_cast<std::uint32_t>(p);
+    }
+    counter.tested(pairs_.size());
+    return near;
+  }
+
+  template <class Query, class Counter, class Ask, class Take>
+  void take_turns(std::size_t near, Counter& counter, Ask& ask, Take& take) {
+    using Traversal = WideTraversal<V, F, Frame, Query, Counter>;
+    std::array<Traversal, at_once> traversals{Traversal(workspaces_[0]), Traversal(workspaces_[1])};
+    std::array<std::uint32_t, at_once> pair;
+    std::size_t next = 0, active = 0;
+    std::array<Traversal*, at_once> turn;
+    const auto begin = [&](std::size_t slot) {
+      pair[slot] = near_[next++];
+      const auto [i, j] = pairs_[pair[slot]];
+      turn[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter);
+    };
+    for (; active < at_once && next < near; ++active) {
+      turn[active] = &traversals[active];
+      begin(active);
+    }
+    while (active > 0)
+      for (std::size_t slot = 0; slot < active;) {
+        if (turn[slot]->advance()) {
+          ++slot;
+          continue;
+        }
+        take(pair[slot], turn[slot]->query());
+        if (next < near) {
+          begin(slot++);
+        } else {
+          --active;
+          std::swap(turn[slot], turn[active]), std::swap(pair[slot], pair[active]);
+        }
+      }
+  }
+
+  std::vector<ObjectPair> pairs_;
+  std::vector<Body> bodies_;
+  std::vector<MeshBall> balls_;
+  std::vector<Vec3<double>> centres_;
+  std::vector<double> reaches_;
+  std::vector<std::uint32_t> near_;  // pairs, near ones first
+  std::array<WideWorkspace, at_once> workspaces_;
+  Vec3<double> origin_ = Vec3<double>::Zero();
+  bool placed_ = false;
+};
+
+}  // namespace bvlab
