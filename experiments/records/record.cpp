@@ -98,12 +98,16 @@ Table::Table(std::filesystem::path path, Row columns)
     : path_(std::move(path)), columns_(std::move(columns)) {
   if (!std::filesystem::exists(path_)) return;
   auto rows = parse_csv(contents(path_));
-  if (rows.empty() || rows[0] != columns_) throw Unusable(path_.string(), "has other columns");
+  const std::size_t held = rows.empty() ? 0 : rows[0].size();
+  if (held == 0 || held > columns_.size() ||
+      !std::equal(rows[0].begin(), rows[0].end(), columns_.begin()))
+    throw Unusable(path_.string(), "has other columns");
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    if (rows[i].size() != columns_.size())
+    if (rows[i].size() != held)
       throw Unusable(path_.string(), "line " + std::to_string(i + 1) + " has " +
                                          std::to_string(rows[i].size()) + " fields, not " +
-                                         std::to_string(columns_.size()));
+                                         std::to_string(held));
+    rows[i].resize(columns_.size());
     rows_.push_back(std::move(rows[i]));
   }
 }
