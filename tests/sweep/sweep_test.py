@@ -83,6 +83,28 @@ class Sweeps(SweepTest):
         (self.folder / "study.toml").write_text('name = "s"\nkind = "triangles"\n')
         self.refuse(sweep, "study.toml", "--record", "swept", "--bvlab", BVLAB, mentions="study.toml")
 
+    def test_parts_that_are_refused(self):
+        for part in ("0/2", "3/2", "1/9", "1", "1/", "1/2x", "-1/2"):
+            self.refuse(BVLAB, "run", "small.toml", "--record", "swept", "--part", part, mentions="K/N is needed")
+        (self.folder / "study.toml").write_text('name = "s"\nkind = "triangles"\n')
+        self.refuse(BVLAB, "run", "study.toml", "--record", "swept", "--counts", mentions="a study has no parts")
+
+    def test_counts_and_times_are_not_mixed(self):
+        self.run_whole("--counts")
+        before = (self.folder / "whole" / "small.csv").read_bytes()
+        self.refuse(BVLAB, "run", "small.toml", "--record", "whole", mentions="holds counts alone")
+        self.assertEqual((self.folder / "whole" / "small.csv").read_bytes(), before)
+
+    def test_a_record_from_before_nodes_were_named_goes_on(self):
+        self.run_whole()
+        table = self.folder / "whole" / "small.csv"
+        lines = [line.rsplit(",", 2)[0] for line in table.read_text().splitlines()]
+        table.write_text("\n".join(lines[:17]) + "\n")  # the first two traces
+        self.run_whole()
+        rows = self.rows("whole")
+        self.assertEqual([row["node"] for row in rows], [""] * 16 + [platform.node()] * (len(rows) - 16))
+        self.assertEqual(len(rows), 4 * 2 * 4 * 2)
+
     def test_another_definition_is_refused(self):
         self.run_whole("--counts")
         (self.folder / "other.toml").write_text((self.folder / "small.toml").read_text() + "\n")
