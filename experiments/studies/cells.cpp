@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/studies/cells.hpp"
+
+#include <charconv>
+#include <map>
+#include <set>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/peers/peers.hpp"
+#include "experiments/scenes/named_mesh.hpp"
+#include "experiments/scenes/scenes.hpp"
+#include "experiments/scenes/touches_any.hpp"
+
+namespace bvlab {
+namespace {
+
+template <class T>
+T number(const std::string& name, const std::string& text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw Unusable(name + " = " + text + ": not a number of its kind");
+  return value;
+}
+
+struct SettingOption {
+  const Cell& cell;
+  void operator()(std::string_view name, std::string& value, std::string_view) const {
+    value = cell[name];
+  }
+  void operator()(std::string_view name, Length& value, std::string_view) const {
+    try {
+      value = length_from(cell[name]);
+    } catch (const Unusable& fault) {
+      throw Unusable(std::string(name), fault.what());
+    }
+  }
+  template <class T>
+  void operator()(std::string_view name, T& value, std::string_view) const {
+    value = number<T>(std::string(name), cell[name]);
+  }
+};
+
+std::string trace_key(const Cell& cell) {
+  std::string key;
+  for (const auto& [name, value] : cell.parameters)
+    if (!is_of_variant(name)) key += name + "=" + value + ";";
+  return key;
+}
+
+std::vector<TriangleMesh> meshes_of(const Cell& cell) {
+  std::vector<TriangleMesh> meshes;
+  for (auto& [name, mesh] :
+       named_meshes(cell["mesh"], number<std::size_t>("polygons", cell["polygons"])))
+    meshes.push_back(std::move(mesh));
+  return meshes;
+}
+
+/// Calls `use` with the cell's scene, its options set.
+template <class Use>
+void with_scene(const Cell& cell, Use&& use) {
+  const bool known = Scenes::with(cell["scene"], [&]<class S>(std::type_identity<S>) {
+    S scene;
+    scene.visit_options(SettingOption{cell});
+    use(scene);
+  });
+  if (!known) throw Unusable("no scene '" + cell["scene"] + "'; there are " + Scenes::names());
+}
+
+}  // namespace
+
+bool is_of_variant(const std::string& name) {
+  static const std::set<std::string> names{"volume",    "strategy",       "query",
+                                           "build",     "leaf_size",      "fit",
+                                           "precision", "relative_error", "peer"};
+  return names.contains(name);
+}
+
+Variant variant_of(const Cell& cell) {
+  return {cell["volume"],
+          cell["strategy"],
+          cell["query"],
+          cell["build"],
+          number<std::uint32_t>("leaf_size", cell["leaf_size"]),
+          cell["fit"],
+          cell["precision"],
+          number<double>("relative_error", cell["relative_error"])};
+}
+
+Prepared prepared(const Cell& cell) {
+  Prepared ready;
+  ready.meshes = meshes_of(cell);
+  std::vector<Extent> extents;
+  for (const auto& mesh : ready.meshes) extents.push_back(extent_of(mesh));
+  with_scene(cell, [&](const auto& scene) {
+    auto array = scene.generate(extents, touches_any(ready.meshes, scene.objects));
+    ready.trace = {array.shape[0], array.shape[1], std::move(array.data)};
+  });
+  return ready;
+}
+
+void check(const Cell& cell) {
+  check(variant_of(cell));
+  number<std::size_t>("polygons", cell["polygons"]);
+  with_scene(cell, [](const auto& scene) {
+    if constexpr (requires { scene.check(); }) scene.check();
+  });
+  if (cell["peer"].empty()) return;
+  if (!peer(cell["peer"]))
+    throw Unusable("no peer '" + cell["peer"] + "'; there are " + peer_names());
+}
+
+bool has_answer(const Cell& cell) {
+  const Peer* const other = peer(cell["peer"]);
+  return !other || other->answers(cell["query"]);
+}
+
+std::vector<Cell> cells_with_answers(const Definition& definition) {
+  std::vector<Cell> cells;
+  std::set<Settings> of_peers;
+  for (Cell& cell : cells_of(definition)) {
+    if (!has_answer(cell)) continue;
+    if (!cell["peer"].empty()) {
+      for (auto& [name, value] : cell.parameters)
+        if (is_of_variant(name) && name != "peer" && name != "query") value.clear();
+      Settings all = cell.labels;
+      all.insert(all.end(), cell.parameters.begin(), cell.parameters.end());
+      if (!of_peers.insert(std::move(all)).second) continue;
+    }
+    cells.push_back(std::move(cell));
+  }
+  return cells;
+}
+
+ReplayResult answered(const Prepared& ready, const Cell& cell, const ReplayOptions& options) {
+  if (const Peer* const other = peer(cell["peer"]))
+    return other->replay(ready.meshes, ready.trace, cell["query"], options);
+  return replay(ready.meshes, ready.trace, variant_of(cell), options);
+}
+
+std::vector<std::vector<std::size_t>> traces_of(const std::vector<Cell>& cells) {
+  std::map<std::string, std::size_t> place;
+  std::vector<std::vector<std::size_t>> traces;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto key = trace_key(cells[i]) + cells[i]["query"];
+    const auto [found, is_new] = place.emplace(key, traces.size());
+    if (is_new) traces.emplace_back();
+    traces[found->second].push_back(i);
+  }
+  return traces;
+}
+
+}  // namespace bvlab
