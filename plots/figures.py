@@ -80,9 +80,12 @@ def declared(definition):
 
 
 def default_value(rows):
-    """What is measured first of all: a time, if there is one."""
+    """What is measured first of all: a time, if there is one. Rows that say where they were measured may have none."""
+    def there(column):
+        return column in rows and ("alone" not in rows or rows[column].notna().any())
+
     for text in DEFAULT_VALUES:
-        if all(word in "/+" or word in rows and rows[word].notna().any() for word in text.split()):
+        if all(word in "/+" or there(word) for word in text.split()):
             return text
     settings, units = rows.attrs["settings"], rows.attrs["units"]
     measured = [c for c in rows if c not in settings and c in units and rows[c].dtype != object]
