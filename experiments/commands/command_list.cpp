@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.hpp"
+#include "experiments/definitions/definition.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/peers.hpp"
 #include "experiments/replay/box_methods.hpp"
@@ -52,6 +53,11 @@ const Kind kinds[] = {
     {"scenes", lines<Scenes>},
     {"precisions", lines<Precisions>},
     {"builds", lines<Builds>},
+    {"parameters",
+     [] {
+       for (const auto& each : parameters())
+         line(each.name, each.what + (each.fallback.empty() ? "" : " [" + each.fallback + "]"));
+     }},
     {"meshes", [] { lines_of(formula_meshes()); }},
     {"peers",
      [] {

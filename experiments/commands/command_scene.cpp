@@ -12,7 +12,7 @@
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 #include "experiments/scenes/scenes.hpp"
-#include "experiments/scenes/touches_any.hpp"
+#include "experiments/replay/touches_any.hpp"
 
 namespace bvlab {
 namespace {

@@ -17,7 +17,7 @@
 #include "experiments/replay/replay.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/scenes.hpp"
-#include "experiments/scenes/touches_any.hpp"
+#include "experiments/replay/touches_any.hpp"
 
 namespace bvlab {
 namespace {
@@ -128,6 +128,24 @@ bool has_answer(const Cell& cell) {
   return !other || other->answers(cell["query"]);
 }
 
+/// Of a mesh from a file a record says what it has, and not what a mesh by name would have had: the
+/// most triangles of those in the list.
+void set_polygons_of_files(std::vector<Cell>& cells) {
+  std::map<std::string, std::string> known;
+  for (auto& cell : cells) {
+    const std::string& mesh = cell["mesh"];
+    if (!names_files(mesh)) continue;
+    auto& polygons = known[mesh];
+    if (polygons.empty()) {
+      std::size_t most = 0;
+      for (const auto& each : meshes_of(cell)) most = std::max(most, each.triangles.size());
+      polygons = std::to_string(most);
+    }
+    for (auto& [name, value] : cell.parameters)
+      if (name == "polygons") value = polygons;
+  }
+}
+
 /// A peer has a volume, a strategy and so on of its own: what a cell says of ours is cleared, and
 /// cells that then say the same are one.
 std::vector<Cell> cells_with_answers(const Definition& definition) {
@@ -144,6 +162,7 @@ std::vector<Cell> cells_with_answers(const Definition& definition) {
     }
     cells.push_back(std::move(cell));
   }
+  set_polygons_of_files(cells);
   return cells;
 }
 

@@ -4,7 +4,7 @@
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/scenes.hpp"
-#include "experiments/scenes/touches_any.hpp"
+#include "experiments/replay/touches_any.hpp"
 
 namespace bvlab {
 

@@ -48,5 +48,6 @@ int main() {
   // Boxes alone: every overlapping pair, once.
   const std::vector<Box<float>> boxes{{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}};
   Auto<float, Closed> method{MethodSettings{}};
-  for (const auto& [i, j] : method.overlapping(boxes)) std::printf("boxes %u and %u overlap\n", i, j);
+  for (const auto& [i, j] : method.overlapping(boxes))
+    std::printf("boxes %u and %u overlap\n", i, j);
 }

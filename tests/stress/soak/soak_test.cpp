@@ -30,24 +30,28 @@ class Soak : public ::testing::Test {
   Workspace workspace_;
   NotCounting counter_;
 
+  template <class Query>
+  BodyPair<B, V, Query, NotCounting> pair(Query& query) {
+    return {a_, b_, query, counter_, workspace_};
+  }
   template <class S>
   std::vector<Contact> contacts(S& strategy) {
     std::vector<Contact> found;
     Contacts query(found);
-    strategy.template run<B>(a_, b_, query, counter_, workspace_);
+    strategy.run(pair(query));
     std::sort(found.begin(), found.end());
     return found;
   }
   template <class S>
   bool touching(S& strategy) {
     Touching query;
-    strategy.template run<B>(a_, b_, query, counter_, workspace_);
+    strategy.run(pair(query));
     return query.touching();
   }
   template <class S>
   double distance(S& strategy) {
     Distance query;
-    strategy.template run<B>(a_, b_, query, counter_, workspace_);
+    strategy.run(pair(query));
     return query.distance();
   }
 };
