@@ -79,7 +79,7 @@ class Scales : public testing::Test {
       const double distance =
           std::ldexp(std::ldexp(found.distances[frame], -exponent / 2), exponent / 2 - exponent);
       // The unit in which distances are told where numbers are few.
-      const double grain = exponent == -1074 ? 1 : 0;
+      const double grain = exponent < -1000 ? std::ldexp(1, -1074 - exponent) : 0;
       ASSERT_EQ(distance == 0, expected == 0) << exponent << ' ' << frame;
       ASSERT_NEAR(distance, expected, 0x1p-44 * expected + grain) << exponent << ' ' << frame;
     }
