@@ -8,6 +8,7 @@
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes.hpp"
 #include "tests/types_of.hpp"
+#include "traversal/bodies.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
 #include "traversal/strategies.hpp"

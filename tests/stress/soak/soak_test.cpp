@@ -10,6 +10,7 @@
 #include "hierarchies/volumes/sphere.hpp"
 #include "tests/stress/soak/way.hpp"
 #include "tests/types_of.hpp"
+#include "traversal/bodies.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
 #include "traversal/strategies.hpp"
