@@ -10,6 +10,7 @@
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes.hpp"
 #include "tests/types_of.hpp"
+#include "traversal/bodies.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
 #include "traversal/strategies.hpp"
@@ -59,13 +60,16 @@ class Scales : public testing::Test {
       a.move(Pose{}, Vec3<double>::Zero());
       b.move(pose, Vec3<double>::Zero());
       Touching touching;
-      touching_strategy.template run<B>(a, b, touching, counter, workspace);
+      touching_strategy.run(
+          BodyPair<B, V, decltype(touching), NotCounting>(a, b, touching, counter, workspace));
       answers.touching.push_back(touching.touching());
       Contacts contacts(answers.contacts.emplace_back());
-      contacts_strategy.template run<B>(a, b, contacts, counter, workspace);
+      contacts_strategy.run(
+          BodyPair<B, V, decltype(contacts), NotCounting>(a, b, contacts, counter, workspace));
       std::sort(answers.contacts.back().begin(), answers.contacts.back().end());
       Distance distance;
-      distance_strategy.template run<B>(a, b, distance, counter, workspace);
+      distance_strategy.run(
+          BodyPair<B, V, decltype(distance), NotCounting>(a, b, distance, counter, workspace));
       answers.distances.push_back(distance.distance());
     }
     return answers;
