@@ -22,7 +22,8 @@
 #include "experiments/studies/wandering.hpp"
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes/kdop_corners.hpp"
-#include "traversal/queries.hpp"
+#include "traversal/queries/contacts.hpp"
+#include "traversal/queries/touching.hpp"
 #include "traversal/strategies/recursive.hpp"
 
 namespace bvlab {

@@ -3,6 +3,7 @@
 names the file or the option, nothing on standard output, no file left behind."""
 
 import os
+import pathlib
 import shutil
 import subprocess
 import unittest
@@ -267,6 +268,14 @@ class Names(ProgramTest):
     def test_on_one_line_whatever_is_quoted(self):
         self.refuse("triangles", "--pairs", "a\nb\r\x1b[31m", mentions="a?b??[31m: No such file")
         self.refuse("list", "a\nb", mentions="a?b")
+
+
+class Pages(ProgramTest):
+    def test_the_page_of_parameters_is_what_the_program_lists(self):
+        source = pathlib.Path(__file__).resolve().parents[3]
+        page = (source / "experiments/definitions/README.md").read_text()
+        listed = self.run_bvlab("list", "parameters").stdout
+        self.assertIn("```\n" + listed + "```", page)
 
 
 class Values(ProgramTest):
