@@ -143,10 +143,10 @@
     scene.showVolumes(volumes.drawable ? state.pair : null, nodes);
     const cut = full.some((n, side) => n > nodes[side].length);
     element('volumes-drawn').textContent =
-      !state.pair ? `${data.volume}s are shown of a pair once it is chosen.`
+      !state.pair ? `Shown once a pair is chosen (${data.volume}).`
       : !volumes.drawable ? `${data.volume}: not a shape that can be drawn here.`
       : full[0] + full[1] === 0 ? words
-      : `${words}: ${nodes[0].length} + ${nodes[1].length} of ${data.volume}` + (cut ? `, the first of ${full[0]} + ${full[1]}` : '');
+      : `${words}: ${nodes[0].length} + ${nodes[1].length} volumes (${data.volume})` + (cut ? `, the first of ${full[0]} + ${full[1]}` : '');
   }
   for (const radio of document.querySelectorAll('input[name="which"]')) radio.addEventListener('change', showVolumes);
   element('level').addEventListener('input', showVolumes);
