@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The report as HTML: a section for each record, and the page around them."""
 
-import contextlib
 import html
-import importlib.machinery
-import importlib.util
-import io
 import json
 import re
 import shutil
+import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -47,7 +45,8 @@ def section_of(record, out):
     except ValueError as fault:
         raise Refused(f"{record}/machine.json: {fault}") from None
     return Section(rows.attrs["name"], record.resolve().name, definition.get("description", ""),
-                   figures_of(record, out), rows, medians(rows), machine, read_text(record / "command.txt").strip(),
+                   figures_of(record, rows.attrs["name"], out), rows, medians(rows), machine,
+                   read_text(record / "command.txt").strip(),
                    read_text(record / "definition.toml").strip())
 
 
@@ -55,7 +54,7 @@ def read_text(path):
     return path.read_text() if path.is_file() else ""
 
 
-def figures_of(record, out):
+def figures_of(record, name, out):
     folder = Path("figures") / MARKS.sub("-", f"{record.resolve().parent.name}-{record.resolve().name}")
     (out / folder).mkdir(parents=True, exist_ok=True)
     for old in (out / folder).glob("*.p*"):
@@ -63,17 +62,18 @@ def figures_of(record, out):
     for figure in sorted((record / "figures").glob("*.png")):
         shutil.copy(figure, out / folder)
     if not any((out / folder).glob("*.png")):
-        drawn(record, out / folder)
+        drawn(record, name, out / folder)
     return [(folder / path.name).as_posix() for path in sorted((out / folder).glob("*.png"))]
 
 
-def drawn(record, folder):
-    """What plots/draw draws of it."""
-    loader = importlib.machinery.SourceFileLoader("draw", str(PLOTS / "draw"))
-    draw = importlib.util.module_from_spec(importlib.util.spec_from_loader("draw", loader))
-    loader.exec_module(draw)
-    with contextlib.redirect_stdout(io.StringIO()):
-        draw.main([str(record), "--out", str(folder)])
+def drawn(record, name, folder):
+    """What the record's own script draws, where it has one, or plots/draw."""
+    script = PLOTS / f"{name.replace('-', '_')}.py"
+    for program in (script, PLOTS / "draw"):
+        if program.is_file() and not any(folder.glob("*.png")):
+            subprocess.run([sys.executable, "-B", program, record, "--out", folder], capture_output=True, check=False)
+    for other in folder.glob("*.pdf"):
+        other.unlink()
 
 
 def medians(rows):
