@@ -3,8 +3,8 @@
 'use strict';
 
 const curves = (() => {
-  const kinds = [['N<sub>u</sub>', 'volumes posed'], ['N<sub>v</sub>', 'volume pairs tested'],
-                 ['N<sub>p</sub>', 'triangle pairs tested'], ['front', 'entries, all pairs']];
+  const kinds = [['N<sub>u</sub>', 'volumes posed'], ['N<sub>v</sub>', 'volume tests'],
+                 ['N<sub>p</sub>', 'triangle tests'], ['front', 'entries']];
   const count = new Intl.NumberFormat('en');
   const all = kinds.map(([symbol, meaning], k) => {
     const box = document.createElement('div');

@@ -177,7 +177,7 @@
   let last = performance.now();
   function tick(now) {
     // After a pause of the browser the film goes on where it was.
-    const elapsed = Math.min(0.1, (now - last) / 1000);
+    const elapsed = Math.min(0.5, (now - last) / 1000);
     last = now;
     if (state.playing) {
       state.due += elapsed * framesPerSecond * Number(element('speed').value);

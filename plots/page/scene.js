@@ -128,7 +128,7 @@ const scene = (() => {
     const { centre, radius } = ballAround(some);
     const narrow = Math.min(1, camera.aspect), way = some ? camera.position.clone().sub(controls.target).normalize() : new THREE.Vector3(0.55, -0.75, 0.4).normalize();
     controls.target.copy(centre);
-    const distance = 0.92 * radius / Math.sin(camera.fov * Math.PI / 360) / narrow;
+    const distance = (some ? 0.92 : 0.75) * radius / Math.sin(camera.fov * Math.PI / 360) / narrow;
     camera.position.copy(centre).addScaledVector(way, distance);
     camera.near = distance / 500, camera.far = distance * 50;
     camera.updateProjectionMatrix();

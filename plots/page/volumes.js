@@ -210,7 +210,7 @@ const volumes = (() => {
         }
         return { corners: Float32Array.from(out.corners), normals: Float32Array.from(out.normals), lines: Float32Array.from(out.lines) };
       }
-      const fineness = nodes.length <= 8 ? 10 : nodes.length <= 64 ? 5 : 3;
+      const fineness = nodes.length <= 16 ? 10 : nodes.length <= 128 ? 6 : 4;
       const parts = nodes.map(node => shapeOf(m, node, fineness));
       return { corners: joined(parts.map(p => p.corners)), normals: joined(parts.map(p => p.normals)), lines: joined(parts.map(p => p.lines)) };
     },
