@@ -9,8 +9,10 @@
 #include "experiments/files/peak_bytes.hpp"
 #include "experiments/files/totals.hpp"
 #include "experiments/files/unusable.hpp"
+#include "experiments/files/whole_file.hpp"
 #include "experiments/replay/replay.hpp"
 #include "experiments/replay/replay_budgeted.hpp"
+#include "experiments/replay/scene_page.hpp"
 #include "experiments/replay/topology_of.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 
@@ -19,7 +21,7 @@ namespace {
 
 struct Arguments {
   std::vector<std::string> meshes;
-  std::string trace, out, json, count = "off";
+  std::string trace, out, json, page, count = "off";
   Variant variant;
   unsigned threads = 1;
   std::optional<std::uint64_t> budget;
@@ -137,11 +139,25 @@ void write_answers(const Arguments& arguments, const Trace& trace, const ReplayR
   }
 }
 
+/// Plays the trace again, so that what was timed was not watched.
+void write_page(const Arguments& arguments, std::span<const TriangleMesh> meshes,
+                const Trace& trace) {
+  const auto name = [](const std::string& file) {
+    return std::filesystem::path(file).filename().string();
+  };
+  std::vector<std::string> names;
+  for (const auto& file : arguments.meshes) names.push_back(name(file));
+  write_whole(arguments.page,
+              scene_page(meshes, trace, arguments.variant, {names, name(arguments.trace)}));
+}
+
 void check(const Arguments& arguments) {
   check(arguments.variant);
   require_place("--out", arguments.out);
   require_place("--json", arguments.json);
+  require_place("--page", arguments.page);
   if (!arguments.budget) return;
+  if (!arguments.page.empty()) throw Unusable("--page", "shows whole answers; not with --budget");
   if (arguments.variant.query != "touching")
     throw Unusable("--budget",
                    "answers whether surfaces touch; not with --query " + arguments.variant.query);
@@ -174,6 +190,7 @@ void run(const Arguments& arguments) {
   const ReplayResult result = replay(meshes, trace, arguments.variant, options);
   const Totals totals = totals_of(arguments, meshes, trace, result);
   if (!arguments.out.empty()) write_answers(arguments, trace, result);
+  if (!arguments.page.empty()) write_page(arguments, meshes, trace);
   write_totals(totals, arguments.json);
 }
 
@@ -220,6 +237,7 @@ void add_replay(CLI::App& app) {
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
   command->add_option("--out", arguments->out, "result array");
+  command->add_option("--page", arguments->page, "the scene in 3D: one HTML file, needs no other");
   command->add_option("--json", arguments->json, "totals; to standard output where not given");
   command->callback([arguments] { run(*arguments); });
 }

@@ -119,6 +119,7 @@ class ShareOf final : public Share {
       entries_ += static_cast<double>(front);
       if (options_.keep_series)
         result_.series[frame] = {counter_.n_u, counter_.n_v, counter_.n_p, front, answers_.hits()};
+      if (options_.see_front) see_fronts(frame);
       if (frame == 0) first_seconds_ = seconds_since(start);
     }
   }
@@ -133,6 +134,12 @@ class ShareOf final : public Share {
   }
 
  private:
+  void see_fronts([[maybe_unused]] std::size_t frame) const {
+    if constexpr (requires(const Strategy& strategy) { strategy.front().entries(); })
+      for (std::size_t p = 0; p < engine_.pairs().size(); ++p)
+        options_.see_front(frame, first_ + p * stride_, engine_.strategy(p).front().entries());
+  }
+
   const Trace& trace_;
   ReplayResult& result_;
   const ReplayOptions& options_;

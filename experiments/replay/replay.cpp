@@ -85,9 +85,9 @@ void detail::play_shares(const Trace& trace, const ReplayOptions& options, const
                          ReplayResult& result) {
   if (options.keep_series) result.series.resize(trace.frames);
   const std::size_t pairs = trace.pairs();
-  // A series is of all pairs together, so one thread plays it.
+  // A series is of all pairs together, and fronts are shown in order, so one thread plays it.
   const std::size_t threads =
-      options.keep_series
+      options.keep_series || options.see_front
           ? 1
           : std::clamp<std::size_t>(options.threads, 1, std::max<std::size_t>(pairs, 1));
   std::vector<std::unique_ptr<Share>> shares;

@@ -12,6 +12,7 @@
 
 #include "experiments/scenes/trace.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
+#include "traversal/front.hpp"
 
 namespace bvlab {
 
@@ -33,6 +34,8 @@ struct ReplayOptions {
   unsigned threads = 1;
   bool keep_answers = true;  ///< fill `touching`, `contacts` or `distances`
   bool keep_series = false;  ///< fill `series`
+  /// Called after every frame, for every pair, with what the strategy keeps of it, if it does.
+  std::function<void(std::size_t frame, std::size_t pair, std::span<const NodePair>)> see_front;
 };
 
 /// Counts of one frame, all pairs together.
