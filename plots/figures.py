@@ -24,7 +24,7 @@ from refused import Refused
 KINDS = ["line", "bars", "map"]
 LOGS = ["none", "x", "y", "xy"]
 DEFAULT_VALUES = ["time_ns / pairs", "time_ns / answers", "frame_ns", "ns_per_call", "ns_per_frame", "time_ns",
-                  "pose_ns", "false_positives + false_negatives"]
+                  "pose_ns", "false_positives + false_negatives", "n_v / pairs"]
 MOST_SERIES, MOST_PANELS = 10, 6  # of a figure that nobody declared
 
 
@@ -82,7 +82,7 @@ def declared(definition):
 def default_value(rows):
     """What is measured first of all: a time, if there is one."""
     for text in DEFAULT_VALUES:
-        if all(word in "/+" or word in rows for word in text.split()):
+        if all(word in "/+" or word in rows and rows[word].notna().any() for word in text.split()):
             return text
     settings, units = rows.attrs["settings"], rows.attrs["units"]
     measured = [c for c in rows if c not in settings and c in units and rows[c].dtype != object]

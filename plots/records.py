@@ -31,6 +31,8 @@ def read(record, table=""):
     "" for ours; `variant`, what distinguishes what was run, as "sphere deferred", "blocks" or a peer's name;
     later_ns and later_pairs, those of all frames but the first; and the columns of <name>.coherence.csv.
 
+    Times are NaN in rows that were measured beside other work (column `alone` "no"), and where nothing was timed.
+
     attrs: name and kind (of the study, "" for an experiment), definition (a dictionary), settings (the columns that
     say what was run), units (of each column: ns, B, radii, °, or ""). Refused where it is no record.
     """
@@ -46,6 +48,7 @@ def read(record, table=""):
     settings = setting_columns(rows, kind)
     rows, settings = with_peers(rows, definition, settings)
     rows = with_coherence(rows, record / f"{name}.coherence.csv")
+    rows = own_times(rows)
     if {"time_ns", "first_ns", "frames", "pairs"} <= set(rows):
         rows["later_ns"] = rows.time_ns - rows.first_ns
         rows["later_pairs"] = rows.pairs * (rows.frames - 1) / rows.frames
@@ -133,6 +136,17 @@ def with_coherence(rows, path):
     coherence = read_table(path)
     shared = [column for column in coherence if column in rows]
     return rows.merge(coherence, how="left", on=shared)
+
+
+def own_times(rows):
+    """Times only of rows that had their node to themselves; a record from before rows said so is taken at its word."""
+    times = [column for column in rows if words.is_time(column)]
+    rows[times] = rows[times].apply(pd.to_numeric, errors="coerce")  # blank in all rows, where nothing was timed
+    beside = rows.alone == "no" if "alone" in rows else pd.Series(False, rows.index)
+    if beside.any():
+        print(f"left out: times of {beside.sum()} of {len(rows)} rows, which were measured beside other work")
+        rows[times] = rows[times].mask(beside)
+    return rows
 
 
 def as_lengths(column, unit):

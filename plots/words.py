@@ -42,6 +42,10 @@ def unit_of(column):
     return UNIT_OF.get(column) or UNITS.get(column.rpartition("_")[2] if "_" in column else "", "")
 
 
+def is_time(column):
+    return unit_of(column) in ("ns", "us", "ms", "s")
+
+
 def called(column, kind=""):
     known = CALLED_IN.get(kind, {}).get(column) or CALLED.get(column)
     if known:

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// `bvlab run DEFINITION.toml [--record DIR]`: runs an experiment, or goes on with a broken one.
+/// `bvlab run DEFINITION.toml [--record DIR]`: runs an experiment, or goes on with a broken one;
+/// with --part K/N the K-th of N parts of it, see experiments/sweep.
 #include <unistd.h>
 
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <memory>
 
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/whole_number.hpp"
+#include "experiments/files/totals.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
 #include "experiments/records/record.hpp"
 #include "experiments/studies/experiment.hpp"
+#include "experiments/studies/side_by_side.hpp"
 #include "experiments/studies/study.hpp"
 
 namespace bvlab {
@@ -37,34 +42,86 @@ class ProgressBar {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+struct Arguments {
+  std::string definition, record, part;
+  std::size_t threads = cores_allowed();
+  bool only_counts = false, lists_parts = false;
+};
+
+/// "3/8"; the whole where nothing was said.
+Part part_from(const std::string& text, std::size_t traces) {
+  if (text.empty()) return {};
+  Part part;
+  const char* const last = text.data() + text.size();
+  const auto [slash, error] = std::from_chars(text.data(), last, part.number);
+  if (error == std::errc{} && slash != last && *slash == '/')
+    if (const auto [end, fault] = std::from_chars(slash + 1, last, part.of);
+        fault == std::errc{} && end == last && part.number >= 1 && part.number <= part.of &&
+        part.of <= traces)
+      return part;
+  throw Unusable("--part " + text + ": K/N is needed, K from 1 to N, and N at most " +
+                 std::to_string(traces) + ", as many as there are traces");
+}
+
+/// The folder of the record, with what is known of it before anything is run.
+std::filesystem::path opened(const Arguments& arguments, const std::string& text) {
+  const std::filesystem::path folder = arguments.record.empty()
+                                           ? fresh_record("experiments/record")
+                                           : std::filesystem::path(arguments.record);
+  std::string command = "bvlab run " + arguments.definition + " --record " + folder.string();
+  if (!arguments.part.empty()) command += " --part " + arguments.part;
+  if (arguments.only_counts) command += " --counts";
+  open_record(folder, text, command);
+  return folder;
+}
+
+void run_definition(const Arguments& arguments, const std::string& text) {
+  const Definition definition = parse_definition(text, arguments.definition);
+  check(definition);
+  RunOptions options;
+  options.threads = arguments.threads;
+  if (arguments.only_counts) options.measured = Measured::counts;
+  if (arguments.lists_parts || !arguments.part.empty()) {
+    const DefinitionSize size = size_of(definition);
+    options.part = part_from(arguments.part, size.traces);
+    if (arguments.lists_parts) {
+      Totals totals;
+      totals.set("name", definition.name).set("parts", size.traces).set("cells", size.cells);
+      return write_totals(totals, "");
+    }
+  }
+  const auto folder = opened(arguments, text);
+  run_experiment(definition, folder, options, ProgressBar{});
+  std::puts(folder.c_str());
+}
+
 }  // namespace
 
 void add_run(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("run", "Runs an experiment into a record, or goes on with one");
-  auto definition = std::make_shared<std::string>();
-  auto record = std::make_shared<std::string>();
-  command->add_option("definition", *definition, "TOML file, see experiments/definitions")
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("definition", arguments->definition, "TOML file, see experiments/definitions")
       ->required();
-  command->add_option("--record", *record,
+  command->add_option("--record", arguments->record,
                       "folder of the record (default: a new one, experiments/record/<date>.<n>)");
-  command->callback([definition, record] {
-    const std::string text = read_whole(*definition);
-    const auto open = [&] {
-      const std::filesystem::path folder =
-          record->empty() ? fresh_record("experiments/record") : std::filesystem::path(*record);
-      open_record(folder, text, "bvlab run " + *definition + " --record " + folder.string());
-      return folder;
-    };
-    std::filesystem::path folder;
-    if (const auto study = study_from(text, *definition)) {
-      check(*study);
-      run_study(*study, folder = open(), ProgressBar{});
-    } else {
-      const Definition read = parse_definition(text, *definition);
-      check(read);
-      run_experiment(read, folder = open(), ProgressBar{});
-    }
+  command->add_option("--part", arguments->part,
+                      "K/N: the K-th of N parts, into a record of its own");
+  command->add_flag("--parts", arguments->lists_parts,
+                    "run nothing; print the number of parts that there can be, and of cells");
+  command->add_flag("--counts", arguments->only_counts,
+                    "time nothing: counts and answers, by all threads");
+  command->add_option("--threads", arguments->threads, "of what is not timed (default: all cores)")
+      ->check(whole_number(1, 1024));
+  command->callback([arguments] {
+    const std::string text = read_whole(arguments->definition);
+    const auto study = study_from(text, arguments->definition);
+    if (!study) return run_definition(*arguments, text);
+    if (arguments->lists_parts || arguments->only_counts || !arguments->part.empty())
+      throw Unusable(arguments->definition, "a study has no parts: it is run as a whole");
+    check(*study);
+    const auto folder = opened(*arguments, text);
+    run_study(*study, folder, ProgressBar{});
     std::puts(folder.c_str());
   });
 }

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/records/record.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/utsname.h>
+#include <unistd.h>
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -15,6 +19,7 @@
 #include "build_facts.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
+#include "experiments/records/node.hpp"
 
 namespace bvlab {
 namespace {
@@ -80,7 +85,8 @@ std::string system_name() {
 std::string machine() {
   utsname kernel{};
   uname(&kernel);
-  const nlohmann::ordered_json json = {{"processor", after_colon("/proc/cpuinfo", "model name")},
+  const nlohmann::ordered_json json = {{"node", node_name()},
+                                       {"processor", after_colon("/proc/cpuinfo", "model name")},
                                        {"cores", std::thread::hardware_concurrency()},
                                        {"memory", after_colon("/proc/meminfo", "MemTotal")},
                                        {"system", system_name()},
@@ -92,18 +98,32 @@ std::string machine() {
   return json.dump(2) + "\n";
 }
 
+/// Two runs at work on one record would undo each other's rows: the second waits until the first
+/// has ended, however that ends. Where the file system has no locks there is none.
+void hold_until_exit(const std::filesystem::path& record) {
+  const int folder = open(record.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0 || flock(folder, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  std::fprintf(stderr, "%s: waiting for another run to end\n", one_line(record.string()).c_str());
+  while (flock(folder, LOCK_EX) != 0 && errno == EINTR) {
+  }
+}
+
 }  // namespace
 
 Table::Table(std::filesystem::path path, Row columns)
     : path_(std::move(path)), columns_(std::move(columns)) {
   if (!std::filesystem::exists(path_)) return;
   auto rows = parse_csv(contents(path_));
-  if (rows.empty() || rows[0] != columns_) throw Unusable(path_.string(), "has other columns");
+  const std::size_t held = rows.empty() ? 0 : rows[0].size();
+  if (held == 0 || held > columns_.size() ||
+      !std::equal(rows[0].begin(), rows[0].end(), columns_.begin()))
+    throw Unusable(path_.string(), "has other columns");
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    if (rows[i].size() != columns_.size())
+    if (rows[i].size() != held)
       throw Unusable(path_.string(), "line " + std::to_string(i + 1) + " has " +
                                          std::to_string(rows[i].size()) + " fields, not " +
-                                         std::to_string(columns_.size()));
+                                         std::to_string(held));
+    rows[i].resize(columns_.size());
     rows_.push_back(std::move(rows[i]));
   }
 }
@@ -138,6 +158,7 @@ void open_record(const std::filesystem::path& record, const std::string& definit
   std::error_code error;
   std::filesystem::create_directories(record, error);
   if (error) throw Unusable(record.string(), "cannot be made: " + error.message());
+  hold_until_exit(record);
   clear_left_behind(record);
   const auto held = record / "definition.toml";
   if (std::filesystem::exists(held)) {

@@ -15,7 +15,8 @@ using Row = std::vector<std::string>;
 /// A CSV file with named columns.
 class Table {
  public:
-  /// Reads the file if it is there; it must have these columns, or Unusable is thrown.
+  /// Reads the file if it is there; it must have these columns, or Unusable is thrown. The last of
+  /// them may be missing, as in a record from before there were such: then they are empty.
   Table(std::filesystem::path path, Row columns);
 
   const Row& columns() const { return columns_; }
@@ -35,7 +36,7 @@ class Table {
 std::filesystem::path fresh_record(const std::filesystem::path& parent);
 
 /// Writes definition.toml, machine.json and command.txt unless they are there. A record of another
-/// definition is refused with Unusable.
+/// definition is refused with Unusable. Waits while another process has it open.
 void open_record(const std::filesystem::path& record, const std::string& definition,
                  const std::string& command);
 

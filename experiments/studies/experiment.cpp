@@ -2,22 +2,23 @@
 #include "experiments/studies/experiment.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <charconv>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
-#include <thread>
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/disagreements.hpp"
 #include "experiments/peers/peers.hpp"
+#include "experiments/records/node.hpp"
 #include "experiments/records/record.hpp"
 #include "experiments/replay/coherence.hpp"
 #include "experiments/replay/replay.hpp"
+#include "experiments/replay/touches_any.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/scenes.hpp"
-#include "experiments/replay/touches_any.hpp"
+#include "experiments/studies/side_by_side.hpp"
 
 namespace bvlab {
 namespace {
@@ -172,70 +173,120 @@ ReplayResult answered(const Prepared& ready, const Cell& cell, const ReplayOptio
   return replay(ready.meshes, ready.trace, variant_of(cell), options);
 }
 
-/// Calls `work(i)` for i < count on all cores.
-template <class Work>
-void side_by_side(std::size_t count, Work&& work) {
-  std::atomic<std::size_t> next = 0;
-  std::mutex guard;
-  std::exception_ptr failure;
-  const auto take = [&] {
-    for (std::size_t i; (i = next++) < count;) try {
-        work(i);
-      } catch (...) {
-        const std::lock_guard lock(guard);
-        failure = std::current_exception();
-      }
-  };
-  {
-    std::vector<std::jthread> helpers;
-    for (unsigned t = 1; t < std::min<std::size_t>(std::thread::hardware_concurrency(), count); ++t)
-      helpers.emplace_back(take);
-    take();
-  }
-  if (failure) std::rethrow_exception(failure);
-}
-
 std::string nanoseconds(double seconds) {
   return std::to_string(static_cast<std::int64_t>(seconds * 1e9 + 0.5));
 }
 
+/// Cells that share a trace and a query, as indices, in the order in which a definition has them.
+std::vector<std::vector<std::size_t>> traces_of(const std::vector<Cell>& cells) {
+  std::map<std::string, std::size_t> place;
+  std::vector<std::vector<std::size_t>> traces;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto key = trace_key(cells[i]) + cells[i]["query"];
+    const auto [found, is_new] = place.emplace(key, traces.size());
+    if (is_new) traces.emplace_back();
+    traces[found->second].push_back(i);
+  }
+  return traces;
+}
+
+/// Labels and parameters: what a row begins with.
+Row key_row(const Cell& cell) {
+  Row row;
+  for (const auto* settings : {&cell.labels, &cell.parameters})
+    for (const auto& [name, value] : *settings) row.push_back(value);
+  return row;
+}
+
+/// What says which trace it is, and what of a variant its front depends on.
+bool matters_to_front(const std::string& name) {
+  return !is_of_variant(name) || name == "volume" || name == "query" || name == "build" ||
+         name == "leaf_size" || name == "fit";
+}
+Row front_key(const Cell& cell) {
+  Row row;
+  for (const auto& [name, value] : cell.parameters)
+    if (matters_to_front(name)) row.push_back(value);
+  return row;
+}
+
+Row coherence_row(Row row, const CoherenceSums& c, const std::optional<BestRebuilds>& best) {
+  for (const auto n : {c.pair_runs, c.near_runs, c.moved_runs, c.still_runs, c.tests, c.ends,
+                       c.kept, c.grown, c.again, c.still_ends})
+    row.push_back(std::to_string(n));
+  row.push_back(std::to_string(c.motion_leaf));
+  row.push_back(std::to_string(c.motion_gap));
+  row.push_back(best ? std::to_string(best->tests) : "");
+  row.push_back(best ? std::to_string(best->rebuilds) : "");
+  return row;
+}
+
+/// What was found of one trace: the rows of each table.
+struct Found {
+  std::vector<const Cell*> cells;
+  std::vector<ReplayResult> counted;  ///< of each cell
+  std::vector<std::size_t> differing;
+  std::vector<Row> rows, coherence, disagreements;
+};
+
 class Experiment {
  public:
-  Experiment(const Definition& definition, const std::filesystem::path& record)
+  Experiment(const Definition& definition, const std::filesystem::path& record,
+             const RunOptions& options)
       : definition_(definition),
+        options_(options),
         cells_(cells_with_answers(definition)),
         rows_(record / (definition.name + ".csv"),
               columns({"repetition", "time_ns", "first_ns", "build_ns", "pairs", "hits",
-                       "differing", "n_u", "n_v", "n_p", "front"})),
+                       "differing", "n_u", "n_v", "n_p", "front", "node", "alone"})),
         frames_(record / (definition.name + ".frames.csv"),
                 axis_columns({"frame", "n_u", "n_v", "n_p", "front", "hits"})),
         disagreements_(record / (definition.name + ".disagreements.csv"),
                        axis_columns({"frame", "object_i", "object_j", "triangle_i", "triangle_j",
                                      "theirs", "ours", "exact"})),
         coherence_(record / (definition.name + ".coherence.csv"), coherence_columns()) {
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      auto& group = by_trace_[trace_key(cells_[i]) + cells_[i]["query"]];
-      if (group.empty()) order_.push_back(&group);
-      group.push_back(i);
-    }
+    check_measured(record);
+    const auto traces = traces_of(cells_);
+    const auto [number, of] = options.part;
+    first_ = (number - 1) * traces.size() / of;
+    const std::size_t end = number * traces.size() / of;
+    traces_.assign(traces.begin() + static_cast<std::ptrdiff_t>(first_),
+                   traces.begin() + static_cast<std::ptrdiff_t>(end));
   }
 
   void run(const Progress& progress) {
-    std::set<Row> done;
     for (const auto& row : rows_.rows())
-      done.insert(Row(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(keys_)));
-    std::size_t finished = 0;
-    progress(0, order_.size());
-    for (const auto* group : order_) {
-      const bool all_there = std::all_of(group->begin(), group->end(), [&](std::size_t i) {
-        return done.contains(key_row(cells_[i]));
-      });
-      if (!all_there) run_group(*group, done);
-      progress(++finished, order_.size());
-    }
+      done_.insert(Row(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(keys_)));
+    progress(0, traces_.size());
+    const std::size_t beside = is_timed() ? 1 : std::min(options_.threads, traces_.size());
+    const std::size_t threads = options_.threads / std::max<std::size_t>(beside, 1);
+    std::map<std::size_t, Found> waiting;
+    std::size_t saved = 0;
+    std::mutex guard;
+    side_by_side(traces_.size(), beside, [&](std::size_t i) {
+      Found found = find(i, threads);
+      const std::lock_guard lock(guard);
+      waiting.emplace(i, std::move(found));
+      // In their order, so that a broken run that goes on writes what an unbroken one does.
+      for (auto each = waiting.begin(); each != waiting.end() && each->first == saved; ++saved) {
+        if (!each->second.cells.empty()) save(std::move(each->second));
+        each = waiting.erase(each);
+        progress(saved + 1, traces_.size());
+      }
+    });
   }
 
  private:
+  bool is_timed() const { return options_.measured == Measured::counts_and_times; }
+
+  /// Times that are absent would pass for finished.
+  void check_measured(const std::filesystem::path& record) const {
+    for (const auto& row : rows_.rows())
+      if (const bool has_time = !row[keys_ + 1].empty(); has_time != is_timed())
+        throw Unusable(record.string(), has_time ? "holds times: not a record of counts alone"
+                                                 : "holds counts alone: go on with --counts");
+  }
+
   /// Labels, then parameters, then what is measured.
   Row columns(std::initializer_list<const char*> measured) {
     Row row;
@@ -254,17 +305,6 @@ class Experiment {
     return row;
   }
 
-  /// What says which trace it is, and what of a variant its front depends on.
-  static bool matters_to_front(const std::string& name) {
-    return !is_of_variant(name) || name == "volume" || name == "query" || name == "build" ||
-           name == "leaf_size" || name == "fit";
-  }
-  static Row front_key(const Cell& cell) {
-    Row row;
-    for (const auto& [name, value] : cell.parameters)
-      if (matters_to_front(name)) row.push_back(value);
-    return row;
-  }
   Row coherence_columns() const {
     Row row;
     for (const auto& [name, value] : cells_.at(0).parameters)
@@ -276,46 +316,9 @@ class Experiment {
     return row;
   }
 
-  void measure_coherence(const Prepared& ready, const std::vector<const Cell*>& cells) {
-    std::map<Row, const Cell*> fronts;
-    for (const Cell* cell : cells)
-      if ((*cell)["peer"].empty() && (*cell)["query"] != "distance")
-        fronts.emplace(front_key(*cell), cell);
-    const std::vector<std::pair<Row, const Cell*>> all(fronts.begin(), fronts.end());
-    std::vector<CoherenceSums> found(all.size());
-    std::vector<std::optional<BestRebuilds>> best(all.size());
-    side_by_side(all.size(), [&](std::size_t i) {
-      const Variant variant = variant_of(*all[i].second);
-      found[i] = coherence(ready.meshes, ready.trace, variant);
-      if (definition_.measures.contains("best rebuilds"))
-        best[i] = best_rebuilds(ready.meshes, ready.trace, variant);
-    });
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const CoherenceSums& c = found[i];
-      Row row = all[i].first;
-      coherence_.forget(row);
-      for (const auto n : {c.pair_runs, c.near_runs, c.moved_runs, c.still_runs, c.tests, c.ends,
-                           c.kept, c.grown, c.again, c.still_ends})
-        row.push_back(std::to_string(n));
-      row.push_back(std::to_string(c.motion_leaf));
-      row.push_back(std::to_string(c.motion_gap));
-      row.push_back(best[i] ? std::to_string(best[i]->tests) : "");
-      row.push_back(best[i] ? std::to_string(best[i]->rebuilds) : "");
-      coherence_.add(std::move(row));
-    }
-    coherence_.save();
-  }
-
   Row axis_row(const Cell& cell) const {
     Row row;
     for (const auto& axis : definition_.axes) row.push_back(cell[axis.name]);
-    return row;
-  }
-
-  static Row key_row(const Cell& cell) {
-    Row row;
-    for (const auto* settings : {&cell.labels, &cell.parameters})
-      for (const auto& [name, value] : *settings) row.push_back(value);
     return row;
   }
 
@@ -325,103 +328,168 @@ class Experiment {
                        [&](const Setting& s) { return cell[s.first] == s.second; });
   }
 
-  void run_group(const std::vector<std::size_t>& group, const std::set<Row>& done) {
-    std::vector<const Cell*> cells;
-    for (const auto i : group)
-      if (!done.contains(key_row(cells_[i]))) cells.push_back(&cells_[i]);
-    const Prepared ready = prepared(*cells[0]);
-    std::vector<ReplayResult> counted(cells.size() + 1);
-    side_by_side(counted.size(), [&](std::size_t i) {
+  /// Of the cells of a trace that have no rows yet; nothing where all have.
+  Found find(std::size_t trace, std::size_t threads) {
+    Found found;
+    for (const auto i : traces_[trace])
+      if (!done_.contains(key_row(cells_[i]))) found.cells.push_back(&cells_[i]);
+    if (found.cells.empty()) return found;
+    const Prepared ready = prepared(*found.cells[0]);
+    count(ready, found, threads);
+    if (!definition_.measures.empty()) measure_coherence(ready, found, threads);
+    if (is_timed())
+      time(ready, found, first_ + trace);
+    else
+      for (std::size_t i = 0; i < found.cells.size(); ++i)
+        found.rows.push_back(row_of(ready, found, i, 0, nullptr));
+    return found;
+  }
+
+  void count(const Prepared& ready, Found& found, std::size_t threads) const {
+    const auto& cells = found.cells;
+    auto& counted = found.counted;
+    counted.resize(cells.size());
+    ReplayResult reference;
+    side_by_side(cells.size() + 1, threads, [&](std::size_t i) {
       ReplayOptions options;
       options.count = Count::on;
       if (i == cells.size()) {
-        Variant reference;
-        reference.query = (*cells[0])["query"];
-        counted[i] = replay(ready.meshes, ready.trace, reference, options);
+        Variant variant;
+        variant.query = (*cells[0])["query"];
+        reference = replay(ready.meshes, ready.trace, variant, options);
       } else {
         options.keep_series = wants_series(*cells[i]);
         counted[i] = answered(ready, *cells[i], options);
       }
     });
     const double slack = distance_slack(ready.meshes, ready.trace);
-    std::vector<std::size_t> differences;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const bool ours = (*cells[i])["peer"].empty();
-      differences.push_back(differing(counted[i], counted.back(), ours ? 0 : slack));
-      if (!ours && differences.back() > 0)
-        list_disagreements(ready, *cells[i], counted[i], counted.back(), slack);
+      found.differing.push_back(differing(counted[i], reference, ours ? 0 : slack));
+      if (!ours && found.differing.back() > 0)
+        list_disagreements(ready, *cells[i], counted[i], reference, slack, found.disagreements);
+      counted[i].touching = {}, counted[i].distances = {}, counted[i].contacts = {};
     }
-    if (!definition_.measures.empty()) measure_coherence(ready, cells);
-    time(ready, cells, counted, differences);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const Row key = axis_row(*cells[i]);
-      // A run that was killed between the two files has left this part here and not there.
-      frames_.forget(key);
-      for (std::size_t frame = 0;
-           frame < std::min(counted[i].series.size(), definition_.series_until); ++frame) {
-        const auto& c = counted[i].series[frame];
-        Row row;
-        for (const auto& label : key) row.push_back(label);
-        for (const auto value : {std::uint64_t{frame}, c.n_u, c.n_v, c.n_p, c.front, c.hits})
-          row.push_back(std::to_string(value));
-        frames_.add(std::move(row));
+  }
+
+  void list_disagreements(const Prepared& ready, const Cell& cell, const ReplayResult& theirs,
+                          const ReplayResult& ours, double slack, std::vector<Row>& into) const {
+    constexpr std::size_t most = 10;
+    for (auto& each : disagreements(ready.meshes, ready.trace, theirs, ours, slack, most)) {
+      Row row = axis_row(cell);
+      for (const auto number : {each.frame, each.i, each.j}) row.push_back(std::to_string(number));
+      for (auto* text : {&each.triangle_i, &each.triangle_j, &each.theirs, &each.ours, &each.exact})
+        row.push_back(std::move(*text));
+      into.push_back(std::move(row));
+    }
+  }
+
+  void measure_coherence(const Prepared& ready, Found& found, std::size_t threads) const {
+    std::map<Row, const Cell*> fronts;
+    for (const Cell* cell : found.cells)
+      if ((*cell)["peer"].empty() && (*cell)["query"] != "distance")
+        fronts.emplace(front_key(*cell), cell);
+    const std::vector<std::pair<Row, const Cell*>> all(fronts.begin(), fronts.end());
+    found.coherence.resize(all.size());
+    side_by_side(all.size(), threads, [&](std::size_t i) {
+      const Variant variant = variant_of(*all[i].second);
+      const CoherenceSums sums = coherence(ready.meshes, ready.trace, variant);
+      std::optional<BestRebuilds> best;
+      if (definition_.measures.contains("best rebuilds"))
+        best = best_rebuilds(ready.meshes, ready.trace, variant);
+      found.coherence[i] = coherence_row(all[i].first, sums, best);
+    });
+  }
+
+  /// The order depends on the trace alone, not on what was run before it.
+  void time(const Prepared& ready, Found& found, std::size_t trace) {
+    ReplayOptions options;
+    options.keep_answers = false;
+    std::mt19937_64 random(20260101 + trace);
+    std::vector<std::size_t> order(found.cells.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    for (unsigned repetition = 0; repetition < definition_.repetitions; ++repetition) {
+      std::shuffle(order.begin(), order.end(), random);
+      for (const auto i : order) {
+        const ReplayResult timed = answered(ready, *found.cells[i], options);
+        found.rows.push_back(row_of(ready, found, i, repetition, &timed));
       }
     }
+    const std::string alone = neighbours_.alone();
+    for (Row& row : found.rows) row.back() = alone;
+  }
+
+  /// Without times where nothing was timed.
+  Row row_of(const Prepared& ready, const Found& found, std::size_t i, unsigned repetition,
+             const ReplayResult* timed) const {
+    const ReplayResult& count = found.counted[i];
+    Row row = key_row(*found.cells[i]);
+    const bool ours = (*found.cells[i])["peer"].empty();
+    // Of peers, those that count.
+    const auto counts = [&](std::uint64_t n) {
+      return ours || n > 0 ? std::to_string(n) : std::string();
+    };
+    const auto time = [&](double ReplayResult::*seconds) {
+      return timed ? nanoseconds(timed->*seconds) : std::string();
+    };
+    for (auto& field :
+         {std::to_string(repetition), time(&ReplayResult::seconds),
+          time(&ReplayResult::first_seconds), time(&ReplayResult::build_seconds),
+          std::to_string(ready.trace.pairs() * ready.trace.frames),
+          std::to_string(timed ? timed->hits : count.hits), std::to_string(found.differing[i]),
+          counts(count.n_u), counts(count.n_v), counts(count.n_p),
+          ours ? std::to_string(count.front) : std::string(), node_, std::string()})
+      row.push_back(field);
+    return row;
+  }
+
+  void save(Found found) {
+    add_series(found);
+    for (const Cell* cell : found.cells) disagreements_.forget(axis_row(*cell));
+    for (auto& row : found.disagreements) disagreements_.add(std::move(row));
+    for (auto& row : found.coherence) {
+      coherence_.forget(front_of(row));
+      coherence_.add(std::move(row));
+    }
+    for (auto& row : found.rows) rows_.add(std::move(row));
+    if (!definition_.measures.empty()) coherence_.save();
     if (definition_.has_series) frames_.save();
     if (!disagreements_.rows().empty()) disagreements_.save();
     rows_.save();
   }
 
-  void list_disagreements(const Prepared& ready, const Cell& cell, const ReplayResult& theirs,
-                          const ReplayResult& ours, double slack) {
-    constexpr std::size_t most = 10;
-    const Row key = axis_row(cell);
-    disagreements_.forget(key);
-    for (auto& each : disagreements(ready.meshes, ready.trace, theirs, ours, slack, most)) {
-      Row row = key;
-      for (const auto number : {each.frame, each.i, each.j}) row.push_back(std::to_string(number));
-      for (auto* text : {&each.triangle_i, &each.triangle_j, &each.theirs, &each.ours, &each.exact})
-        row.push_back(std::move(*text));
-      disagreements_.add(std::move(row));
-    }
+  /// Of a row of the coherence table, what was measured left out.
+  Row front_of(const Row& row) const {
+    const auto keys = static_cast<std::ptrdiff_t>(front_key(cells_.at(0)).size());
+    return Row(row.begin(), row.begin() + keys);
   }
 
-  void time(const Prepared& ready, const std::vector<const Cell*>& cells,
-            const std::vector<ReplayResult>& counted, const std::vector<std::size_t>& differences) {
-    ReplayOptions options;
-    options.keep_answers = false;
-    std::vector<std::size_t> order(cells.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    for (unsigned repetition = 0; repetition < definition_.repetitions; ++repetition) {
-      std::shuffle(order.begin(), order.end(), random_);
-      for (const auto i : order) {
-        const ReplayResult timed = answered(ready, *cells[i], options);
-        const ReplayResult& count = counted[i];
-        Row row = key_row(*cells[i]);
-        const bool ours = (*cells[i])["peer"].empty();
-        // Of peers, those that count.
-        const auto counts = [&](std::uint64_t n) {
-          return ours || n > 0 ? std::to_string(n) : std::string();
-        };
-        for (auto& field :
-             {std::to_string(repetition), nanoseconds(timed.seconds),
-              nanoseconds(timed.first_seconds), nanoseconds(timed.build_seconds),
-              std::to_string(ready.trace.pairs() * ready.trace.frames), std::to_string(timed.hits),
-              std::to_string(differences[i]), counts(count.n_u), counts(count.n_v),
-              counts(count.n_p), ours ? std::to_string(count.front) : std::string()})
-          row.push_back(field);
-        rows_.add(std::move(row));
+  void add_series(const Found& found) {
+    for (std::size_t i = 0; i < found.cells.size(); ++i) {
+      const Row key = axis_row(*found.cells[i]);
+      // A run that was killed between the two files has left this part here and not there.
+      frames_.forget(key);
+      const auto& series = found.counted[i].series;
+      for (std::size_t frame = 0; frame < std::min(series.size(), definition_.series_until);
+           ++frame) {
+        const auto& c = series[frame];
+        Row row = key;
+        for (const auto value : {std::uint64_t{frame}, c.n_u, c.n_v, c.n_p, c.front, c.hits})
+          row.push_back(std::to_string(value));
+        frames_.add(std::move(row));
       }
     }
   }
 
   const Definition& definition_;
+  const RunOptions& options_;
   std::vector<Cell> cells_;
-  std::size_t keys_ = 0;
+  std::size_t keys_ = 0, first_ = 0;
   Table rows_, frames_, disagreements_, coherence_;
-  std::map<std::string, std::vector<std::size_t>> by_trace_;
-  std::vector<const std::vector<std::size_t>*> order_;
-  std::mt19937_64 random_{20260101};
+  std::vector<std::vector<std::size_t>> traces_;  ///< of this part
+  std::set<Row> done_;
+  const std::string node_ = node_name();
+  Neighbours neighbours_;
 };
 
 }  // namespace
@@ -442,9 +510,14 @@ void check(const Definition& definition) {
   }
 }
 
+DefinitionSize size_of(const Definition& definition) {
+  const auto cells = cells_with_answers(definition);
+  return {traces_of(cells).size(), cells.size()};
+}
+
 void run_experiment(const Definition& definition, const std::filesystem::path& record,
-                    const Progress& progress) {
-  Experiment(definition, record).run(progress);
+                    const RunOptions& options, const Progress& progress) {
+  Experiment(definition, record, options).run(progress);
 }
 
 }  // namespace bvlab

@@ -2,7 +2,8 @@
 /// Runs a definition into a record. Cells that share a trace are run together: counted runs side by
 /// side on all cores, then timed ones alone, uncounted, their order drawn anew for each repetition.
 /// Every answer is compared with that of recursive spheres at exact precision; how many differ is
-/// written beside the times.
+/// written beside the times. Every row names the node that ran it, and whether its times were
+/// measured with the node to itself.
 #pragma once
 
 #include <filesystem>
@@ -19,10 +20,33 @@ using Progress = std::function<void(std::size_t done, std::size_t all)>;
 /// cannot be in any of its cells. Takes no time: asked before a record is opened.
 void check(const Definition& definition);
 
+enum class Measured { counts_and_times, counts };
+
+/// One of the parts that a definition is split into: traces that follow each other, as many as in
+/// any other part, or one more. The rows of all parts in their order are those of a whole run.
+struct Part {
+  std::size_t number = 1, of = 1;
+};
+
+struct RunOptions {
+  Measured measured = Measured::counts_and_times;
+  Part part{};
+  std::size_t threads = 1;  ///< of what is counted; times are measured in one
+};
+
+/// What a definition asks for.
+struct DefinitionSize {
+  std::size_t traces = 0, cells = 0;
+};
+DefinitionSize size_of(const Definition& definition);
+
 /// Writes `<record>/<name>.csv`, one row for each cell and repetition, and, where the definition
 /// asks for a series, `<name>.frames.csv`, where it measures coherence, `<name>.coherence.csv`.
-/// Traces whose rows are all there already are passed over.
+/// Traces whose rows are all there already are passed over. Rows stand in the order of the
+/// definition's traces, whichever was finished first. Where only counts are measured there is one
+/// row for each cell, its times are empty, and traces are run side by side. Throws Unusable for a
+/// record that holds times if only counts are wanted, and the other way round.
 void run_experiment(const Definition& definition, const std::filesystem::path& record,
-                    const Progress& progress);
+                    const RunOptions& options, const Progress& progress);
 
 }  // namespace bvlab

@@ -12,6 +12,7 @@ from small_records import committed, own_record
 import records
 from figures import Figure
 from points import points_of
+from refused import Refused
 
 
 def with_peers(rows):
@@ -88,6 +89,29 @@ class Points(unittest.TestCase):
         (row,) = points[(points.x == 1) & (points.y == "obb") & (points.series == "deferred")].itertuples()
         self.assertAlmostEqual(row.middle, 1650)
         self.assertAlmostEqual(row.ratio, 1 / 1.5, places=6)
+
+    def test_times_beside_other_work_are_left_out(self):
+        def beside(rows):
+            return rows.assign(node="a", alone=(rows.repetition < 2).map({True: "yes", False: "no"}))
+
+        points = self.points(beside, x="degrees", y="time_ns / pairs", series="variant")
+        self.assertAlmostEqual(self.at(points, 1, "sphere recursive").middle, 105)  # 100 and 110, without 120
+        self.assertIn("left out: times of 12 of 36 rows", self.printed.getvalue())
+        counted = self.points(beside, x="degrees", y="n_v / pairs", series="variant")
+        self.assertEqual(self.at(counted, 1, "obb recursive").middle, 20)
+
+    def test_no_time_is_drawn_where_all_were_beside_other_work(self):
+        with self.assertRaisesRegex(Refused, "times beside other work are left out"):
+            self.points(lambda rows: rows.assign(alone="no"), x="degrees", y="time_ns / pairs")
+
+    def test_records_of_counts_alone(self):
+        def untimed(rows):
+            return rows.assign(time_ns="", first_ns="", frames=10, node="a", alone="")
+
+        points = self.points(untimed, x="degrees", series="variant")
+        self.assertEqual(str(points.attrs["value"].text), "n_v / pairs")
+        with self.assertRaisesRegex(Refused, "known for no row"):
+            self.points(untimed, x="degrees", y="time_ns / pairs")
 
     def test_measured_against_measured(self):
         points = self.points(x="n_v / pairs", y="time_ns", series="strategy")
