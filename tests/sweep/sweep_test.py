@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A sweep here: its record is that of `bvlab run`, also after it was killed and when parts fail."""
+
+import platform
+import shutil
+import signal
+import subprocess
+import unittest
+
+from sweeping import BVLAB, PARTS, SweepTest, skip
+
+
+class Sweeps(SweepTest):
+    def test_counts_are_those_of_one_run(self):
+        self.run_whole("--counts")
+        self.sweep("--counts", "--jobs", 3)
+        self.assert_same_record(timed=False)
+        tables = [(self.folder / record / "small.csv").read_bytes() for record in ("whole", "swept")]
+        self.assertEqual(*tables)
+        self.assertEqual({row["time_ns"] for row in self.rows("swept")}, {""})
+        # And nothing is run again.
+        before = len(self.diary("begins"))
+        self.sweep("--counts")
+        self.assertEqual(len(self.diary("begins")), before)
+
+    def test_timed_parts_run_one_at_a_time(self):
+        self.run_whole()
+        self.sweep()
+        self.assert_same_record(timed=True)
+        for begun, ended in zip(sorted(self.diary("begins"), key=lambda x: x[1])[1:], self.diary("ends")):
+            self.assertGreater(begun[1], ended[1])
+        for row in self.rows("swept"):
+            self.assertGreater(int(row["time_ns"]), 0)
+            self.assertEqual(row["node"], platform.node())
+            self.assertIn(row["alone"], ["yes", "no"])
+
+    def test_goes_on_where_it_was_killed(self):
+        self.run_whole("--counts")
+        (self.folder / "lasts").write_text("0.5")
+        process = self.begin("--counts", "--jobs", 2)
+        self.wait_for(lambda: len(self.finished()) >= 2)
+        self.kill(process)
+        finished = self.finished()
+        self.assertGreaterEqual(len(finished), 2)
+        self.assertLess(len(finished), PARTS)
+        self.assertFalse((self.folder / "swept" / "small.csv").exists())
+        (self.folder / "lasts").write_text("0")
+        before = len(self.diary("begins"))
+        self.sweep("--counts", "--jobs", 2)
+        self.assert_same_record(timed=False)
+        again = {part for part, _ in self.diary("begins")[before:]}
+        self.assertEqual(again, set(range(1, PARTS + 1)) - set(finished))
+
+    def test_what_fails_is_tried_again(self):
+        self.run_whole("--counts")
+        (self.folder / "fails-3").touch()
+        self.sweep("--counts", "--jobs", 2)
+        self.assert_same_record(timed=False)
+        self.assertEqual([part for part, _ in self.diary("begins")].count(3), 2)
+
+    def test_interrupted(self):
+        (self.folder / "lasts").write_text("20")
+        process = self.begin("--counts", "--jobs", 2)
+        self.wait_for(lambda: len(self.diary("begins")) >= 2)
+        process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, *said), (1, "", "sweep: interrupted; the same command goes on\n"))
+
+    def refuse(self, *words, mentions):
+        done = subprocess.run(list(map(str, words)), cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertRegex(done.stderr, r"\A(sweep|bvlab): [^\n]+\n\Z")
+        self.assertIn(mentions, done.stderr)
+        self.assertFalse((self.folder / "swept").exists())
+
+    def test_refusals(self):
+        sweep = self.command()[0]
+        self.refuse(sweep, mentions="definition")
+        self.refuse(sweep, "absent.toml", "--record", "swept", "--bvlab", BVLAB, mentions="absent.toml")
+        self.refuse(*self.command("--jobs", "0"), mentions="0")
+        (self.folder / "bad.toml").write_text('name = "bad"\nnonsense = 1\n')
+        self.refuse(sweep, "bad.toml", "--record", "swept", "--bvlab", BVLAB, mentions="line 2")
+        (self.folder / "study.toml").write_text('name = "s"\nkind = "triangles"\n')
+        self.refuse(sweep, "study.toml", "--record", "swept", "--bvlab", BVLAB, mentions="study.toml")
+
+    def test_another_definition_is_refused(self):
+        self.run_whole("--counts")
+        (self.folder / "other.toml").write_text((self.folder / "small.toml").read_text() + "\n")
+        self.refuse(self.command()[0], "other.toml", "--record", "whole", "--counts", "--bvlab", BVLAB,
+                    mentions="another definition")
+
+
+if __name__ == "__main__":
+    if not shutil.which("snakemake"):
+        skip("there is no snakemake")
+    unittest.main()
