@@ -316,7 +316,8 @@ const Settings& default_parameters() {
          {Setting{"volume", "sphere"}, Setting{"strategy", "recursive"},
           Setting{"query", "touching"}, Setting{"build", "top-down-principal"},
           Setting{"leaf_size", "1"}, Setting{"fit", "published"}, Setting{"precision", "exact"},
-          Setting{"relative_error", "0"}, Setting{"peer", ""}})
+          Setting{"relative_error", "0"}, Setting{"tree", "binary"}, Setting{"configuration", ""},
+          Setting{"peer", ""}})
       settings.push_back(setting);
     return settings;
   }();

@@ -21,7 +21,8 @@ void check(const Definition& definition);
 
 /// Writes `<record>/<name>.csv`, one row for each cell and repetition, and, where the definition
 /// asks for a series, `<name>.frames.csv`, where it measures coherence, `<name>.coherence.csv`.
-/// Traces whose rows are all there already are passed over.
+/// Traces whose rows are all there already are passed over. Peers that were absent when the program
+/// was built are left out, and named on standard error.
 void run_experiment(const Definition& definition, const std::filesystem::path& record,
                     const Progress& progress);
 
