@@ -125,7 +125,7 @@ def with_peers(rows, definition, settings):
 
 def without_ours(rows):
     """A peer has neither a volume nor a strategy of ours, whatever an older record says."""
-    for column in {"volume", "strategy"} & set(rows):
+    for column in {"volume", "tree", "strategy"} & set(rows):
         rows[column] = rows[column].where(rows.peer == "", "")
     return rows
 

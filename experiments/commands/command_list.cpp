@@ -10,6 +10,7 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/peers.hpp"
 #include "experiments/replay/box_methods.hpp"
+#include "experiments/replay/configurations.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/scenes.hpp"
@@ -43,7 +44,14 @@ struct Kind {
 };
 
 const Kind kinds[] = {
-    {"volumes", [] { lines_of(volumes()); }},
+    {"volumes",
+     [] {
+       lines_of(volumes());
+       for (const auto& each : wide_volumes())
+         line(each.name, each.description + "; --tree wide alone");
+     }},
+    {"trees", [] { lines_of(trees()); }},
+    {"configurations", [] { lines_of(configurations()); }},
     {"strategies", [] { lines_of(strategies()); }},
     {"queries", [] { lines_of(queries()); }},
     {"methods",

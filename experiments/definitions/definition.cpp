@@ -327,6 +327,8 @@ const std::vector<Parameter>& parameters() {
              {"fit", "published", "how volumes are fitted: published, or tight"},
              {"precision", "exact", "of triangle tests; see `bvlab list precisions`"},
              {"relative_error", "0", "distances may be above the truth by this part of it"},
+             {"tree", "binary", "binary, or wide: siblings compared in the mesh's own frame"},
+             {"configuration", "", "chooses volume, tree, build and all else; see `bvlab list`"},
              {"peer", "", "another library in place of ours; see `bvlab list peers`"}})
       all.push_back(each);
     return all;

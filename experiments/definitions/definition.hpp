@@ -9,6 +9,7 @@
 ///
 ///     [parameters]                   # see `bvlab list parameters`; what is not set has its default
 ///     mesh = "bunny"
+///     configuration = "recommended"  # sets volume, tree, strategy, build, fit and leaf_size
 ///
 ///     [[axis]]                       # one parameter
 ///     name = "seed"

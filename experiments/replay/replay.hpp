@@ -26,7 +26,8 @@ struct Variant {
   std::uint32_t leaf_size = 1;
   std::string fit = "published";  ///< or "tight", see bounding_volume.hpp
   std::string precision = "exact";
-  double relative_error = 0;  ///< of distances
+  double relative_error = 0;    ///< of distances
+  std::string tree = "binary";  ///< or "wide", see wide_entry.hpp
 };
 
 struct ReplayOptions {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <random>
@@ -14,6 +15,7 @@
 #include "experiments/records/node.hpp"
 #include "experiments/records/record.hpp"
 #include "experiments/replay/coherence.hpp"
+#include "experiments/replay/configurations.hpp"
 #include "experiments/replay/replay.hpp"
 #include "experiments/replay/touches_any.hpp"
 #include "experiments/scenes/named_mesh.hpp"
@@ -52,9 +54,9 @@ struct SettingOption {
 
 /// Parameters that say how a trace is answered; all the others say which trace it is.
 bool is_of_variant(const std::string& name) {
-  static const std::set<std::string> names{"volume",    "strategy",       "query",
-                                           "build",     "leaf_size",      "fit",
-                                           "precision", "relative_error", "peer"};
+  static const std::set<std::string> names{"volume", "strategy",  "query",        "build",
+                                           "fit",    "leaf_size", "precision",    "relative_error",
+                                           "tree",   "peer",      "configuration"};
   return names.contains(name);
 }
 
@@ -66,14 +68,29 @@ std::string trace_key(const Cell& cell) {
 }
 
 Variant variant_of(const Cell& cell) {
-  return {cell["volume"],
-          cell["strategy"],
-          cell["query"],
-          cell["build"],
-          number<std::uint32_t>("leaf_size", cell["leaf_size"]),
-          cell["fit"],
-          cell["precision"],
-          number<double>("relative_error", cell["relative_error"])};
+  const Variant variant{cell["volume"],
+                        cell["strategy"],
+                        cell["query"],
+                        cell["build"],
+                        number<std::uint32_t>("leaf_size", cell["leaf_size"]),
+                        cell["fit"],
+                        cell["precision"],
+                        number<double>("relative_error", cell["relative_error"]),
+                        cell["tree"]};
+  return cell["configuration"].empty() ? variant : configured(variant, cell["configuration"]);
+}
+
+/// What a configuration says stands in the cell's row.
+void spell_out(Cell& cell) {
+  const Variant variant = variant_of(cell);
+  for (const auto& [key, said] : Settings{{"volume", variant.volume},
+                                          {"strategy", variant.strategy},
+                                          {"build", variant.build},
+                                          {"leaf_size", std::to_string(variant.leaf_size)},
+                                          {"fit", variant.fit},
+                                          {"tree", variant.tree}})
+    for (auto& [name, value] : cell.parameters)
+      if (name == key) value = said;
 }
 
 struct Prepared {
@@ -118,15 +135,15 @@ void check(const Cell& cell) {
   with_scene(cell, [](const auto& scene) {
     if constexpr (requires { scene.check(); }) scene.check();
   });
-  if (cell["peer"].empty()) return;
-  if (!peer(cell["peer"]))
+  if (!cell["peer"].empty() && !peer(cell["peer"]) && !is_absent_peer(cell["peer"]))
     throw Unusable("no peer '" + cell["peer"] + "'; there are " + peer_names());
 }
 
-/// Not every peer answers every query: such cells are left out.
+/// Not every peer answers every query, and not every one is compiled: such cells are left out.
 bool has_answer(const Cell& cell) {
+  if (cell["peer"].empty()) return true;
   const Peer* const other = peer(cell["peer"]);
-  return !other || other->answers(cell["query"]);
+  return other && other->answers(cell["query"]);
 }
 
 /// Of a mesh from a file a record says what it has, and not what a mesh by name would have had: the
@@ -147,19 +164,24 @@ void set_polygons_of_files(std::vector<Cell>& cells) {
   }
 }
 
-/// A peer has a volume, a strategy and so on of its own: what a cell says of ours is cleared, and
-/// cells that then say the same are one.
+/// A peer has a volume, a strategy and so on of its own: what a cell says of ours is cleared. So is
+/// a configuration's replaced. Cells that then say the same are one.
 std::vector<Cell> cells_with_answers(const Definition& definition) {
   std::vector<Cell> cells;
-  std::set<Settings> of_peers;
+  std::set<Settings> replaced;
   for (Cell& cell : cells_of(definition)) {
     if (!has_answer(cell)) continue;
-    if (!cell["peer"].empty()) {
+    const bool of_peer = !cell["peer"].empty();
+    if (of_peer) {
       for (auto& [name, value] : cell.parameters)
         if (is_of_variant(name) && name != "peer" && name != "query") value.clear();
+    } else if (!cell["configuration"].empty()) {
+      spell_out(cell);
+    }
+    if (of_peer || !cell["configuration"].empty()) {
       Settings all = cell.labels;
       all.insert(all.end(), cell.parameters.begin(), cell.parameters.end());
-      if (!of_peers.insert(std::move(all)).second) continue;
+      if (!replaced.insert(std::move(all)).second) continue;
     }
     cells.push_back(std::move(cell));
   }
@@ -387,7 +409,7 @@ class Experiment {
   void measure_coherence(const Prepared& ready, Found& found, std::size_t threads) const {
     std::map<Row, const Cell*> fronts;
     for (const Cell* cell : found.cells)
-      if ((*cell)["peer"].empty() && (*cell)["query"] != "distance")
+      if ((*cell)["peer"].empty() && (*cell)["tree"] == "binary" && (*cell)["query"] != "distance")
         fronts.emplace(front_key(*cell), cell);
     const std::vector<std::pair<Row, const Cell*>> all(fronts.begin(), fronts.end());
     found.coherence.resize(all.size());
@@ -497,14 +519,19 @@ class Experiment {
 void check(const Definition& definition) {
   try {
     std::map<std::string, bool> peers_asked;
+    bool any_asked = false;
     for (const auto& cell : cells_of(definition)) {
       check(cell);
+      any_asked |= has_answer(cell);
       if (!cell["peer"].empty()) peers_asked[cell["peer"]] |= has_answer(cell);
     }
     for (const auto& [name, asked] : peers_asked)
-      if (!asked)
+      if (!asked && peer(name))
         throw Unusable("peer " + name + " is asked nothing it answers: it answers " +
                        std::string(peer(name)->queries));
+    if (!any_asked)
+      throw Unusable("asks nobody but peers that were absent when bvlab was built, as " +
+                     peers_asked.begin()->first);
   } catch (const Unusable& fault) {
     throw Unusable(definition.file, fault.what());
   }
@@ -517,6 +544,11 @@ DefinitionSize size_of(const Definition& definition) {
 
 void run_experiment(const Definition& definition, const std::filesystem::path& record,
                     const RunOptions& options, const Progress& progress) {
+  std::set<std::string> absent;
+  for (const auto& cell : cells_of(definition))
+    if (is_absent_peer(cell["peer"])) absent.insert(cell["peer"]);
+  for (const auto& name : absent)
+    std::fprintf(stderr, "bvlab: peer %s is left out: absent when bvlab was built\n", name.c_str());
   Experiment(definition, record, options).run(progress);
 }
 
