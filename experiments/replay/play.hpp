@@ -157,7 +157,7 @@ class ShareOf final : public Share {
 
  private:
   void see_fronts([[maybe_unused]] std::size_t frame) const {
-    if constexpr (requires(const Strategy& strategy) { strategy.front().entries(); })
+    if constexpr (requires { engine_.strategy(0).front().entries(); })
       for (std::size_t p = 0; p < engine_.pairs().size(); ++p)
         options_.see_front(frame, first_ + p * stride_, engine_.strategy(p).front().entries());
   }
