@@ -229,9 +229,9 @@ void add_replay(CLI::App& app) {
                    "triangles in a leaf, at most; in wide trees no more than children in a node")
       ->check(whole_number(1, 1u << 16))
       ->capture_default_str();
-  CLI::Option* configuration =
-      command->add_option("--configuration", arguments->configuration,
-                          "all of these at once, see `bvlab list configurations`");
+  CLI::Option* configuration = command->add_option_function<std::string>(
+      "--configuration", [arguments](const std::string& name) { arguments->configuration = name; },
+      "all of these at once, see `bvlab list configurations`");
   CLI::Option* recommended = command->add_flag_callback(
       "--recommended", [arguments] { arguments->configuration = "recommended"; },
       "the same as --configuration recommended");
