@@ -194,8 +194,8 @@ const extent = numbers => {
   numbers.forEach((x, i) => { box[i % 3] = Math.min(box[i % 3], x); box[3 + i % 3] = Math.max(box[3 + i % 3], x); });
   return box;
 };
-const angle = 0.7, rows = volumes.realigned
-  ? [[Math.cos(angle), -Math.sin(angle), 0], [Math.sin(angle), Math.cos(angle), 0], [0, 0, 1]]
+const [c, s, d, t] = [Math.cos(0.7), Math.sin(0.7), Math.cos(0.4), Math.sin(0.4)], rows = volumes.realigned
+  ? [[c, -s * d, s * t], [s, c * d, -c * t], [0, t, d]]
   : [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 const { vertices } = data.meshes[0], moved = [];
 for (let v = 0; v < vertices.length; v += 3)
