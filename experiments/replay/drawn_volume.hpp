@@ -28,21 +28,22 @@ std::vector<float> numbers_of(const Part&... parts) {
 
 }  // namespace detail
 
+/// Whether V holds so many scalars and nothing else: a capsule has a centre and a radius, too.
+template <class V>
+constexpr bool holds(std::size_t scalars) {
+  return sizeof(V) == scalars * sizeof(typename V::scalar);
+}
+
 /// What is drawn, "" where it is nothing known; its numbers stand in the order of `drawn_numbers`.
 template <class V>
 constexpr std::string_view drawn_as() {
-  if constexpr (requires(V v) { v.bounds; })
-    return "k-dop";
-  else if constexpr (requires(V v) { v.centre, v.axes, v.half; })
-    return "box";
-  else if constexpr (requires(V v) { v.centre, v.side, v.half, v.radius; })
-    return "rectangle";
-  else if constexpr (requires(V v) { v.centre, v.axis, v.inner, v.outer, v.cosine; })
+  if (requires(V v) { v.bounds; }) return "k-dop";
+  if (requires(V v) { v.centre, v.axes, v.half; } && holds<V>(15)) return "box";
+  if (requires(V v) { v.centre, v.side, v.half, v.radius; } && holds<V>(12)) return "rectangle";
+  if (requires(V v) { v.centre, v.axis, v.inner, v.outer, v.cosine; } && holds<V>(9))
     return "shell";
-  else if constexpr (requires(V v) { v.centre, v.radius; })
-    return "ball";
-  else
-    return "";
+  if (requires(V v) { v.centre, v.radius; } && holds<V>(4)) return "ball";
+  return "";
 }
 
 template <class V>

@@ -20,7 +20,7 @@ namespace {
 // Bytes before they become text, which adds a third; the engine that draws takes 0.6 MB.
 constexpr std::size_t room_for_poses = 2'000'000, room_for_meshes = 2'000'000,
                       room_for_volumes = 1'000'000, room_for_fronts = 1'500'000;
-constexpr std::size_t most_frames = 20'000, most_fronts = 64;
+constexpr std::size_t most_frames = 20'000, most_fronts = 1'000;
 
 template <class T>
 std::string text_of(const std::vector<T>& values) {

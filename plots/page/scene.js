@@ -25,10 +25,12 @@ const scene = (() => {
   });
   const names = ['body', 'touching', 'first', 'second'];
   const materials = {};
+  // Many that one can look through hide what is behind them.
+  const faint = Math.max(0.04, Math.min(0.13, 1.3 / data.objects));
   for (const name of names)
     for (const faded of [false, true])
       materials[name + faded] = new THREE.MeshLambertMaterial({
-        side: THREE.DoubleSide, flatShading: true, transparent: faded, opacity: faded ? 0.13 : 1, depthWrite: !faded });
+        side: THREE.DoubleSide, flatShading: true, transparent: faded, opacity: faded ? faint : 1, depthWrite: !faded });
   const bodies = Array.from({ length: data.objects }, (_, i) => {
     const body = new THREE.Mesh(geometries[data.meshIndexOf(i)], materials.bodyfalse);
     body.userData.index = i;

@@ -105,6 +105,19 @@ class ReplayPage(unittest.TestCase):
         totals = json.loads((self.folder / "totals.json").read_text())
         self.assertEqual(counted, [totals["n_u"], totals["n_v"], totals["n_p"]])
 
+    def test_fronts_cover_both_bodies(self):
+        """Every leaf of either body lies below a node that the front stands on, in every frame, for strategies that
+        keep, raise and rebuild it; and a strategy that keeps none is not offered one."""
+        for strategy in ("separation-list", "raise", "margins"):
+            with self.subTest(strategy), Browser() as browser:
+                browser.open(self.page("--strategy", strategy))
+                checked, bare = browser.run(COVERED)
+                self.assertGreater(checked, 90)
+                self.assertEqual(bare, 0)
+        with Browser() as browser:
+            browser.open(self.page("--strategy", "recursive"))
+            self.assertTrue(browser.run("return document.querySelector('input[value=\"front\"]').disabled"))
+
     def test_volumes_of_every_shape_enclose_their_triangles(self):
         """What is drawn of the root, and of a k-DOP in the world, reaches as far as the mesh does."""
         for volume in ("sphere", "obb", "aabb", "kdop14", "kdop18", "kdop26", "rss", "shell"):
@@ -154,6 +167,25 @@ class ReplayPage(unittest.TestCase):
         self.assertFalse((self.folder / "other.html").exists())
 
 
+# Of how many fronts, and in how many of them a leaf of a body is below no node. An empty front is one not kept.
+COVERED = """
+let checked = 0, bare = 0;
+for (const p of Object.keys(data.fronts)) {
+  for (const front of data.front(Number(p))) {
+    if (front.length === 0) continue;
+    ++checked;
+    for (const side of [0, 1]) {
+      const { children } = data.meshOf(data.pairOf(Number(p))[side]);
+      const nodes = new Set(front.filter(n => (n & 1) === side).map(n => n >> 1));
+      const covered = n => nodes.has(n) || (children[n] > 0 && covered(children[n]) && covered(children[n] + 1));
+      if (!covered(0)) ++bare;
+    }
+  }
+}
+return [checked, bare];
+"""
+
+
 # How far the mesh's extent along the world's axes is beyond that of the volume drawn around its root, at most,
 # over the mesh's own; shapes are polygons within round volumes, which a fine grid hides.
 OUTSIDE = """
@@ -162,8 +194,8 @@ const extent = numbers => {
   numbers.forEach((x, i) => { box[i % 3] = Math.min(box[i % 3], x); box[3 + i % 3] = Math.max(box[3 + i % 3], x); });
   return box;
 };
-const angle = 0.7, rows = volumes.realigned
-  ? [[Math.cos(angle), -Math.sin(angle), 0], [Math.sin(angle), Math.cos(angle), 0], [0, 0, 1]]
+const [c, s, d, t] = [Math.cos(0.7), Math.sin(0.7), Math.cos(0.4), Math.sin(0.4)], rows = volumes.realigned
+  ? [[c, -s * d, s * t], [s, c * d, -c * t], [0, t, d]]
   : [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 const { vertices } = data.meshes[0], moved = [];
 for (let v = 0; v < vertices.length; v += 3)
