@@ -65,8 +65,8 @@ def text_of(table, peers, measure):
 def beside(ratios):
     middle, least, most = ratios.median(), ratios.min(), ratios.max()
     if 1 / MANY < middle < MANY:
-        return "the best peer is on a par with the best of ours"
-    slower = f"the best peer takes {times(middle)} times that of the best of ours"
+        return "the best peer's is on a par with our best"
+    slower = f"the best peer's is {times(middle)} times our best"
     return slower if len(ratios) == 1 else f"{slower} (median over settings; {times(least)} to {times(most)})"
 
 
