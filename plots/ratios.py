@@ -10,6 +10,8 @@ import records
 from refused import Refused
 from selection import BEST, CONDITION, VARIANT, columns_of, has_value
 
+CONFIGURED = {"volume", "tree", "strategy", "build", "fit", "leaf_size"}  # what a configuration sets
+
 
 def tied(rows, names):
     """The columns named, the labels of axes that set them, and what those axes set beside them."""
@@ -18,7 +20,7 @@ def tied(rows, names):
         sets = {axis["name"]} | {key for value in axis.get("value", []) for key in value if key != "name"}
         if sets & found:
             found |= sets
-    return found
+    return found | CONFIGURED if "configuration" in found else found
 
 
 def cell_columns(rows, but):

@@ -125,7 +125,7 @@ def with_peers(rows, definition, settings):
 
 def without_ours(rows):
     """A peer has neither a volume nor a strategy of ours, whatever an older record says."""
-    for column in {"volume", "strategy"} & set(rows):
+    for column in {"volume", "tree", "strategy"} & set(rows):
         rows[column] = rows[column].where(rows.peer == "", "")
     return rows
 
@@ -186,11 +186,17 @@ def in_order(rows, definition, settings):
     return rows.sort_values("peer", key=lambda c: c != "", kind="stable").reset_index(drop=True)
 
 
-def wrong_answers(rows):
-    """Which rows hold answers that differ from the reference; refused where one of ours does."""
+def wrong_of(rows):
+    """Which rows hold answers that differ from the reference."""
     wrong = pd.Series(False, rows.index)
     for column in set(WRONG) & set(rows):
         wrong |= rows[column].fillna(0) != 0
+    return wrong
+
+
+def wrong_answers(rows):
+    """Which rows hold answers that differ from the reference; refused where one of ours does."""
+    wrong = wrong_of(rows)
     names = list(dict.fromkeys(rows[wrong & (rows.peer == "")].variant))
     if names:
         raise Refused(f"answers of {', '.join(names)} differ from the reference")

@@ -10,7 +10,7 @@ import records
 from expression import Expression
 from refused import Refused
 
-VARIANT = ["volume", "strategy", "method", "test", "source", "peer", "variant"]  # what a variant may be
+VARIANT = ["volume", "tree", "strategy", "configuration", "method", "test", "source", "peer", "variant"]  # what a variant may be
 BEST = {"best peer": lambda rows: (rows.peer != "") & ~rows.wrong, "best of ours": lambda rows: rows.peer == "",
         "best": lambda rows: ~rows.wrong}
 CONDITION = re.compile(r"^\s*(\w+)\s*(!?=)(?!=)(.*)$", re.DOTALL)

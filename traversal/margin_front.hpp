@@ -31,9 +31,11 @@ struct KnownHit {
 };
 
 /// A float below x, but not by much: half a unit in the last place is lost to the first rounding
-/// and as much to the second; the last term is for what underflows.
+/// and as much to the second; the last term is for what underflows. Of any x: what is beyond the
+/// largest float comes down below it, for an infinite deadline would be no number when something
+/// is taken from it, and would never pass.
 inline float just_below(double x) {
-  const auto y = static_cast<float>(x);
+  const auto y = static_cast<float>(std::min(x, double{std::numeric_limits<float>::max()}));
   return y - std::abs(y) * 0x1p-22f - std::numeric_limits<float>::min();
 }
 inline float just_above(double x) { return -just_below(-x); }

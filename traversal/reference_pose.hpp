@@ -24,6 +24,10 @@
 /// 8u (reach + |t|) (see placement.hpp): `noise` is the sum of both, twice. It is counted at both
 /// poses. The sums of squares and their roots are off by less than 16 roundings in relative terms,
 /// those of the whole by 16 more: a factor of 1 + 32u pays for all.
+///
+/// Range. A square that underflows hides a motion below 2^-511, which is less than 2^-500 of what a
+/// deadline loses when it becomes a float (`just_below`): a margin so small is never believed. What
+/// overflows makes the clock infinite or no number, which every comparison takes for passed.
 #pragma once
 
 #include <algorithm>

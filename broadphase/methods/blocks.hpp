@@ -156,13 +156,13 @@ class Blocks {
   }
   Pair* pairs_between(Pair* out, std::uint32_t a, std::uint32_t b) const {
     const Loaded<T> left(tree_.leaf(a)), right(tree_.leaf(b));
-    const Lanes rows = left.template overlapping<Closed>(tree_.reach(b));
-    const Lanes columns = right.template overlapping<Closed>(tree_.reach(a));
+    const LaneMask rows = left.template overlapping<Closed>(tree_.reach(b));
+    const LaneMask columns = right.template overlapping<Closed>(tree_.reach(a));
     if (std::popcount(rows) <= std::popcount(columns)) return pairs_of_rows(out, a, b, right, rows);
     return pairs_of_rows(out, b, a, left, columns);
   }
   Pair* pairs_of_rows(Pair* out, std::uint32_t a, std::uint32_t b, const Loaded<T>& right,
-                      Lanes rows) const {
+                      LaneMask rows) const {
     const Block<T>& left = tree_.leaf(a);
     const std::uint32_t* left_ids = tree_.ids(a);
     const std::uint32_t* right_ids = tree_.ids(b);
@@ -435,10 +435,10 @@ class Blocks {
     const std::uint32_t* ids = tree_.ids(a);
     PairList& list = candidates_.list();
     Pair* out = list.room_for(block_width * block_width + block_width);
-    Lanes rows = a == b ? all_lanes : overlapping_lanes<Closed>(left, tree_.reach(b));
+    LaneMask rows = a == b ? all_lanes : overlapping_lanes<Closed>(left, tree_.reach(b));
     for (; rows; rows &= rows - 1) {
       const int row = std::countr_zero(rows);
-      Lanes lanes = right.template overlapping<Closed>(left.box(row));
+      LaneMask lanes = right.template overlapping<Closed>(left.box(row));
       if (a == b) lanes &= all_lanes << (row + 1);
       out = write_pairs_by_id(out, a * block_width + static_cast<std::uint32_t>(row), ids[row],
                               b * block_width, tree_.ids(b), lanes & all_lanes);
@@ -590,7 +590,7 @@ class Blocks {
     tree_.widen(slot, reach);
     tree_.find(reach, [&](std::uint32_t k) {
       const Loaded<T> block(tree_.leaf(k));
-      Lanes lanes =
+      LaneMask lanes =
           block.template overlapping<Closed>(reach) & ~block.template overlapping<Closed>(old);
       for (; lanes; lanes &= lanes - 1) {
         const std::uint32_t other = k * block_width + std::countr_zero(lanes);

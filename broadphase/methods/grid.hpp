@@ -4,12 +4,12 @@
 /// once. O(n + k) where boxes are alike and spread out; cells grow where they are not.
 #pragma once
 
+#include <vector>
+
 #include "broadphase/settings.hpp"
 #include "broadphase/structures/block.hpp"
 #include "broadphase/structures/pair_list.hpp"
 #include "broadphase/structures/voxels.hpp"
-
-#include <vector>
 
 namespace bvlab {
 
@@ -76,7 +76,7 @@ class Grid {
       const Loaded<T> loaded(block);
       for (std::uint32_t t = first; t < s + held; ++t) {
         const Box<T>& box = boxes[members_[t]];
-        Lanes found = loaded.template overlapping<Contact>(box);
+        LaneMask found = loaded.template overlapping<Contact>(box);
         if (t >= s) found &= all_lanes & (all_lanes << (t - s + 1));
         for (; found; found &= found - 1) {
           const std::uint32_t other = members_[s + std::countr_zero(found)];

@@ -74,7 +74,7 @@ class SortAndSweep {
     constexpr int width = std::min(static_cast<int>(V::size()), block_width);
     const T end = hi_[0][k];
     for (std::size_t first = k + 1; lo_[0][first] <= end; first += block_width) {
-      Lanes found = 0;
+      LaneMask found = 0;
       for (int part = 0; part < block_width; part += width) {
         const auto load = [&](const std::vector<T>& values) {
           return V(values.data() + first + part, stdx::element_aligned);
@@ -87,7 +87,7 @@ class SortAndSweep {
           mask = mask && Contact::reaches(V(hi_[axis][k]), load(lo_[axis]));
           mask = mask && Contact::reaches(load(hi_[axis]), V(lo_[axis][k]));
         }
-        found |= static_cast<Lanes>(bits(mask)) << part;
+        found |= static_cast<LaneMask>(bits(mask)) << part;
       }
       if (found)
         pairs_.end_at(

@@ -22,9 +22,9 @@
 namespace bvlab {
 
 /// One bit per lane of a block.
-using Lanes = std::uint32_t;
+using LaneMask = std::uint32_t;
 inline constexpr int block_width = 16;
-inline constexpr Lanes all_lanes = 0xffff;
+inline constexpr LaneMask all_lanes = 0xffff;
 
 template <class T>
 struct alignas(64) Block {
@@ -65,14 +65,14 @@ class Loaded {
 
   /// The lanes whose boxes overlap `box`.
   template <class Contact>
-  Lanes overlapping(const Box<T>& box) const {
-    Lanes lanes = 0;
+  LaneMask overlapping(const Box<T>& box) const {
+    LaneMask lanes = 0;
     for (int first = 0; first < block_width; first += 4) {
       auto four = all(0) == all(0);
       for (int axis = 0; axis < 3; ++axis)
         four &= Contact::reaches(all(box.hi[axis]), held(block_.lo[axis], first)) &
                 Contact::reaches(held(block_.hi[axis], first), all(box.lo[axis]));
-      lanes |= static_cast<Lanes>(signs(reinterpret_cast<Four<T>>(four))) << first;
+      lanes |= static_cast<LaneMask>(signs(reinterpret_cast<Four<T>>(four))) << first;
     }
     return lanes;
   }
@@ -97,7 +97,7 @@ class Loaded<float> {
       lo_[axis] = _mm512_load_ps(block.lo[axis]), hi_[axis] = _mm512_load_ps(block.hi[axis]);
   }
   template <class Contact>
-  Lanes overlapping(const Box<float>& box) const {
+  LaneMask overlapping(const Box<float>& box) const {
     constexpr int le = std::is_same_v<Contact, Closed> ? _CMP_LE_OQ : _CMP_LT_OQ;
     constexpr int ge = std::is_same_v<Contact, Closed> ? _CMP_GE_OQ : _CMP_GT_OQ;
     __mmask16 m = _mm512_cmp_ps_mask(lo_[0], _mm512_set1_ps(box.hi[0]), le);
@@ -106,7 +106,7 @@ class Loaded<float> {
     n = _mm512_mask_cmp_ps_mask(n, hi_[1], _mm512_set1_ps(box.lo[1]), ge);
     m = _mm512_mask_cmp_ps_mask(m, lo_[2], _mm512_set1_ps(box.hi[2]), le);
     n = _mm512_mask_cmp_ps_mask(n, hi_[2], _mm512_set1_ps(box.lo[2]), ge);
-    return static_cast<Lanes>(m & n);
+    return static_cast<LaneMask>(m & n);
   }
 
  private:
@@ -124,10 +124,10 @@ class Loaded<double> {
       }
   }
   template <class Contact>
-  Lanes overlapping(const Box<double>& box) const {
+  LaneMask overlapping(const Box<double>& box) const {
     constexpr int le = std::is_same_v<Contact, Closed> ? _CMP_LE_OQ : _CMP_LT_OQ;
     constexpr int ge = std::is_same_v<Contact, Closed> ? _CMP_GE_OQ : _CMP_GT_OQ;
-    Lanes lanes = 0;
+    LaneMask lanes = 0;
     for (int half = 0; half < 2; ++half) {
       __mmask8 m = _mm512_cmp_pd_mask(lo_[half][0], _mm512_set1_pd(box.hi[0]), le);
       __mmask8 n = _mm512_cmp_pd_mask(hi_[half][0], _mm512_set1_pd(box.lo[0]), ge);
@@ -135,7 +135,7 @@ class Loaded<double> {
         m = _mm512_mask_cmp_pd_mask(m, lo_[half][axis], _mm512_set1_pd(box.hi[axis]), le);
         n = _mm512_mask_cmp_pd_mask(n, hi_[half][axis], _mm512_set1_pd(box.lo[axis]), ge);
       }
-      lanes |= static_cast<Lanes>(m & n) << (8 * half);
+      lanes |= static_cast<LaneMask>(m & n) << (8 * half);
     }
     return lanes;
   }
@@ -147,7 +147,7 @@ class Loaded<double> {
 
 /// The lanes whose boxes overlap `box`.
 template <class Contact, class T>
-inline Lanes overlapping_lanes(const Block<T>& block, const Box<T>& box) {
+inline LaneMask overlapping_lanes(const Block<T>& block, const Box<T>& box) {
   return Loaded<T>(block).template overlapping<Contact>(box);
 }
 
@@ -253,7 +253,7 @@ inline void load(Block<float>& block, const Box<float>* boxes) {
 
 /// Writes a pair for every lane of `lanes`: its entry of `ids` and `id`, the smaller first. Up to
 /// sixteen pairs are touched from `out` on; returns the end of those that count.
-inline Pair* write_pairs(Pair* out, std::uint32_t id, const std::uint32_t* ids, Lanes lanes) {
+inline Pair* write_pairs(Pair* out, std::uint32_t id, const std::uint32_t* ids, LaneMask lanes) {
 #ifdef __AVX512F__
   const __m512i packed =
       _mm512_maskz_compress_epi32(static_cast<__mmask16>(lanes), _mm512_loadu_si512(ids));
@@ -276,7 +276,7 @@ inline Pair* write_pairs(Pair* out, std::uint32_t id, const std::uint32_t* ids, 
 /// Writes a pair of slots for every lane of `lanes`: lane l stands for slot `first` + l, whose box
 /// is ids[l]; the slot of the smaller id first. Room as for `write_pairs`.
 inline Pair* write_pairs_by_id(Pair* out, std::uint32_t slot, std::uint32_t id, std::uint32_t first,
-                               const std::uint32_t* ids, Lanes lanes) {
+                               const std::uint32_t* ids, LaneMask lanes) {
 #ifdef __AVX512F__
   const auto held = static_cast<__mmask16>(lanes);
   const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);

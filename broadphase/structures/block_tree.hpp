@@ -144,7 +144,7 @@ class BlockTree {
     const std::size_t count = std::min<std::size_t>(block_width, levels_[level - 1].size() - first);
     for (std::size_t k = 0; k < count; ++k) {
       join_self(level - 1, static_cast<std::uint32_t>(first + k), visit);
-      Lanes others =
+      LaneMask others =
           overlapping_lanes<Closed>(block, block.box(static_cast<int>(k))) & (all_lanes << (k + 1));
       for (; others; others &= others - 1)
         join_two(level - 1, static_cast<std::uint32_t>(first + k),
@@ -157,11 +157,11 @@ class BlockTree {
     if (level == 0) return visit(a, b);
     const Block<T>& left = levels_[level][a];
     const Block<T>& right = levels_[level][b];
-    Lanes rows =
+    LaneMask rows =
         overlapping_lanes<Closed>(left, levels_[level + 1][b / block_width].box(b % block_width));
     for (; rows; rows &= rows - 1) {
       const int row = std::countr_zero(rows);
-      Lanes others = overlapping_lanes<Closed>(right, left.box(row));
+      LaneMask others = overlapping_lanes<Closed>(right, left.box(row));
       for (; others; others &= others - 1)
         join_two(level - 1, a * block_width + row, b * block_width + std::countr_zero(others),
                  visit);
@@ -170,7 +170,7 @@ class BlockTree {
 
   template <class Visit>
   void find_below(std::size_t level, std::uint32_t node, const Box<T>& box, Visit& visit) const {
-    Lanes found = overlapping_lanes<Closed>(levels_[level][node], box);
+    LaneMask found = overlapping_lanes<Closed>(levels_[level][node], box);
     for (; found; found &= found - 1) {
       const std::uint32_t child = node * block_width + std::countr_zero(found);
       if (level == 1)

@@ -6,9 +6,11 @@
 #include <memory>
 
 #include "experiments/commands/commands.hpp"
+#include "experiments/definitions/definition.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/peers.hpp"
 #include "experiments/replay/box_methods.hpp"
+#include "experiments/replay/configurations.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/scenes.hpp"
@@ -42,7 +44,14 @@ struct Kind {
 };
 
 const Kind kinds[] = {
-    {"volumes", [] { lines_of(volumes()); }},
+    {"volumes",
+     [] {
+       lines_of(volumes());
+       for (const auto& each : wide_volumes())
+         line(each.name, each.description + "; --tree wide alone");
+     }},
+    {"trees", [] { lines_of(trees()); }},
+    {"configurations", [] { lines_of(configurations()); }},
     {"strategies", [] { lines_of(strategies()); }},
     {"queries", [] { lines_of(queries()); }},
     {"methods",
@@ -52,6 +61,11 @@ const Kind kinds[] = {
     {"scenes", lines<Scenes>},
     {"precisions", lines<Precisions>},
     {"builds", lines<Builds>},
+    {"parameters",
+     [] {
+       for (const auto& each : parameters())
+         line(each.name, each.what + (each.fallback.empty() ? "" : " [" + each.fallback + "]"));
+     }},
     {"meshes", [] { lines_of(formula_meshes()); }},
     {"peers",
      [] {

@@ -9,8 +9,11 @@
 #include "experiments/files/peak_bytes.hpp"
 #include "experiments/files/totals.hpp"
 #include "experiments/files/unusable.hpp"
+#include "experiments/files/whole_file.hpp"
+#include "experiments/replay/configurations.hpp"
 #include "experiments/replay/replay.hpp"
 #include "experiments/replay/replay_budgeted.hpp"
+#include "experiments/replay/scene_page.hpp"
 #include "experiments/replay/topology_of.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 
@@ -19,7 +22,8 @@ namespace {
 
 struct Arguments {
   std::vector<std::string> meshes;
-  std::string trace, out, json, count = "off";
+  std::string trace, out, json, page, count = "off";
+  std::optional<std::string> configuration;
   Variant variant;
   unsigned threads = 1;
   std::optional<std::uint64_t> budget;
@@ -27,10 +31,10 @@ struct Arguments {
 
 /// What there would have been to do: every pair to consider and every volume to pose in every
 /// frame, and the tests of the recursive strategy. That is played once more for it, where counting
-/// was asked for.
+/// was asked for. In wide trees a volume is posed for each test, so there is no such number.
 void skipped(Totals& totals, const Arguments& arguments, std::span<const TriangleMesh> meshes,
              const Trace& trace, const ReplayResult& result) {
-  if (arguments.count != "on") {
+  if (arguments.count != "on" || arguments.variant.tree != "binary") {
     totals.set("skipped", nullptr);
     return;
   }
@@ -91,6 +95,7 @@ Totals totals_of(const Arguments& arguments, std::span<const TriangleMesh> meshe
   totals.set(variant.query == "contacts" ? "contacts" : "touching", result.hits);
   set_counts(totals, arguments, result);
   totals.set("front", result.front)
+      .set("tree", variant.tree)
       .set("volume", variant.volume)
       .set("strategy", variant.strategy)
       .set("query", variant.query)
@@ -137,21 +142,40 @@ void write_answers(const Arguments& arguments, const Trace& trace, const ReplayR
   }
 }
 
+/// Plays the trace again, so that what was timed was not watched.
+void write_page(const Arguments& arguments, std::span<const TriangleMesh> meshes,
+                const Trace& trace) {
+  const auto name = [](const std::string& file) {
+    return std::filesystem::path(file).filename().string();
+  };
+  std::vector<std::string> names;
+  for (const auto& file : arguments.meshes) names.push_back(name(file));
+  write_whole(arguments.page,
+              scene_page(meshes, trace, arguments.variant, {names, name(arguments.trace)}));
+}
+
 void check(const Arguments& arguments) {
   check(arguments.variant);
   require_place("--out", arguments.out);
   require_place("--json", arguments.json);
+  require_place("--page", arguments.page);
   if (!arguments.budget) return;
+  if (!arguments.page.empty()) throw Unusable("--page", "shows whole answers; not with --budget");
   if (arguments.variant.query != "touching")
     throw Unusable("--budget",
                    "answers whether surfaces touch; not with --query " + arguments.variant.query);
   if (arguments.variant.strategy != "recursive")
     throw Unusable("--budget", "starts from the roots in every frame; not with --strategy " +
                                    arguments.variant.strategy);
+  if (arguments.variant.tree != "binary")
+    throw Unusable("--budget",
+                   "is kept over binary trees; not with --tree " + arguments.variant.tree);
   if (arguments.threads != 1) throw Unusable("--budget", "runs in one thread");
 }
 
-void run(const Arguments& arguments) {
+void run(Arguments arguments) {
+  if (arguments.configuration)
+    arguments.variant = configured(arguments.variant, *arguments.configuration);
   check(arguments);
   std::vector<TriangleMesh> meshes;
   for (const auto& file : arguments.meshes) meshes.push_back(read_mesh(file));
@@ -174,6 +198,7 @@ void run(const Arguments& arguments) {
   const ReplayResult result = replay(meshes, trace, arguments.variant, options);
   const Totals totals = totals_of(arguments, meshes, trace, result);
   if (!arguments.out.empty()) write_answers(arguments, trace, result);
+  if (!arguments.page.empty()) write_page(arguments, meshes, trace);
   write_totals(totals, arguments.json);
 }
 
@@ -189,18 +214,33 @@ void add_replay(CLI::App& app) {
       ->required();
   command->add_option("--volume", arguments->variant.volume, "see `bvlab list volumes`")
       ->capture_default_str();
+  command->add_option("--tree", arguments->variant.tree, "see `bvlab list trees`")
+      ->capture_default_str();
   command
       ->add_option("--strategy", arguments->variant.strategy,
                    "see `bvlab list strategies`; name or name:parameter")
-      ->capture_default_str();
-  command->add_option("--query", arguments->variant.query, "see `bvlab list queries`")
       ->capture_default_str();
   command->add_option("--build", arguments->variant.build, "see `bvlab list builds`")
       ->capture_default_str();
   command->add_option("--fit", arguments->variant.fit, "of volumes: published, or tight")
       ->capture_default_str();
-  command->add_option("--leaf-size", arguments->variant.leaf_size, "triangles in a leaf, at most")
+  command
+      ->add_option("--leaf-size", arguments->variant.leaf_size,
+                   "triangles in a leaf, at most; in wide trees no more than children in a node")
       ->check(whole_number(1, 1u << 16))
+      ->capture_default_str();
+  CLI::Option* configuration = command->add_option_function<std::string>(
+      "--configuration", [arguments](const std::string& name) { arguments->configuration = name; },
+      "all of these at once, see `bvlab list configurations`");
+  CLI::Option* recommended = command->add_flag_callback(
+      "--recommended", [arguments] { arguments->configuration = "recommended"; },
+      "the same as --configuration recommended");
+  for (const char* part : {"--volume", "--tree", "--strategy", "--build", "--fit", "--leaf-size"}) {
+    configuration->excludes(command->get_option(part));
+    recommended->excludes(command->get_option(part));
+  }
+  recommended->excludes(configuration);
+  command->add_option("--query", arguments->variant.query, "see `bvlab list queries`")
       ->capture_default_str();
   command
       ->add_option("--relative-error", arguments->variant.relative_error,
@@ -220,6 +260,7 @@ void add_replay(CLI::App& app) {
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
   command->add_option("--out", arguments->out, "result array");
+  command->add_option("--page", arguments->page, "the scene in 3D: one HTML file, needs no other");
   command->add_option("--json", arguments->json, "totals; to standard output where not given");
   command->callback([arguments] { run(*arguments); });
 }

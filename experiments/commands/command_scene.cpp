@@ -8,11 +8,11 @@
 #include "experiments/commands/whole_number.hpp"
 #include "experiments/files/npy.hpp"
 #include "experiments/files/unusable.hpp"
+#include "experiments/replay/touches_any.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 #include "experiments/scenes/scenes.hpp"
-#include "experiments/scenes/touches_any.hpp"
 
 namespace bvlab {
 namespace {

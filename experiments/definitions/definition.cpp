@@ -22,23 +22,25 @@ std::string shortest(double value) {
   return {text, end};
 }
 
-struct AddingDefault {
-  Settings& settings;
-  void operator()(std::string_view name, const std::string& value, std::string_view) const {
-    add(name, value);
+/// Adds a scene's options, those that another scene has not named before.
+struct AddingParameter {
+  std::vector<Parameter>& all;
+  void operator()(std::string_view name, const std::string& value, std::string_view what) const {
+    add(name, value, what);
   }
-  void operator()(std::string_view name, double value, std::string_view) const {
-    add(name, shortest(value));
+  void operator()(std::string_view name, double value, std::string_view what) const {
+    add(name, shortest(value), what);
   }
-  void operator()(std::string_view name, std::uint64_t value, std::string_view) const {
-    add(name, std::to_string(value));
+  void operator()(std::string_view name, std::uint64_t value, std::string_view what) const {
+    add(name, std::to_string(value), what);
   }
-  void operator()(std::string_view name, const Length& value, std::string_view) const {
-    add(name, text_of(value));
+  void operator()(std::string_view name, const Length& value, std::string_view what) const {
+    add(name, text_of(value), std::string(what) + " (a LENGTH)");
   }
-  void add(std::string_view name, const std::string& value) const {
-    const auto same = [&](const Setting& s) { return s.first == name; };
-    if (std::none_of(settings.begin(), settings.end(), same)) settings.emplace_back(name, value);
+  void add(std::string_view name, const std::string& value, std::string_view what) const {
+    const auto same = [&](const Parameter& each) { return each.name == name; };
+    if (std::none_of(all.begin(), all.end(), same))
+      all.push_back({std::string(name), value, std::string(what)});
   }
 };
 
@@ -306,18 +308,38 @@ const std::string& Cell::operator[](std::string_view name) const {
   return nothing;
 }
 
+const std::vector<Parameter>& parameters() {
+  static const std::vector<Parameter> all = [] {
+    std::vector<Parameter> all{
+        {"scene", std::string(Scenes::at<0>::name), "how bodies move; see `bvlab list scenes`"},
+        {"mesh", "bunny",
+         "what they are: NAME[:POLYGONS[:SCALE]] or a file, several with commas between; object i "
+         "is mesh i mod their number"},
+        {"polygons", "500", "triangles of each mesh given by name; of a file's, what it has"}};
+    Scenes::for_each(
+        [&]<class S>(std::type_identity<S>) { S{}.visit_options(AddingParameter{all}); });
+    for (const auto& each : std::initializer_list<Parameter>{
+             {"volume", "sphere", "see `bvlab list volumes`"},
+             {"strategy", "recursive", "see `bvlab list strategies`; name or name:parameter"},
+             {"query", "touching", "see `bvlab list queries`"},
+             {"build", "top-down-principal", "how trees are built; see `bvlab list builds`"},
+             {"leaf_size", "1", "triangles in a leaf, at most"},
+             {"fit", "published", "how volumes are fitted: published, or tight"},
+             {"precision", "exact", "of triangle tests; see `bvlab list precisions`"},
+             {"relative_error", "0", "distances may be above the truth by this part of it"},
+             {"tree", "binary", "binary, or wide: siblings compared in the mesh's own frame"},
+             {"configuration", "", "chooses volume, tree, build and all else; see `bvlab list`"},
+             {"peer", "", "another library in place of ours; see `bvlab list peers`"}})
+      all.push_back(each);
+    return all;
+  }();
+  return all;
+}
+
 const Settings& default_parameters() {
   static const Settings defaults = [] {
-    Settings settings{
-        {"scene", std::string(Scenes::at<0>::name)}, {"mesh", "bunny"}, {"polygons", "500"}};
-    Scenes::for_each(
-        [&]<class S>(std::type_identity<S>) { S{}.visit_options(AddingDefault{settings}); });
-    for (const auto& setting :
-         {Setting{"volume", "sphere"}, Setting{"strategy", "recursive"},
-          Setting{"query", "touching"}, Setting{"build", "top-down-principal"},
-          Setting{"leaf_size", "1"}, Setting{"fit", "published"}, Setting{"precision", "exact"},
-          Setting{"relative_error", "0"}, Setting{"peer", ""}})
-      settings.push_back(setting);
+    Settings settings;
+    for (const auto& each : parameters()) settings.emplace_back(each.name, each.fallback);
     return settings;
   }();
   return defaults;

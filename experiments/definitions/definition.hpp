@@ -7,8 +7,9 @@
 ///     repetitions = 3                # timed runs of each cell, interleaved
 ///     measures = ["coherence", "best rebuilds"]   # beside the rest, see coherence.hpp
 ///
-///     [parameters]                   # see `parameter_names`; what is not set has its default
+///     [parameters]                   # see `bvlab list parameters`; what is not set has its default
 ///     mesh = "bunny"
+///     configuration = "recommended"  # sets volume, tree, strategy, build, fit and leaf_size
 ///
 ///     [[axis]]                       # one parameter
 ///     name = "seed"
@@ -37,7 +38,7 @@
 
 namespace bvlab {
 
-/// Parameter names and values in the order of `parameter_names`, or a subset of them.
+/// Parameter names and values in the order of `parameters`, or a subset of them.
 using Setting = std::pair<std::string, std::string>;
 using Settings = std::vector<Setting>;
 
@@ -72,7 +73,16 @@ struct Cell {
   const std::string& operator[](std::string_view name) const;
 };
 
-/// All parameters, in the order of a record's columns, with their defaults.
+/// A parameter of an experiment: of its scene or of its variant.
+struct Parameter {
+  std::string name, fallback, what;
+};
+
+/// All there are, in the order of a record's columns: the one source of defaults, of
+/// `bvlab list parameters`, and of the page beside this file.
+const std::vector<Parameter>& parameters();
+
+/// They with their defaults.
 const Settings& default_parameters();
 
 /// No experiment has more; what multiplies into more is a slip of the pen, and is refused before

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/peers/peers.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "experiments/closest_features/closest_features.hpp"
 #include "experiments/peers/bullet.hpp"
 #include "experiments/peers/cgal.hpp"
@@ -78,6 +81,30 @@ constexpr Peer list[] = {
      "touching distance", replay_closest_features<ClosestFeatures::v_clip>, true},
 };
 
+// Names of the above that are left out, by library; an empty one ends the list.
+constexpr std::string_view absent[] = {
+#if !BVLAB_FCL
+    "fcl-obb",    "fcl-obbrss",      "fcl-kios",   "fcl-rss", "fcl-aabb",
+    "fcl-kdop16", "fcl-kdop18",      "fcl-kdop24", "fcl-gjk", "libccd-gjk",
+#endif
+#if !BVLAB_BULLET
+    "bullet",
+#endif
+#if !BVLAB_ODE
+    "ode",
+#endif
+#if !BVLAB_HAS_OPCODE
+    "opcode",     "opcode-coherent",
+#endif
+#if !BVLAB_EMBREE
+    "embree",
+#endif
+#if !BVLAB_CGAL
+    "cgal",
+#endif
+    "",
+};
+
 }  // namespace
 
 std::span<const Peer> peers() { return list; }
@@ -88,6 +115,10 @@ std::string peer_names() {
   std::string names;
   for (const auto& each : list) names += (names.empty() ? "" : ", ") + std::string(each.name);
   return names;
+}
+
+bool is_absent_peer(std::string_view name) {
+  return !name.empty() && std::find(std::begin(absent), std::end(absent), name) != std::end(absent);
 }
 
 const Peer* peer(std::string_view name) {

@@ -37,6 +37,9 @@ std::string_view absent_peer_libraries();
 /// "fcl-obb, ..."
 std::string peer_names();
 
+/// Whether a peer of that name would be there if its library had been when the program was built.
+bool is_absent_peer(std::string_view name);
+
 /// Null where there is none of that name.
 const Peer* peer(std::string_view name);
 

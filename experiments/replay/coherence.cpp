@@ -7,7 +7,9 @@
 
 #include "experiments/replay/registry.hpp"
 #include "traversal/all_pairs.hpp"
-#include "traversal/queries.hpp"
+#include "traversal/queries/contacts.hpp"
+#include "traversal/queries/distance.hpp"
+#include "traversal/queries/touching.hpp"
 
 namespace bvlab {
 namespace {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <concepts>
+#include <deque>
 #include <memory>
 
 #include "experiments/replay/any_bodies.hpp"
@@ -38,10 +39,12 @@ class Answers {
       if (keep) cells().resize(trace.frames * pairs_);
   }
 
-  Query ask() {
+  /// Several pairs may be asked before the first of them is taken.
+  Query ask(std::size_t p) {
     if constexpr (lists) {
-      found_.clear();
-      return Query::asked(how_, found_);
+      auto& found = list_of(p).found;
+      found.clear();
+      return Query::asked(how_, found);
     } else {
       return Query::asked(how_);
     }
@@ -49,10 +52,12 @@ class Answers {
 
   void take(std::size_t frame, std::size_t p, const ObjectPair& pair, const Query& query) {
     if constexpr (lists) {
-      hits_ += found_.size();
+      List& list = list_of(p);
+      hits_ += list.found.size();
       if (keep_)
-        for (const auto& [a, b] : found_)
+        for (const auto& [a, b] : list.found)
           all_.push_back({static_cast<std::uint32_t>(frame), pair.i, pair.j, a, b});
+      list.pair = nobody;
     } else {
       const auto answer = query.answer();
       if constexpr (std::same_as<decltype(answer), const bool>)
@@ -70,6 +75,24 @@ class Answers {
   }
 
  private:
+  static constexpr std::size_t nobody = static_cast<std::size_t>(-1);
+  struct List {
+    std::size_t pair = nobody;
+    std::vector<std::array<std::uint32_t, 2>> found;
+  };
+
+  /// The pair's, or one that nobody has: queries point to it.
+  List& list_of(std::size_t pair) {
+    List* free = nullptr;
+    for (List& list : open_) {
+      if (list.pair == pair) return list;
+      if (list.pair == nobody) free = &list;
+    }
+    if (!free) free = &open_.emplace_back();
+    free->pair = pair;
+    return *free;
+  }
+
   auto& cells() {
     if constexpr (std::same_as<decltype(std::declval<Query>().answer()), bool>)
       return result_->touching;
@@ -82,25 +105,24 @@ class Answers {
   bool keep_;
   QueryOptions how_;
   std::uint64_t hits_ = 0;
-  std::vector<std::array<std::uint32_t, 2>> found_;
+  std::deque<List> open_;
   std::vector<std::array<std::uint32_t, 5>> all_;
 };
 
-/// Bodies of its own, every `stride`-th pair, all frames.
-template <class BodySet, class Strategy, class Query, class Counter>
+/// An engine of its own, over every `stride`-th pair, all frames.
+template <class Engine, class Query, class Counter>
 class ShareOf final : public Share {
  public:
-  /// `bodies` makes the BodySet.
-  template <class Made>
-  ShareOf(Made&& bodies, const Strategy& strategy, std::size_t first, std::size_t stride,
-          const Trace& trace, const QueryOptions& how, ReplayResult& result,
-          const ReplayOptions& options)
+  /// `make` makes the engine over the pairs it is given.
+  template <class Make>
+  ShareOf(Make&& make, std::size_t first, std::size_t stride, const Trace& trace,
+          const QueryOptions& how, ReplayResult& result, const ReplayOptions& options)
       : trace_(trace),
         result_(result),
         options_(options),
         first_(first),
         stride_(stride),
-        engine_(std::forward<Made>(bodies), share_of_pairs(trace.objects, first, stride), strategy),
+        engine_(make(share_of_pairs(trace.objects, first, stride))),
         answers_(result, trace, options.keep_answers, how) {}
 
   void play() override {
@@ -109,7 +131,7 @@ class ShareOf final : public Share {
     for (std::size_t frame = 0; frame < trace_.frames; ++frame) {
       trace_.poses(frame, poses);
       engine_.frame(
-          poses, counter_, [&](std::size_t) { return answers_.ask(); },
+          poses, counter_, [&](std::size_t p) { return answers_.ask(first_ + p * stride_); },
           [&](std::size_t p, const Query& query) {
             answers_.take(frame, first_ + p * stride_, engine_.pairs()[p], query);
           });
@@ -119,6 +141,7 @@ class ShareOf final : public Share {
       entries_ += static_cast<double>(front);
       if (options_.keep_series)
         result_.series[frame] = {counter_.n_u, counter_.n_v, counter_.n_p, front, answers_.hits()};
+      if (options_.see_front) see_fronts(frame);
       if (frame == 0) first_seconds_ = seconds_since(start);
     }
   }
@@ -133,11 +156,17 @@ class ShareOf final : public Share {
   }
 
  private:
+  void see_fronts([[maybe_unused]] std::size_t frame) const {
+    if constexpr (requires { engine_.strategy(0).front().entries(); })
+      for (std::size_t p = 0; p < engine_.pairs().size(); ++p)
+        options_.see_front(frame, first_ + p * stride_, engine_.strategy(p).front().entries());
+  }
+
   const Trace& trace_;
   ReplayResult& result_;
   const ReplayOptions& options_;
   std::size_t first_, stride_;
-  AllPairsOf<BodySet, Strategy> engine_;
+  Engine engine_;
   Answers<Query> answers_;
   Counter counter_;
   double entries_ = 0, first_seconds_ = 0;
@@ -149,18 +178,19 @@ AnyBodies<Query, Counter> bodies_of(const VolumeEntry& volume, const AnyHierarch
   return AnyBodies<Query, Counter>(loops_of<Query>(volume.name).bodies(hierarchies, objects));
 }
 
-template <class Strategy, class Query>
-void play(const VolumeEntry& volume, const AnyHierarchies& hierarchies, const Trace& trace,
-          const Variant& variant, const ReplayOptions& options, ReplayResult& result) {
+/// `engine` says, for either way to count, how one is made over some pairs.
+template <class Query, class EngineOf>
+void play_over(const EngineOf& engine, const Trace& trace, const Variant& variant,
+               const ReplayOptions& options, ReplayResult& result) {
   const QueryOptions how{triangle_test(variant.precision), variant.relative_error};
-  const auto strategy = made_from<Strategy>(variant.strategy);
-  const auto with = [&]<class Counter>(std::type_identity<Counter>) {
+  const auto with = [&]<class Counter>(std::type_identity<Counter> counter) {
+    const auto make = engine(counter);
+    using Engine = decltype(make(std::vector<ObjectPair>()));
     play_shares(
         trace, options,
         [&](std::size_t first, std::size_t stride, ReplayResult& all) -> std::unique_ptr<Share> {
-          return std::make_unique<ShareOf<AnyBodies<Query, Counter>, Strategy, Query, Counter>>(
-              bodies_of<Query, Counter>(volume, hierarchies, trace.objects), strategy, first,
-              stride, trace, how, all, options);
+          return std::make_unique<ShareOf<Engine, Query, Counter>>(make, first, stride, trace, how,
+                                                                   all, options);
         },
         result);
   };
@@ -168,6 +198,20 @@ void play(const VolumeEntry& volume, const AnyHierarchies& hierarchies, const Tr
     with(std::type_identity<Counting>());
   else
     with(std::type_identity<NotCounting>());
+}
+
+template <class Strategy, class Query>
+void play(const VolumeEntry& volume, const AnyHierarchies& hierarchies, const Trace& trace,
+          const Variant& variant, const ReplayOptions& options, ReplayResult& result) {
+  const auto strategy = made_from<Strategy>(variant.strategy);
+  const auto engine = [&]<class Counter>(std::type_identity<Counter>) {
+    return [&](std::vector<ObjectPair> pairs) {
+      return AllPairsOf<AnyBodies<Query, Counter>, Strategy>(
+          bodies_of<Query, Counter>(volume, hierarchies, trace.objects), std::move(pairs),
+          strategy);
+    };
+  };
+  play_over<Query>(engine, trace, variant, options, result);
 }
 
 /// The broad phase of whole scenes, compiled once for all strategies.

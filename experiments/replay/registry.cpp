@@ -34,6 +34,21 @@ std::vector<Named> volumes() {
   return all;
 }
 
+std::vector<Named> wide_volumes() {
+  std::vector<Named> all;
+  for (const auto* entry : wide_entries()) add(all, entry->volume, entry->volume_description);
+  return all;
+}
+
+std::vector<Named> trees() {
+  return {
+      {"binary", "two children a node, which are posed into the world: any volume, any strategy"},
+      {"wide", "up to " + std::to_string(wide_entries()[0]->fan_out) +
+                   " children a node, tested at once in their mesh's own frame, the likeliest "
+                   "first: --volume " +
+                   text_of(wide_volumes()) + ", --strategy recursive"}};
+}
+
 std::vector<Named> strategies() {
   std::vector<Named> all;
   for (const auto* entry : play_entries()) add(all, entry->strategy, entry->strategy_description);
@@ -49,7 +64,28 @@ std::vector<Named> queries() {
 const VolumeEntry& volume_entry(std::string_view name) {
   for (const auto* entry : volume_entries())
     if (entry->name == name) return *entry;
-  refuse("--volume", name, volumes());
+  std::string hint;
+  for (const auto& each : wide_volumes()) {
+    if (each.name == name)
+      throw Unusable("--volume " + each.name +
+                     ": in wide trees alone (--tree wide); in binary ones " + text_of(volumes()));
+    hint += ", and with --tree wide " + each.name;
+  }
+  throw Unusable("--volume " + std::string(name) + ": unknown; there are " + text_of(volumes()) +
+                 hint);
+}
+
+const WideEntry& wide_entry(std::string_view volume, std::string_view query) {
+  bool volume_exists = false;
+  for (const auto* entry : wide_entries()) {
+    if (entry->volume != volume) continue;
+    volume_exists = true;
+    if (entry->query == query) return *entry;
+  }
+  if (!volume_exists)
+    throw Unusable("--volume " + std::string(volume) + ": not in wide trees; there is " +
+                   text_of(wide_volumes()));
+  refuse("--query", query, queries());
 }
 
 const PlayEntry& play_entry(std::string_view strategy, std::string_view query) {

@@ -12,6 +12,7 @@
 #include "experiments/replay/loops_entry.hpp"
 #include "experiments/replay/play_entry.hpp"
 #include "experiments/replay/volume_entry.hpp"
+#include "experiments/replay/wide_entry.hpp"
 
 namespace bvlab {
 
@@ -19,6 +20,8 @@ namespace bvlab {
 std::span<const VolumeEntry* const> volume_entries();
 /// Strategy by strategy, each under every query.
 std::span<const PlayEntry* const> play_entries();
+/// Of volumes in wide trees, each under every query.
+std::span<const WideEntry* const> wide_entries();
 /// One for each volume; specialised for each query.
 template <class Query>
 std::span<const LoopsEntry<Query>* const> loops_entries();
@@ -27,13 +30,16 @@ std::span<const LoopsEntry<Query>* const> loops_entries();
 struct Named {
   std::string name, description;
 };
-std::vector<Named> volumes();
+std::vector<Named> volumes();       ///< in binary trees
+std::vector<Named> wide_volumes();  ///< in wide ones
+std::vector<Named> trees();
 std::vector<Named> strategies();
 std::vector<Named> queries();
 
 /// Those of that name. Throw Unusable, naming the option and what there is.
 const VolumeEntry& volume_entry(std::string_view name);
 const PlayEntry& play_entry(std::string_view strategy, std::string_view query);
+const WideEntry& wide_entry(std::string_view volume, std::string_view query);
 
 /// Of a volume that exists.
 template <class Query>

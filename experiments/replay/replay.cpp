@@ -25,11 +25,29 @@ void check_name(std::string_view option, std::string_view name) {
                    List::names());
 }
 
+/// Loops over binary trees know every strategy; those over wide ones start from the roots.
+void check_tree(const Variant& variant) {
+  if (variant.tree == "binary") {
+    volume_entry(variant.volume);
+    play_entry(name_of(variant.strategy), variant.query).check(variant.strategy);
+  } else if (variant.tree == "wide") {
+    wide_entry(variant.volume, variant.query);
+    if (variant.strategy != "recursive")
+      throw Unusable("--strategy " + variant.strategy + ": not in wide trees; there is recursive");
+  } else {
+    throw Unusable("--tree " + variant.tree + ": unknown; there are binary, wide");
+  }
+}
+
+void need_binary(const Variant& variant, const char* what) {
+  if (variant.tree != "binary")
+    throw Unusable("--tree " + variant.tree + ": not for " + what + "; there is binary");
+}
+
 }  // namespace
 
 void check(const Variant& variant) {
-  volume_entry(variant.volume);
-  play_entry(name_of(variant.strategy), variant.query).check(variant.strategy);
+  check_tree(variant);
   check_name<Precisions>("--precision", variant.precision);
   check_name<Builds>("--build", variant.build);
   if (variant.fit != "published" && variant.fit != "tight")
@@ -47,6 +65,10 @@ ReplayResult replay(std::span<const TriangleMesh> meshes, const Trace& trace,
   // Nothing happens without frames, so bodies are not made, however many there would be.
   if (trace.frames == 0 && trace.objects > 0) return replay(meshes, Trace{}, variant, options);
   ReplayResult result;
+  if (variant.tree == "wide") {
+    wide_entry(variant.volume, variant.query).play(meshes, trace, variant, options, result);
+    return result;
+  }
   const VolumeEntry& volume = volume_entry(variant.volume);
   const auto start = Clock::now();
   const auto hierarchies = volume.hierarchies(meshes, variant);
@@ -59,12 +81,14 @@ ReplayResult replay(std::span<const TriangleMesh> meshes, const Trace& trace,
 BudgetedResult replay_budgeted(std::span<const TriangleMesh> meshes, const Trace& trace,
                                const Variant& variant, std::uint64_t budget, Count count) {
   check(variant);
+  need_binary(variant, "answers within a budget");
   return volume_entry(variant.volume).budgeted(meshes, trace, variant, budget, count);
 }
 
 std::unique_ptr<WorldEngine> make_world(std::span<const TriangleMesh> meshes, std::size_t objects,
                                         const Variant& variant) {
   check(variant);
+  need_binary(variant, "whole scenes");
   const VolumeEntry& volume = volume_entry(variant.volume);
   auto world = play_entry(name_of(variant.strategy), variant.query)
                    .world(volume, volume.hierarchies(meshes, variant), objects, variant);
@@ -85,9 +109,9 @@ void detail::play_shares(const Trace& trace, const ReplayOptions& options, const
                          ReplayResult& result) {
   if (options.keep_series) result.series.resize(trace.frames);
   const std::size_t pairs = trace.pairs();
-  // A series is of all pairs together, so one thread plays it.
+  // A series is of all pairs together, and fronts are shown in order, so one thread plays it.
   const std::size_t threads =
-      options.keep_series
+      options.keep_series || options.see_front
           ? 1
           : std::clamp<std::size_t>(options.threads, 1, std::max<std::size_t>(pairs, 1));
   std::vector<std::unique_ptr<Share>> shares;

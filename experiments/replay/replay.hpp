@@ -12,6 +12,7 @@
 
 #include "experiments/scenes/trace.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
+#include "traversal/front.hpp"
 
 namespace bvlab {
 
@@ -25,7 +26,8 @@ struct Variant {
   std::uint32_t leaf_size = 1;
   std::string fit = "published";  ///< or "tight", see bounding_volume.hpp
   std::string precision = "exact";
-  double relative_error = 0;  ///< of distances
+  double relative_error = 0;    ///< of distances
+  std::string tree = "binary";  ///< or "wide", see wide_entry.hpp
 };
 
 struct ReplayOptions {
@@ -33,6 +35,8 @@ struct ReplayOptions {
   unsigned threads = 1;
   bool keep_answers = true;  ///< fill `touching`, `contacts` or `distances`
   bool keep_series = false;  ///< fill `series`
+  /// Called after every frame, for every pair, with what the strategy keeps of it, if it does.
+  std::function<void(std::size_t frame, std::size_t pair, std::span<const NodePair>)> see_front;
 };
 
 /// Counts of one frame, all pairs together.

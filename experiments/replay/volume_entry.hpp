@@ -38,6 +38,10 @@ struct VolumeEntry {
                               std::span<const GapQuestion>);
   BudgetedResult (*budgeted)(std::span<const TriangleMesh>, const Trace&, const Variant&,
                              std::uint64_t budget, Count);
+  std::string_view drawn_as;  ///< see drawn_volume.hpp
+  /// Of these nodes of one mesh's hierarchy, one after the other; hierarchies are of this volume.
+  std::vector<float> (*drawn)(const AnyHierarchies&, std::size_t mesh,
+                              std::span<const std::uint32_t> nodes);
 };
 
 }  // namespace bvlab

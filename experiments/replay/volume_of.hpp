@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "experiments/replay/drawn_volume.hpp"
 #include "experiments/replay/hierarchies_of.hpp"
 #include "experiments/replay/replay_shares.hpp"
 #include "experiments/replay/triangle_test.hpp"
@@ -85,6 +86,18 @@ std::vector<double> gaps_of(const TriangleMesh& mesh, const Topology& topology, 
   return gaps;
 }
 
+template <BoundingVolume V>
+std::vector<float> drawn_of(const AnyHierarchies& hierarchies, std::size_t mesh,
+                            std::span<const std::uint32_t> nodes) {
+  const auto& hierarchy = static_cast<const HierarchiesOf<V>&>(hierarchies)[mesh];
+  std::vector<float> all;
+  for (const auto node : nodes) {
+    const auto numbers = drawn_numbers(hierarchy.volume(node));
+    all.insert(all.end(), numbers.begin(), numbers.end());
+  }
+  return all;
+}
+
 }  // namespace detail
 
 template <BoundingVolume V>
@@ -97,7 +110,9 @@ constexpr VolumeEntry volume_of() {
         return std::unique_ptr<AnyHierarchies>(std::make_unique<HierarchiesOf<V>>(meshes, variant));
       },
       detail::gaps_of<V>,
-      detail::play_budgeted<V>};
+      detail::play_budgeted<V>,
+      drawn_as<V>(),
+      detail::drawn_of<V>};
 }
 
 }  // namespace bvlab

@@ -42,11 +42,14 @@ std::vector<std::string> parts_of(const std::string& text, char separator) {
   return parts;
 }
 
+bool is_file(const std::string& text) {
+  return text.find('/') != text.npos || text.substr(0, text.find(':')).find('.') != text.npos;
+}
+
 NamedMesh from_text(const std::string& text, std::size_t polygons) {
   const auto parts = parts_of(text, ':');
   if (parts.empty()) throw Unusable("mesh: a name is needed");
-  if (text.find('/') != text.npos || parts[0].find('.') != text.npos)
-    return {std::filesystem::path(text).stem().string(), read_mesh(text)};
+  if (is_file(text)) return {std::filesystem::path(text).stem().string(), read_mesh(text)};
   if (parts.size() > 3) throw Unusable("mesh '" + text + "': must be NAME[:POLYGONS[:SCALE]]");
   if (parts.size() > 1) polygons = number<std::size_t>(parts[1], text);
   NamedMesh result = named_mesh(parts[0], polygons);
@@ -90,6 +93,11 @@ NamedMesh named_mesh(const std::string& name, std::size_t polygons,
                    ", and the files of " + directory.string());
   std::fprintf(stderr, "bvlab: no %s: a %s stands in for the bunny\n", source.c_str(), stand_in);
   return {stand_in, formula_mesh(stand_in, polygons)};
+}
+
+bool names_files(const std::string& list) {
+  const auto parts = parts_of(list, ',');
+  return std::any_of(parts.begin(), parts.end(), is_file);
 }
 
 std::vector<NamedMesh> named_meshes(const std::string& list, std::size_t polygons) {

@@ -32,4 +32,7 @@ NamedMesh named_mesh(const std::string& name, std::size_t polygons,
 /// multiplied by the scale.
 std::vector<NamedMesh> named_meshes(const std::string& list, std::size_t polygons);
 
+/// Whether a file is among them, which has as many triangles as it has.
+bool names_files(const std::string& list);
+
 }  // namespace bvlab

@@ -44,7 +44,8 @@ void require_finite_corners(const Trace& trace, const std::string& name,
   for (const TriangleMesh& mesh : meshes)
     small.push_back(std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
                                 [](const auto& v) { return v.cwiseAbs().maxCoeff() < safe; }));
-  std::vector<Pose> poses(trace.objects);
+  // A trace without frames can promise any number of objects.
+  std::vector<Pose> poses;
   for (std::size_t frame = 0; frame < trace.frames && trace.objects > 0; ++frame) {
     const double* v = trace.values.data() + frame * trace.objects * 7;
     bool posed = false;
@@ -52,7 +53,7 @@ void require_finite_corners(const Trace& trace, const std::string& name,
       const auto small_number = [](double x) { return std::abs(x) < safe; };
       const std::size_t mesh = object % meshes.size();
       if (small[mesh] && std::all_of(v, v + 3, small_number)) continue;
-      if (!posed) trace.poses(frame, poses), posed = true;
+      if (!posed) poses.resize(trace.objects), trace.poses(frame, poses), posed = true;
       for (const auto& triangle : meshes[mesh].triangles)
         for (const auto vertex : triangle)
           if (!poses[object](meshes[mesh].vertices[vertex]).allFinite())

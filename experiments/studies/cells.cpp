@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/studies/cells.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <map>
 #include <set>
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/peers.hpp"
+#include "experiments/replay/configurations.hpp"
+#include "experiments/replay/touches_any.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/scenes.hpp"
-#include "experiments/scenes/touches_any.hpp"
 
 namespace bvlab {
 namespace {
@@ -48,6 +50,19 @@ std::string trace_key(const Cell& cell) {
   return key;
 }
 
+/// What a configuration says stands in the cell's row.
+void spell_out(Cell& cell) {
+  const Variant variant = variant_of(cell);
+  for (const auto& [key, said] : Settings{{"volume", variant.volume},
+                                          {"strategy", variant.strategy},
+                                          {"build", variant.build},
+                                          {"leaf_size", std::to_string(variant.leaf_size)},
+                                          {"fit", variant.fit},
+                                          {"tree", variant.tree}})
+    for (auto& [name, value] : cell.parameters)
+      if (name == key) value = said;
+}
+
 std::vector<TriangleMesh> meshes_of(const Cell& cell) {
   std::vector<TriangleMesh> meshes;
   for (auto& [name, mesh] :
@@ -67,24 +82,44 @@ void with_scene(const Cell& cell, Use&& use) {
   if (!known) throw Unusable("no scene '" + cell["scene"] + "'; there are " + Scenes::names());
 }
 
+/// Of a mesh from a file a record says what it has, and not what a mesh by name would have had: the
+/// most triangles of those in the list.
+void set_polygons_of_files(std::vector<Cell>& cells) {
+  std::map<std::string, std::string> known;
+  for (auto& cell : cells) {
+    const std::string& mesh = cell["mesh"];
+    if (!names_files(mesh)) continue;
+    auto& polygons = known[mesh];
+    if (polygons.empty()) {
+      std::size_t most = 0;
+      for (const auto& each : meshes_of(cell)) most = std::max(most, each.triangles.size());
+      polygons = std::to_string(most);
+    }
+    for (auto& [name, value] : cell.parameters)
+      if (name == "polygons") value = polygons;
+  }
+}
+
 }  // namespace
 
 bool is_of_variant(const std::string& name) {
-  static const std::set<std::string> names{"volume",    "strategy",       "query",
-                                           "build",     "leaf_size",      "fit",
-                                           "precision", "relative_error", "peer"};
+  static const std::set<std::string> names{"volume", "strategy",  "query",        "build",
+                                           "fit",    "leaf_size", "precision",    "relative_error",
+                                           "tree",   "peer",      "configuration"};
   return names.contains(name);
 }
 
 Variant variant_of(const Cell& cell) {
-  return {cell["volume"],
-          cell["strategy"],
-          cell["query"],
-          cell["build"],
-          number<std::uint32_t>("leaf_size", cell["leaf_size"]),
-          cell["fit"],
-          cell["precision"],
-          number<double>("relative_error", cell["relative_error"])};
+  const Variant variant{cell["volume"],
+                        cell["strategy"],
+                        cell["query"],
+                        cell["build"],
+                        number<std::uint32_t>("leaf_size", cell["leaf_size"]),
+                        cell["fit"],
+                        cell["precision"],
+                        number<double>("relative_error", cell["relative_error"]),
+                        cell["tree"]};
+  return cell["configuration"].empty() ? variant : configured(variant, cell["configuration"]);
 }
 
 Prepared prepared(const Cell& cell) {
@@ -105,30 +140,36 @@ void check(const Cell& cell) {
   with_scene(cell, [](const auto& scene) {
     if constexpr (requires { scene.check(); }) scene.check();
   });
-  if (cell["peer"].empty()) return;
-  if (!peer(cell["peer"]))
+  if (!cell["peer"].empty() && !peer(cell["peer"]) && !is_absent_peer(cell["peer"]))
     throw Unusable("no peer '" + cell["peer"] + "'; there are " + peer_names());
 }
 
 bool has_answer(const Cell& cell) {
+  if (cell["peer"].empty()) return true;
   const Peer* const other = peer(cell["peer"]);
-  return !other || other->answers(cell["query"]);
+  return other && other->answers(cell["query"]);
 }
 
 std::vector<Cell> cells_with_answers(const Definition& definition) {
   std::vector<Cell> cells;
-  std::set<Settings> of_peers;
+  std::set<Settings> replaced;
   for (Cell& cell : cells_of(definition)) {
     if (!has_answer(cell)) continue;
-    if (!cell["peer"].empty()) {
+    const bool of_peer = !cell["peer"].empty();
+    if (of_peer) {
       for (auto& [name, value] : cell.parameters)
         if (is_of_variant(name) && name != "peer" && name != "query") value.clear();
+    } else if (!cell["configuration"].empty()) {
+      spell_out(cell);
+    }
+    if (of_peer || !cell["configuration"].empty()) {
       Settings all = cell.labels;
       all.insert(all.end(), cell.parameters.begin(), cell.parameters.end());
-      if (!of_peers.insert(std::move(all)).second) continue;
+      if (!replaced.insert(std::move(all)).second) continue;
     }
     cells.push_back(std::move(cell));
   }
+  set_polygons_of_files(cells);
   return cells;
 }
 

@@ -32,11 +32,11 @@ ReplayResult answered(const Prepared& ready, const Cell& cell, const ReplayOptio
 /// Throws Unusable for names that do not exist and values that cannot be.
 void check(const Cell& cell);
 
-/// Not every peer answers every query: such cells are left out.
+/// Not every peer answers every query, and not every one is compiled: such cells are left out.
 bool has_answer(const Cell& cell);
 
-/// A peer has a volume, a strategy and so on of its own: what a cell says of ours is cleared, and
-/// cells that then say the same are one.
+/// A peer has a volume, a strategy and so on of its own: what a cell says of ours is cleared. So is
+/// a configuration's replaced. Cells that then say the same are one.
 std::vector<Cell> cells_with_answers(const Definition& definition);
 
 /// Cells that share a trace and a query, as indices, in the order in which a definition has them.

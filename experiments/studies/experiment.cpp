@@ -2,6 +2,7 @@
 #include "experiments/studies/experiment.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <random>
@@ -221,7 +222,7 @@ class Experiment {
   void measure_coherence(const Prepared& ready, Found& found, std::size_t threads) const {
     std::map<Row, const Cell*> fronts;
     for (const Cell* cell : found.cells)
-      if ((*cell)["peer"].empty() && (*cell)["query"] != "distance")
+      if ((*cell)["peer"].empty() && (*cell)["tree"] == "binary" && (*cell)["query"] != "distance")
         fronts.emplace(front_key(*cell), cell);
     const std::vector<std::pair<Row, const Cell*>> all(fronts.begin(), fronts.end());
     found.coherence.resize(all.size());
@@ -331,14 +332,19 @@ class Experiment {
 void check(const Definition& definition) {
   try {
     std::map<std::string, bool> peers_asked;
+    bool any_asked = false;
     for (const auto& cell : cells_of(definition)) {
       check(cell);
+      any_asked |= has_answer(cell);
       if (!cell["peer"].empty()) peers_asked[cell["peer"]] |= has_answer(cell);
     }
     for (const auto& [name, asked] : peers_asked)
-      if (!asked)
+      if (!asked && peer(name))
         throw Unusable("peer " + name + " is asked nothing it answers: it answers " +
                        std::string(peer(name)->queries));
+    if (!any_asked)
+      throw Unusable("asks nobody but peers that were absent when bvlab was built, as " +
+                     peers_asked.begin()->first);
   } catch (const Unusable& fault) {
     throw Unusable(definition.file, fault.what());
   }
@@ -351,6 +357,11 @@ DefinitionSize size_of(const Definition& definition) {
 
 void run_experiment(const Definition& definition, const std::filesystem::path& record,
                     const RunOptions& options, const Progress& progress) {
+  std::set<std::string> absent;
+  for (const auto& cell : cells_of(definition))
+    if (is_absent_peer(cell["peer"])) absent.insert(cell["peer"]);
+  for (const auto& name : absent)
+    std::fprintf(stderr, "bvlab: peer %s is left out: absent when bvlab was built\n", name.c_str());
   Experiment(definition, record, options).run(progress);
 }
 

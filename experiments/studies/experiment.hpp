@@ -46,6 +46,7 @@ DefinitionSize size_of(const Definition& definition);
 /// definition's traces, whichever was finished first. Where only counts are measured there is one
 /// row for each cell, its times are empty, and traces are run side by side. Throws Unusable for a
 /// record that holds times if only counts are wanted, and the other way round.
+/// Peers that were absent when the program was built are left out, and named on standard error.
 void run_experiment(const Definition& definition, const std::filesystem::path& record,
                     const RunOptions& options, const Progress& progress);
 

@@ -22,7 +22,8 @@
 #include "experiments/studies/wandering.hpp"
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes/kdop_corners.hpp"
-#include "traversal/queries.hpp"
+#include "traversal/queries/contacts.hpp"
+#include "traversal/queries/touching.hpp"
 #include "traversal/strategies/recursive.hpp"
 
 namespace bvlab {
@@ -100,23 +101,6 @@ ReplayResult replayed(const Scene& scene, Count count) {
   return replay(scene.meshes, scene.trace, variant, options);
 }
 
-template <class V, class Query, class Counter>
-ReplayResult played(const Scene& scene, const Hierarchy<V>& hierarchy) {
-  const std::vector<Shape<V>> shapes(scene.trace.objects, {&scene.meshes[0], &hierarchy});
-  const ReplayOptions options;
-  ReplayResult result;
-  detail::play_shares(
-      scene.trace, options,
-      [&](std::size_t first, std::size_t stride, ReplayResult& all) {
-        using Lanes = NativeBatch<typename V::scalar>;
-        return std::make_unique<detail::ShareOf<Bodies<Lanes, V>, Recursive, Query, Counter>>(
-            std::span(shapes), Recursive{}, first, stride, scene.trace,
-            QueryOptions{triangle_test("exact"), 0}, all, options);
-      },
-      result);
-  return result;
-}
-
 /// Bounds the roots of all bodies in all frames by `pose_root(body, pose, origin)`.
 template <class PoseRoot>
 Measured at_roots(const Trace& trace, const PoseRoot& pose_root) {
@@ -151,12 +135,27 @@ ReplayResult fastest_of(const std::function<ReplayResult()>& play) {
 }
 
 template <class V, class Query>
+ReplayResult engine_of_its_own(const Scene& scene, const Hierarchy<V>& hierarchy, Count count) {
+  const std::vector<Shape<V>> shapes(scene.trace.objects, {&scene.meshes[0], &hierarchy});
+  ReplayOptions options;
+  options.count = count;
+  ReplayResult result;
+  const auto engine = [&](auto) {
+    return [&](std::vector<ObjectPair> pairs) {
+      return AllPairs<NativeBatch<typename V::scalar>, V, Recursive>(shapes, std::move(pairs),
+                                                                     Recursive());
+    };
+  };
+  detail::play_over<Query>(engine, scene.trace, Variant{}, options, result);
+  return result;
+}
+
+template <class V, class Query>
 ReplayResult played(const Scene& scene, const Hierarchy<V>& hierarchy, Count count) {
   if constexpr (is_listed<V>)
     return replayed<V, Query>(scene, count);
   else
-    return count == Count::on ? played<V, Query, Counting>(scene, hierarchy)
-                              : played<V, Query, NotCounting>(scene, hierarchy);
+    return engine_of_its_own<V, Query>(scene, hierarchy, count);
 }
 
 template <class V, class Query>

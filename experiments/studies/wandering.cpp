@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/studies/wandering.hpp"
 
+#include "experiments/replay/touches_any.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/scenes.hpp"
-#include "experiments/scenes/touches_any.hpp"
 
 namespace bvlab {
 

@@ -122,7 +122,9 @@ S squared_norm(const Vec3<S>& v) {
   return dot(v, v);
 }
 
-/// A vector rounded to T, to nearest.
+/// A vector rounded to T, to nearest: off by at most half a last digit, or half the least number,
+/// and infinite beyond the largest. A volume about an infinite centre has an infinite radius or
+/// none that is a number, and is disjoint from nothing.
 ///
 /// The result is hidden from the optimiser: GCC 12 at -O2 takes a pair of doubles through float and
 /// back without rounding them (its SLP vectoriser merges the two conversions), and a volume whose

@@ -5,6 +5,7 @@
 
 #include "experiments/scenes/formula_mesh.hpp"
 #include "hierarchies/builds.hpp"
+#include "hierarchies/volumes/sphere.hpp"
 #include "tests/laws/volume_laws.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"

@@ -8,8 +8,9 @@
 
 #include "experiments/scenes/formula_mesh.hpp"
 #include "hierarchies/builds.hpp"
-#include "hierarchies/volumes.hpp"
+#include "hierarchies/volumes/sphere.hpp"
 #include "tests/types_of.hpp"
+#include "traversal/bodies.hpp"
 #include "traversal/budgeted.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
@@ -37,15 +38,20 @@ struct Watched : Query {
   }
 };
 
-struct Bodies {
+struct Two {
   Hierarchy<V> hierarchy;
   Body<V> a, b;
   Workspace workspace;
 
-  Bodies(const TriangleMesh& mesh, std::uint32_t leaf_size)
+  Two(const TriangleMesh& mesh, std::uint32_t leaf_size)
       : hierarchy(mesh, builds::TopDownPrincipal::topology(mesh, leaf_size)),
         a(mesh, hierarchy),
         b(mesh, hierarchy) {}
+
+  template <class Query, class Counter>
+  BodyPair<B, V, Query, Counter> pair(Query& query, Counter& counter) {
+    return {a, b, query, counter, workspace};
+  }
 };
 
 template <class Strategy>
@@ -56,7 +62,7 @@ TYPED_TEST_SUITE(LargeLeaves, TypesOf<Strategies>);
 TYPED_TEST(LargeLeaves, AnswerAsSmallOnesDoAndHoldNoMore) {
   const TriangleMesh mesh = formula_mesh("star", 300);
   for (const std::uint32_t leaf_size : {40u, 100u, 65536u}) {
-    Bodies small(mesh, 1), large(mesh, leaf_size);
+    Two small(mesh, 1), large(mesh, leaf_size);
     TypeParam touching_strategy, contacts_strategy, distance_strategy;
     std::mt19937_64 random(leaf_size);
     std::uniform_real_distribution<double> unit(-1, 1);
@@ -71,30 +77,30 @@ TYPED_TEST(LargeLeaves, AnswerAsSmallOnesDoAndHoldNoMore) {
       place += step * Vec3<double>(unit(random) - 0.3 * place[0], unit(random), unit(random));
       angle += step * unit(random);
       pose = *pose_from(place, std::cos(angle), 0.3 * std::sin(angle), 0.5 * std::sin(angle), 0.1);
-      for (Bodies* bodies : {&small, &large}) {
+      for (Two* bodies : {&small, &large}) {
         bodies->a.move(Pose{}, Vec3<double>::Zero());
         bodies->b.move(pose, Vec3<double>::Zero());
       }
       Touching expected;
-      Recursive().run<B>(small.a, small.b, expected, counter, small.workspace);
+      Recursive().run(small.pair(expected, counter));
       touching += expected.touching();
       Watched<Touching> touch;
-      touching_strategy.template run<B>(large.a, large.b, touch, counter, large.workspace);
+      touching_strategy.run(large.pair(touch, counter));
       ASSERT_EQ(touch.touching(), expected.touching()) << frame;
 
       std::vector<Contact> all, found;
       Contacts expected_contacts(all);
-      Recursive().run<B>(small.a, small.b, expected_contacts, counter, small.workspace);
+      Recursive().run(small.pair(expected_contacts, counter));
       Watched<Contacts> contacts(found);
-      contacts_strategy.template run<B>(large.a, large.b, contacts, counter, large.workspace);
+      contacts_strategy.run(large.pair(contacts, counter));
       std::sort(all.begin(), all.end());
       std::sort(found.begin(), found.end());
       ASSERT_EQ(found, all) << frame;
 
       Distance expected_distance;
-      Recursive().run<B>(small.a, small.b, expected_distance, counter, small.workspace);
+      Recursive().run(small.pair(expected_distance, counter));
       Watched<Distance> distance;
-      distance_strategy.template run<B>(large.a, large.b, distance, counter, large.workspace);
+      distance_strategy.run(large.pair(distance, counter));
       ASSERT_NEAR(distance.distance(), expected_distance.distance(),
                   0x1p-44 * expected_distance.distance())
           << frame;
@@ -109,7 +115,7 @@ TYPED_TEST(LargeLeaves, AnswerAsSmallOnesDoAndHoldNoMore) {
 /// A hit in the first portion of a leaf says nothing of the others, which are looked at again.
 TEST(LargeLeavesWithMargins, AreLookedAtAgainWhereAHitCutThemShort) {
   const TriangleMesh mesh = formula_mesh("star", 300);
-  Bodies bodies(mesh, 65536), small(mesh, 1);
+  Two bodies(mesh, 65536), small(mesh, 1);
   NotCounting counter;
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -119,13 +125,13 @@ TEST(LargeLeavesWithMargins, AreLookedAtAgainWhereAHitCutThemShort) {
     const Vec3<double> way = Vec3<double>(unit(random), unit(random), unit(random));
     for (int frame = 0; frame < 30; ++frame) {
       const Pose pose{Mat3<double>::Identity(), place + std::abs(frame - 15) * 0.1 * way};
-      for (Bodies* both : {&small, &bodies}) {
+      for (Two* both : {&small, &bodies}) {
         both->a.move(Pose{}, Vec3<double>::Zero());
         both->b.move(pose, Vec3<double>::Zero());
       }
       Touching expected, found;
-      Recursive().run<B>(small.a, small.b, expected, counter, small.workspace);
-      margins.run<B>(bodies.a, bodies.b, found, counter, bodies.workspace);
+      Recursive().run(small.pair(expected, counter));
+      margins.run(bodies.pair(found, counter));
       ASSERT_EQ(found.touching(), expected.touching()) << round << ' ' << frame;
     }
   }
@@ -144,7 +150,7 @@ struct CountingLargest : NotCounting {
 
 TEST(LargeLeavesWithinABudget, HoldNoMore) {
   const TriangleMesh mesh = formula_mesh("star", 300);
-  Bodies bodies(mesh, 65536);
+  Two bodies(mesh, 65536);
   const PatchSizes sizes(mesh, bodies.hierarchy);
   Budgeted<B, V> budgeted;
   CountingLargest counter;

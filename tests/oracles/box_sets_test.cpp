@@ -43,8 +43,9 @@ void check_set(const std::string& set, std::size_t count, int frame_count) {
     for (const Coherence coherence : {Coherence::off, Coherence::on}) {
       MethodSettings settings;
       settings.coherence = coherence;
-      expect_right(*make_method<float>(entry->name, settings), frames, right,
-                   set + ", " + std::string(entry->name) + (coherence == Coherence::on ? ", coherent" : ""));
+      expect_right(
+          *make_method<float>(entry->name, settings), frames, right,
+          set + ", " + std::string(entry->name) + (coherence == Coherence::on ? ", coherent" : ""));
     }
   for (const std::string name :
        {"cgal", "cgal-1000", "fcl-tree", "fcl-ssap", "bullet-dbvt", "embree"})

@@ -3,10 +3,10 @@
 /// that do touch; and with enough of a budget everything is known.
 #include <gtest/gtest.h>
 
+#include "experiments/replay/registry.hpp"
 #include "experiments/replay/replay_budgeted.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/random_walk.hpp"
-#include "hierarchies/volumes.hpp"
 
 namespace bvlab {
 namespace {
@@ -40,29 +40,29 @@ class Budget : public testing::Test {
 
 TEST_F(Budget, NeverWrongAndNeverExceeded) {
   const std::size_t asked = truth_.size();
-  Volumes::for_each([&]<class V>(std::type_identity<V>) {
+  for (const auto& [volume, description] : volumes()) {
     double before = std::numeric_limits<double>::infinity();
     std::uint64_t unknown_before = asked + 1;
     for (const std::uint64_t budget : {0, 1, 7, 50, 400, 3000, 1 << 20}) {
-      const auto result = within(V::name, budget);
+      const auto result = within(volume, budget);
       ASSERT_EQ(result.known.size(), asked);
-      ASSERT_LE(result.n_v, budget * asked) << V::name;
+      ASSERT_LE(result.n_v, budget * asked) << volume;
       ASSERT_EQ(result.touching + result.apart + result.unknown, asked);
       for (std::size_t i = 0; i < asked; ++i) {
         if (result.known[i] != 2) {
-          ASSERT_EQ(result.known[i], truth_[i]) << V::name << " at " << budget;
+          ASSERT_EQ(result.known[i], truth_[i]) << volume << " at " << budget;
           ASSERT_EQ(result.bounds[i], 0);
         } else {
           ASSERT_GT(result.bounds[i], 0);
         }
       }
       // More tests tell more.
-      EXPECT_LE(result.deepest, before) << V::name << " at " << budget;
-      EXPECT_LE(result.unknown, unknown_before) << V::name << " at " << budget;
+      EXPECT_LE(result.deepest, before) << volume << " at " << budget;
+      EXPECT_LE(result.unknown, unknown_before) << volume << " at " << budget;
       before = result.deepest, unknown_before = result.unknown;
     }
-    EXPECT_EQ(unknown_before, 0u) << V::name;
-  });
+    EXPECT_EQ(unknown_before, 0u) << volume;
+  }
 }
 
 /// Where surfaces do touch and it is not known yet, at least one of the two patches that meet is no

@@ -9,15 +9,14 @@
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/triangle_oracle.hpp"
+#include "experiments/replay/registry.hpp"
 #include "experiments/replay/replay.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/random_walk.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 #include "experiments/scenes/simplify_mesh.hpp"
-#include "hierarchies/volumes.hpp"
 #include "traversal/primitives/triangle_distance.hpp"
 #include "traversal/queries.hpp"
-#include "traversal/strategies.hpp"
 
 namespace bvlab {
 namespace {
@@ -147,19 +146,17 @@ void expect_equal(const ReplayResult& found, const ReplayResult& truth, std::str
 
 void expect_truth_of_all(const Sample& each, const Trace& trace, const ReplayResult& truth) {
   const std::span<const TriangleMesh> meshes(&each.mesh, 1);
-  Volumes::for_each([&]<class V>(std::type_identity<V>) {
-    Strategies::for_each([&]<class S>(std::type_identity<S>) {
-      Queries::for_each([&]<class Q>(std::type_identity<Q>) {
+  for (const auto& volume : volumes())
+    for (const auto& strategy : strategies())
+      for (const auto& query : queries()) {
         Variant variant;
-        variant.volume = V::name;
-        variant.strategy = S::name;
-        variant.query = Q::name;
+        variant.volume = volume.name;
+        variant.strategy = strategy.name;
+        variant.query = query.name;
         SCOPED_TRACE(each.name + ' ' + variant.volume + ' ' + variant.strategy + ' ' +
                      variant.query);
-        expect_equal(replay(meshes, trace, variant, {}), truth, Q::name);
-      });
-    });
-  });
+        expect_equal(replay(meshes, trace, variant, {}), truth, query.name);
+      }
 }
 
 TEST(CgalMeshes, EveryVariantAgreesWithRationalNumbers) {

@@ -3,13 +3,12 @@
 /// the promise of a relative error.
 #include <gtest/gtest.h>
 
+#include "experiments/replay/registry.hpp"
 #include "experiments/replay/replay.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/random_walk.hpp"
-#include "hierarchies/volumes.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/primitives/triangle_distance.hpp"
-#include "traversal/strategies.hpp"
 
 namespace bvlab {
 namespace {
@@ -77,15 +76,13 @@ TEST(DistanceQuery, CoherentIsFreshForEveryVolume) {
   for (const double step : {0.002, 0.3}) {
     const Scenery scene = scenery(1500, 4, step);
     const auto fresh = distances(scene, "sphere", "recursive");
-    Volumes::for_each([&]<class V>(std::type_identity<V>) {
-      Strategies::for_each([&](auto type) {
-        const std::string strategy{decltype(type)::type::name};
-        const auto kept = distances(scene, V::name, strategy);
+    for (const auto& [volume, description] : volumes())
+      for (const auto& [strategy, same] : strategies()) {
+        const auto kept = distances(scene, volume, strategy);
         ASSERT_EQ(kept.size(), fresh.size());
         for (std::size_t i = 0; i < fresh.size(); ++i)
-          ASSERT_NEAR(kept[i], fresh[i], 1e-12 * fresh[i]) << strategy << ' ' << V::name;
-      });
-    });
+          ASSERT_NEAR(kept[i], fresh[i], 1e-12 * fresh[i]) << strategy << ' ' << volume;
+      }
   }
 }
 
@@ -93,9 +90,9 @@ TEST(DistanceQuery, ARelativeErrorIsAPromise) {
   const Scenery scene = scenery(300, 4, 0.05);
   const auto truth = distances(scene, "sphere", "recursive");
   for (const double allowed : {0.01, 0.1, 0.5})
-    Volumes::for_each([&]<class V>(std::type_identity<V>) {
+    for (const auto& [volume, description] : volumes())
       for (const char* strategy : {"recursive", "deferred", "margins"}) {
-        const auto rough = distances(scene, V::name, strategy, allowed);
+        const auto rough = distances(scene, volume, strategy, allowed);
         double worst = 0;
         for (std::size_t i = 0; i < truth.size(); ++i) {
           ASSERT_GE(rough[i], truth[i] * (1 - 1e-12));
@@ -106,7 +103,6 @@ TEST(DistanceQuery, ARelativeErrorIsAPromise) {
           EXPECT_GT(worst, 0) << "the error allowed is never used";
         }
       }
-    });
 }
 
 }  // namespace

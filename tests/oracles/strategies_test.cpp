@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Every volume, strategy and query gives in every frame what the recursive algorithm gives,
 /// and that is what brute force with CGAL's exact predicates says.
-#include "traversal/strategies.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +8,7 @@
 #include <random>
 
 #include "experiments/peers/triangle_oracle.hpp"
-#include "hierarchies/volumes.hpp"
+#include "experiments/replay/registry.hpp"
 #include "tests/oracles/settings.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
@@ -19,7 +18,7 @@ namespace bvlab {
 namespace {
 
 ReplayResult answer(const Played& scene, const std::string& strategy, const char* query,
-                    std::string_view volume = Volumes::at<0>::name) {
+                    std::string_view volume = "sphere") {
   Variant variant;
   variant.volume = volume;
   variant.strategy = strategy;
@@ -30,7 +29,7 @@ ReplayResult answer(const Played& scene, const std::string& strategy, const char
 
 std::vector<std::string> all_strategies() {
   std::vector<std::string> names{"deferred:4"};
-  Strategies::for_each([&](auto type) { names.emplace_back(decltype(type)::type::name); });
+  for (const auto& strategy : strategies()) names.push_back(strategy.name);
   return names;
 }
 
@@ -49,15 +48,15 @@ void expect_recursive_answers(std::size_t frames, Wanted wanted) {
     EXPECT_EQ(in_contact, touching.touching) << setting.name;
     EXPECT_GT(touching.hits, 0u) << setting.name;
     EXPECT_LT(touching.hits, touching.touching.size()) << setting.name;
-    Volumes::for_each([&]<class V>(std::type_identity<V>) {
-      if (!wanted(V::name)) return;
+    for (const auto& [volume, description] : volumes()) {
+      if (!wanted(volume)) continue;
       for (const std::string& strategy : all_strategies()) {
-        EXPECT_EQ(answer(scene, strategy, "touching", V::name).touching, touching.touching)
-            << setting.name << ' ' << strategy << ' ' << V::name;
-        EXPECT_EQ(answer(scene, strategy, "contacts", V::name).contacts, contacts.contacts)
-            << setting.name << ' ' << strategy << ' ' << V::name;
+        EXPECT_EQ(answer(scene, strategy, "touching", volume).touching, touching.touching)
+            << setting.name << ' ' << strategy << ' ' << volume;
+        EXPECT_EQ(answer(scene, strategy, "contacts", volume).contacts, contacts.contacts)
+            << setting.name << ' ' << strategy << ' ' << volume;
       }
-    });
+    }
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include "experiments/peers/triangle_oracle.hpp"
 #include "experiments/scenes/triangle_sets.hpp"
+#include "traversal/primitives/triangle_margin.hpp"
 
 namespace bvlab {
 namespace {
@@ -237,6 +238,55 @@ TEST(TriangleRefinement, IsRightWhereItIsCertain) {
       EXPECT_LT(open, rounds * static_cast<int>(width) / 8) << set.name;
     }
   }
+}
+
+/// Every shortcut that says "certain", by itself, against rational numbers, over bands of the
+/// range: where all is tiny, where all is in reach, and where some is not.
+TEST(Shortcuts, AreRightWhereTheyAreCertain) {
+  TriangleSource source(14);
+  int certain[4] = {};
+  const auto expect_true = [&](const TrianglePair& pair) {
+    const auto& [a, b] = pair;
+    const bool truth = oracle::intersect(a, b);
+    const auto agrees = [&](const auto& verdict, int which) {
+      certain[which] += verdict.apart || verdict.meeting;
+      return !(verdict.apart && truth) && !(verdict.meeting && !truth);
+    };
+    const auto x = detail::corners_of(a), y = detail::corners_of(b);
+    ASSERT_TRUE(agrees(certainly<double>(x, y), 0)) << shown(pair);
+    // Where the boxes overlap.
+    if (!filter::BoxAndBound<double, CornersAre::given>(x, y).apart) {
+      ASSERT_TRUE(agrees(certainly_refined<double>(x, y), 1)) << shown(pair);
+    }
+    Corners<float> p, q;
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k)
+        p[i][k] = static_cast<float>(a[i][k]), q[i][k] = static_cast<float>(b[i][k]);
+    ASSERT_TRUE(agrees(certainly<float, CornersAre::rounded>(p, q), 2)) << shown(pair);
+    const Triangle *of_a[] = {&a}, *of_b[] = {&b};
+    double margin;
+    const bool touching =
+        touching_with_margins(of_a, of_b, 1, intersect_batch<Exact>, &margin) != 0;
+    ASSERT_EQ(touching, truth) << shown(pair);
+    certain[3] += margin > 0;
+    if (!truth && margin > 0) {
+      ASSERT_LE(margin, oracle::distance(a, b)) << shown(pair);
+    }
+  };
+  const auto expect_true_on = [&](int pairs, const auto& make) {
+    for (int i = 0; i < pairs && !testing::Test::HasFatalFailure(); ++i) expect_true(make());
+  };
+  for (const int least : {-1074, -1000, -540, -160, -80, -30, 0})
+    for (const int most : {-1000, -500, -150, -70, -20, 0, 35, 41, 100, 330, 345, 512, 1020})
+      if (least < most) expect_true_on(300, [&] { return source.any_magnitude(least, most); });
+  for (const TriangleSet& set : triangle_sets)
+    expect_true_on(300, [&] {
+      const int exponent = source.integer(-1060, 1000);
+      return TriangleSource::mapped(set.next(source), [&](const auto& p) -> Vec3<double> {
+        return p.unaryExpr([&](double x) { return std::ldexp(x, exponent); });
+      });
+    });
+  for (const int count : certain) EXPECT_GT(count, 1000);
 }
 
 /// The way without a fused multiply-add is exact, too.

@@ -6,10 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "broadphase/broadphase.hpp"
+#include "experiments/replay/registry.hpp"
 #include "experiments/replay/worlds.hpp"
-#include "hierarchies/volumes.hpp"
 #include "tests/oracles/settings.hpp"
-#include "traversal/strategies.hpp"
 
 namespace bvlab {
 namespace {
@@ -49,12 +48,10 @@ TEST(World, GivesTheAnswersOfAllPairs) {
   for (auto& each : more_settings()) all.push_back(each);
   for (const auto& setting : all) {
     const Played scene = played(setting);
-    Strategies::for_each([&]<class S>(std::type_identity<S>) {
-      expect_all_pairs_answers(scene, setting.name, "sphere", S::name.data());
-    });
-    Volumes::for_each([&]<class V>(std::type_identity<V>) {
-      expect_all_pairs_answers(scene, setting.name, V::name.data(), "deferred");
-    });
+    for (const auto& strategy : strategies())
+      expect_all_pairs_answers(scene, setting.name, "sphere", strategy.name.c_str());
+    for (const auto& volume : volumes())
+      expect_all_pairs_answers(scene, setting.name, volume.name.c_str(), "deferred");
   }
 }
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "experiments/scenes/named_mesh.hpp"
-#include "experiments/scenes/touches_any.hpp"
+#include "experiments/replay/touches_any.hpp"
 
 namespace bvlab {
 namespace {

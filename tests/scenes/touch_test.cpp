@@ -3,7 +3,7 @@
 
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/random_walk.hpp"
-#include "experiments/scenes/touches_any.hpp"
+#include "experiments/replay/touches_any.hpp"
 #include "traversal/primitives/triangle_intersection.hpp"
 
 namespace bvlab {

@@ -8,7 +8,7 @@
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/pile.hpp"
 #include "experiments/scenes/planner.hpp"
-#include "experiments/scenes/touches_any.hpp"
+#include "experiments/replay/touches_any.hpp"
 
 namespace bvlab {
 namespace {

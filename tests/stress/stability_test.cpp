@@ -3,11 +3,10 @@
 /// strategy, and the cheaper precisions miss no contact.
 #include <gtest/gtest.h>
 
+#include "experiments/replay/registry.hpp"
 #include "experiments/replay/replay.hpp"
 #include "experiments/studies/stressors.hpp"
-#include "hierarchies/volumes.hpp"
 #include "traversal/primitives/precisions.hpp"
-#include "traversal/strategies.hpp"
 
 namespace bvlab {
 namespace {
@@ -21,22 +20,21 @@ TEST_P(Stressed, NobodyIsWrong) {
     const StressCase stress = GetParam().make(level, frames, 7);
     const auto truth = truth_of(stress);
     for (const auto each : truth) ++(each ? touching : apart);
-    Volumes::for_each([&]<class V>(std::type_identity<V>) {
-      Strategies::for_each([&]<class S>(std::type_identity<S>) {
+    for (const auto& volume : volumes())
+      for (const auto& strategy : strategies())
         Precisions::for_each([&]<class P>(std::type_identity<P>) {
           Variant variant;
-          variant.volume = V::name, variant.strategy = S::name, variant.precision = P::name;
+          variant.volume = volume.name, variant.strategy = strategy.name;
+          variant.precision = P::name;
           const auto said = replay(stress.meshes, stress.trace, variant, {}).touching;
           ASSERT_EQ(said.size(), truth.size());
           for (std::size_t i = 0; i < truth.size(); ++i) {
             ASSERT_GE(said[i], truth[i])
-                << V::name << ' ' << S::name << ' ' << P::name << " level " << level;
+                << volume.name << ' ' << strategy.name << ' ' << P::name << " level " << level;
             ASSERT_LE(said[i], P::has_fallback ? truth[i] : 1)
-                << V::name << ' ' << S::name << ' ' << P::name << " level " << level;
+                << volume.name << ' ' << strategy.name << ' ' << P::name << " level " << level;
           }
         });
-      });
-    });
   }
   // Worth its name only where both answers occur.
   EXPECT_GT(touching, 0u);

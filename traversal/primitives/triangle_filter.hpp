@@ -15,7 +15,8 @@
 /// itself. Underflow: a product is off by at most half the least positive number, h; the six of the
 /// minors are then multiplied by at most W; so do the products in the bound itself: 32 h max(W, 1)
 /// is more than their sum. Overflow: nothing is certain unless every W is below a reach R with 6
-/// R^3 still finite.
+/// R^3 still finite. A corner beyond S is infinite when it has been rounded: then the bound is
+/// infinite or no number, and all that is certain is what boxes say, since rounding keeps order.
 #pragma once
 
 #include <array>

@@ -54,9 +54,13 @@ class WidePairs {
           (balls_[i].radius + 4 * bodies_[i].standing().noise) * (1 + 16 * unit_roundoff<double>);
     }
     std::size_t near = pairs_.size();
+    before_ = counter.n_v + counter.n_p;
     if constexpr (!SeeksDistance<Query>) {
       near = find_near(counter);
-      for (std::size_t k = near; k < pairs_.size(); ++k) take(near_[k], ask(near_[k]));
+      for (std::size_t k = near; k < pairs_.size(); ++k) {
+        counter.asked(before_);
+        take(near_[k], ask(near_[k]));
+      }
     } else {
       for (std::size_t k = 0; k < near; ++k) near_[k] = static_cast<std::uint32_t>(k);
     }
@@ -64,6 +68,8 @@ class WidePairs {
   }
 
   const std::vector<ObjectPair>& pairs() const { return pairs_; }
+  /// Nothing is kept from one frame to the next.
+  std::size_t front_size() const { return 0; }
 
  private:
   static constexpr std::size_t at_once = 2;
@@ -107,6 +113,7 @@ class WidePairs {
           ++slot;
           continue;
         }
+        counter.asked(before_);
         take(pair[slot], turn[slot]->query());
         if (next < near) {
           begin(slot++);
@@ -125,6 +132,7 @@ class WidePairs {
   std::vector<std::uint32_t> near_;  // pairs, near ones first
   std::array<WideWorkspace, at_once> workspaces_;
   Vec3<double> origin_ = Vec3<double>::Zero();
+  std::uint64_t before_ = 0;  // what had been tested when the frame began
   bool placed_ = false;
 };
 

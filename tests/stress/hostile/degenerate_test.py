@@ -6,7 +6,7 @@ import json
 import unittest
 
 import numpy as np
-from program import TETRAHEDRON, TRIANGLE, ProgramTest, names_of, poses
+from program import TETRAHEDRON, TRIANGLE, ProgramTest, names_of, poses, volumes_of, ways
 
 MESHES = {
     "triangle.off": TRIANGLE,
@@ -51,24 +51,22 @@ class Replay(ProgramTest):
     def test_every_mesh_in_every_way(self):
         trace = np.concatenate([poses(1, 3, 0), poses(1, 3, 0.5), poses(1, 3, 5)])
         for mesh, count in TRIANGLES.items():
-            for volume in names_of("volumes"):
-                for strategy in names_of("strategies"):
-                    way = ["--volume", volume, "--strategy", strategy]
-                    with self.subTest(mesh=mesh, way=way):
-                        touching = self.replay([mesh], trace, "touching", *way)
-                        shifted = 0 if mesh == "point.off" else 1
-                        near = [shifted, int(mesh not in ("point.off", "crossed.off")), shifted]
-                        if mesh in ("triangle.off", "needle.off", "twice.off", "tetrahedron.off"):
-                            self.assertEqual(touching[1].tolist(), near)
-                        self.assertEqual(touching[0].tolist(), [1, 1, 1])
-                        self.assertEqual(touching[2].tolist(), [0, 0, 0])
-                        contacts = self.replay([mesh], trace, "contacts", *way)
-                        own = [(0, 0, 1, t, t) for t in range(count)]
-                        self.assertLessEqual(set(own), {tuple(row) for row in contacts})
-                        self.assertFalse(np.any(contacts[:, 0] == 2))
-                        if "distance" in names_of("queries"):
-                            distance = self.replay([mesh], trace, "distance", *way)
-                            self.assertEqual((distance == 0).tolist(), (touching == 1).tolist())
+            for way in ways():
+                with self.subTest(mesh=mesh, way=way):
+                    touching = self.replay([mesh], trace, "touching", *way)
+                    shifted = 0 if mesh == "point.off" else 1
+                    near = [shifted, int(mesh not in ("point.off", "crossed.off")), shifted]
+                    if mesh in ("triangle.off", "needle.off", "twice.off", "tetrahedron.off"):
+                        self.assertEqual(touching[1].tolist(), near)
+                    self.assertEqual(touching[0].tolist(), [1, 1, 1])
+                    self.assertEqual(touching[2].tolist(), [0, 0, 0])
+                    contacts = self.replay([mesh], trace, "contacts", *way)
+                    own = [(0, 0, 1, t, t) for t in range(count)]
+                    self.assertLessEqual(set(own), {tuple(row) for row in contacts})
+                    self.assertFalse(np.any(contacts[:, 0] == 2))
+                    if "distance" in names_of("queries"):
+                        distance = self.replay([mesh], trace, "distance", *way)
+                        self.assertEqual((distance == 0).tolist(), (touching == 1).tolist())
 
     def test_every_build_and_leaf_size(self):
         trace = poses(2, 4, 0.5)
@@ -83,7 +81,7 @@ class Replay(ProgramTest):
     def test_every_volume_fitted_tightly(self):
         trace = np.concatenate([poses(2, 4, 0), poses(2, 4, 0.5)])
         for query in names_of("queries"):
-            for volume in names_of("volumes"):
+            for volume in volumes_of("binary"):
                 way = ["--volume", volume, "--leaf-size", 2]
                 expected = self.replay(list(MESHES), trace, query, *way)
                 found = self.replay(list(MESHES), trace, query, *way, "--fit", "tight")
@@ -113,11 +111,9 @@ class Replay(ProgramTest):
             self.write("size.off", TRIANGLE.replace("1", size).replace(f"3 {size} 0", "3 1 0", 1)
                        .replace(f"0 {size} 2\n", "0 1 2\n"))
             trace = np.concatenate([poses(1, 2, 0), poses(1, 2, 3 * float(size))])
-            for volume in names_of("volumes"):
-                for strategy in names_of("strategies"):
-                    way = ["--volume", volume, "--strategy", strategy]
-                    touching = self.replay(["size.off"], trace, "touching", *way)
-                    self.assertEqual(touching.tolist(), [[1], [0]], (size, way))
+            for way in ways():
+                touching = self.replay(["size.off"], trace, "touching", *way)
+                self.assertEqual(touching.tolist(), [[1], [0]], (size, way))
 
     def test_skipped_work_is_told(self):
         """Of what a strategy need not do, by counting what it did and what recursion does."""

@@ -16,10 +16,25 @@ TETRAHEDRON = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3
 TRIANGLE = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
 
 
+def lines_of(kind):
+    return subprocess.run([BVLAB, "list", kind], check=True, capture_output=True, text=True).stdout.splitlines()
+
+
 def names_of(kind):
     """The names that `bvlab list KIND` lists."""
-    text = subprocess.run([BVLAB, "list", kind], check=True, capture_output=True, text=True).stdout
-    return [line.split()[0] for line in text.splitlines()]
+    return [line.split()[0] for line in lines_of(kind)]
+
+
+def volumes_of(tree):
+    """The volumes that there are in binary trees, or in wide ones."""
+    return [line.split()[0] for line in lines_of("volumes") if line.endswith("--tree wide alone") == (tree == "wide")]
+
+
+def ways():
+    """Arguments for every volume under every strategy that there is for its tree."""
+    binary = [["--volume", volume, "--strategy", strategy]
+              for volume in volumes_of("binary") for strategy in names_of("strategies")]
+    return binary + [["--tree", "wide", "--volume", volume] for volume in volumes_of("wide")]
 
 
 def poses(frames, objects, step=0.1):

@@ -3,12 +3,13 @@
 names the file or the option, nothing on standard output, no file left behind."""
 
 import os
+import pathlib
 import shutil
 import subprocess
 import unittest
 
 import numpy as np
-from program import BVLAB, TETRAHEDRON, TRIANGLE, ProgramTest, names_of, poses
+from program import BVLAB, TETRAHEDRON, TRIANGLE, ProgramTest, names_of, poses, volumes_of
 
 METHOD = names_of("methods")[0]
 NOT_NUMBERS = ("x", "1x", "0x10", "1.5", "1e1000000", "", "-0x1", "٣")
@@ -214,7 +215,32 @@ class Names(ProgramTest):
         for value in ("deferred:-1", "deferred:x", "deferred:", "deferred:99999999999", "deferred:1:1"):
             self.refuse(*self.replay, "--strategy", value, mentions=["--strategy", value])
         self.refuse(*self.replay, "--strategy", "recursive:1", mentions="takes no parameter")
+        self.refuse(*self.replay, "--configuration", "frob",
+                    mentions=["--configuration", *names_of("configurations")])
+        self.refuse(*self.replay, "--configuration", "", mentions=names_of("configurations"))
+        self.refuse(*self.replay, "--tree", "frob", mentions=["--tree", *names_of("trees")])
         self.refuse(*self.replay, "--count", "maybe", mentions=["--count", "on", "off"])
+
+    def test_of_wide_trees(self):
+        """What nobody compares is not compiled, and is refused by what there is."""
+        for volume in volumes_of("wide"):
+            self.refuse(*self.replay, "--volume", volume, mentions=["--tree wide", *volumes_of("binary")])
+            wide = [*self.replay, "--tree", "wide", "--volume", volume]
+            for strategy in set(names_of("strategies")) - {"recursive"} | {"recursive:1", "frob", ""}:
+                self.refuse(*wide, "--strategy", strategy, mentions=["--strategy", strategy, "recursive"])
+            self.refuse(*wide, "--query", "frob", mentions=["--query", *names_of("queries")])
+            self.refuse(*wide, "--budget", "10", mentions=["--budget", "wide"])
+        for volume in (*volumes_of("binary"), "frob", ""):
+            self.refuse(*self.replay, "--tree", "wide", "--volume", volume,
+                        mentions=["--volume " + volume, *volumes_of("wide")])
+
+    def test_of_configurations(self):
+        for configuration in (["--recommended"], ["--configuration", "as-published"]):
+            for part in (["--volume", "obb"], ["--tree", "wide"], ["--strategy", "recursive"],
+                         ["--build", "bottom-up"], ["--fit", "tight"], ["--leaf-size", "2"]):
+                self.refuse(*self.replay, *configuration, *part, mentions=[configuration[0], part[0]])
+        self.refuse(*self.replay, "--recommended", "--configuration", "as-published",
+                    mentions=["--recommended", "--configuration"])
 
     def test_of_a_budget(self):
         for value in ("-1", "x", "1.5", ""):
@@ -267,6 +293,14 @@ class Names(ProgramTest):
     def test_on_one_line_whatever_is_quoted(self):
         self.refuse("triangles", "--pairs", "a\nb\r\x1b[31m", mentions="a?b??[31m: No such file")
         self.refuse("list", "a\nb", mentions="a?b")
+
+
+class Pages(ProgramTest):
+    def test_the_page_of_parameters_is_what_the_program_lists(self):
+        source = pathlib.Path(__file__).resolve().parents[3]
+        page = (source / "experiments/definitions/README.md").read_text()
+        listed = self.run_bvlab("list", "parameters").stdout
+        self.assertIn("```\n" + listed + "```", page)
 
 
 class Values(ProgramTest):
@@ -401,7 +435,8 @@ class Definitions(ProgramTest):
 
     def test_names_and_numbers(self):
         kinds = {"scene": "scenes", "volume": "volumes", "strategy": "strategies",
-                 "query": "queries", "build": "builds", "precision": "precisions", "peer": "peers"}
+                 "query": "queries", "build": "builds", "precision": "precisions", "peer": "peers",
+                 "tree": "trees", "configuration": "configurations"}
         for parameter, kind in kinds.items():
             self.refuse_definition(self.START + f"{parameter} = 'frob'\n", "frob", *names_of(kind))
             self.refuse_definition(self.START + f"[[axis]]\nname = '{parameter}'\n"

@@ -10,6 +10,7 @@
 #include "hierarchies/volumes/sphere.hpp"
 #include "tests/stress/soak/way.hpp"
 #include "tests/types_of.hpp"
+#include "traversal/bodies.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
 #include "traversal/strategies.hpp"
@@ -30,24 +31,28 @@ class Soak : public ::testing::Test {
   Workspace workspace_;
   NotCounting counter_;
 
+  template <class Query>
+  BodyPair<B, V, Query, NotCounting> pair(Query& query) {
+    return {a_, b_, query, counter_, workspace_};
+  }
   template <class S>
   std::vector<Contact> contacts(S& strategy) {
     std::vector<Contact> found;
     Contacts query(found);
-    strategy.template run<B>(a_, b_, query, counter_, workspace_);
+    strategy.run(pair(query));
     std::sort(found.begin(), found.end());
     return found;
   }
   template <class S>
   bool touching(S& strategy) {
     Touching query;
-    strategy.template run<B>(a_, b_, query, counter_, workspace_);
+    strategy.run(pair(query));
     return query.touching();
   }
   template <class S>
   double distance(S& strategy) {
     Distance query;
-    strategy.template run<B>(a_, b_, query, counter_, workspace_);
+    strategy.run(pair(query));
     return query.distance();
   }
 };

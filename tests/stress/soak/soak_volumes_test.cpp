@@ -6,12 +6,10 @@
 #include <map>
 #include <string>
 
+#include "experiments/replay/registry.hpp"
 #include "experiments/replay/replay.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
-#include "hierarchies/volumes.hpp"
 #include "tests/stress/soak/way.hpp"
-#include "tests/types_of.hpp"
-#include "traversal/strategies.hpp"
 
 namespace bvlab {
 namespace {
@@ -53,30 +51,33 @@ class SoakOfVolumes : public ::testing::Test {
   }
 };
 
-template <class V>
-struct OfVolume : SoakOfVolumes {};
-TYPED_TEST_SUITE(OfVolume, TypesOf<Volumes>);
+struct OfVolume : SoakOfVolumes, ::testing::WithParamInterface<std::string> {};
 
-TYPED_TEST(OfVolume, CoherentEqualsFresh) {
-  Strategies::for_each([&]<class S>(std::type_identity<S>) {
+TEST_P(OfVolume, CoherentEqualsFresh) {
+  for (const auto& [strategy, description] : strategies()) {
     Variant variant;
-    variant.volume = TypeParam::name, variant.strategy = S::name;
+    variant.volume = GetParam(), variant.strategy = strategy;
     variant.query = "touching";
-    EXPECT_EQ(this->played(variant).touching, this->fresh("touching").touching) << S::name;
+    EXPECT_EQ(this->played(variant).touching, this->fresh("touching").touching) << strategy;
     variant.query = "contacts";
     const ReplayResult contacts = this->played(variant, true);
-    EXPECT_EQ(contacts.contacts, this->fresh("contacts").contacts) << S::name;
+    EXPECT_EQ(contacts.contacts, this->fresh("contacts").contacts) << strategy;
     // A front holds no more than the pairs of leaves.
-    for (const auto& frame : contacts.series) ASSERT_LE(frame.front, 60 * 64) << S::name;
+    for (const auto& frame : contacts.series) ASSERT_LE(frame.front, 60 * 64) << strategy;
     variant.query = "distance";
     const auto distances = this->played(variant).distances;
     const auto& truth = this->fresh("distance").distances;
     ASSERT_EQ(distances.size(), truth.size());
     for (std::size_t frame = 0; frame < truth.size(); ++frame)
       ASSERT_NEAR(distances[frame], truth[frame], 1e-12 * truth[frame])
-          << S::name << ", frame " << frame;
-  });
+          << strategy << ", frame " << frame;
+  }
 }
+INSTANTIATE_TEST_SUITE_P(Volumes, OfVolume, testing::ValuesIn([] {
+                           std::vector<std::string> names;
+                           for (const auto& volume : volumes()) names.push_back(volume.name);
+                           return names;
+                         }()));
 
 }  // namespace
 }  // namespace bvlab

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/scenes/touches_any.hpp"
+#include "experiments/replay/touches_any.hpp"
 
 #include <memory>
 #include <vector>
 
+#include "experiments/replay/triangle_test.hpp"
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes/sphere.hpp"
 #include "traversal/body.hpp"

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A volume in wide trees under one query, as the program sees it while it runs. What is compiled
+/// is what is compared: bodies in each other's frames, as many children a node as a register has
+/// lanes, every pair from the roots in every frame.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "experiments/replay/replay.hpp"
+
+namespace bvlab {
+
+struct WideEntry {
+  std::string_view volume, volume_description, query;
+  int fan_out;
+  /// Adds to the result, the time to build included.
+  void (*play)(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
+               const ReplayOptions& options, ReplayResult& result);
+};
+
+}  // namespace bvlab

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The bodies and the volumes of a pair, drawn. Nothing is drawn that has not changed.
+'use strict';
+
+const scene = (() => {
+  const canvas = document.getElementById('scene');
+  const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+  renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+  const world = new THREE.Scene(), camera = new THREE.PerspectiveCamera(40, 1, 0.01, 100);
+  camera.up.set(0, 0, 1);
+  const sun = new THREE.DirectionalLight(0xffffff, 2.2);
+  sun.position.set(-1, -2, 3);
+  camera.add(new THREE.DirectionalLight(0xffffff, 0.7));
+  world.add(camera, sun, new THREE.HemisphereLight(0xffffff, 0x8a8f98, 1.3));
+  const controls = new THREE.OrbitControls(camera, canvas);
+  controls.addEventListener('change', () => { changed = true; });
+
+  const geometries = data.meshes.map(mesh => {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(mesh.vertices, 3));
+    geometry.setIndex(new THREE.BufferAttribute(mesh.triangles, 1));
+    geometry.computeVertexNormals();
+    geometry.computeBoundingSphere();
+    return geometry;
+  });
+  const names = ['body', 'touching', 'first', 'second'];
+  const materials = {};
+  // Many that one can look through hide what is behind them.
+  const faint = Math.max(0.04, Math.min(0.13, 1.3 / data.objects));
+  for (const name of names)
+    for (const faded of [false, true])
+      materials[name + faded] = new THREE.MeshLambertMaterial({
+        side: THREE.DoubleSide, flatShading: true, transparent: faded, opacity: faded ? faint : 1, depthWrite: !faded });
+  const bodies = Array.from({ length: data.objects }, (_, i) => {
+    const body = new THREE.Mesh(geometries[data.meshIndexOf(i)], materials.bodyfalse);
+    body.userData.index = i;
+    world.add(body);
+    return body;
+  });
+
+  // Of the first body and of the second: faces one can look through, and outlines.
+  const shown = ['first', 'second'].map(name => {
+    const face = new THREE.MeshLambertMaterial({ side: THREE.DoubleSide, transparent: true, opacity: 0.16, depthWrite: false });
+    const line = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.75, depthWrite: false });
+    const group = new THREE.Group();
+    group.add(new THREE.Mesh(new THREE.BufferGeometry(), face), new THREE.LineSegments(new THREE.BufferGeometry(), line));
+    for (const child of group.children) child.frustumCulled = false, child.renderOrder = 1;
+    group.visible = false;
+    world.add(group);
+    return { name, group, face, line };
+  });
+
+  function colours() {
+    for (const name of names)
+      for (const faded of [false, true]) materials[name + faded].color.set(look.colour(name));
+    for (const { name, face, line } of shown) face.color.set(look.colour(name)), line.color.set(look.colour(name));
+    changed = true;
+  }
+
+  let changed = true, frame = 0;
+  const stride = data.objects * 7;
+  const put = f => {
+    frame = f;
+    if (data.frames === 0) return;
+    bodies.forEach((body, i) => {
+      const at = f * stride + i * 7, v = data.poses;
+      body.position.set(v[at], v[at + 1], v[at + 2]);
+      body.quaternion.set(v[at + 4], v[at + 5], v[at + 6], v[at + 3]).normalize();
+    });
+    changed = true;
+  };
+
+  /** Bodies of `touching` pairs stand out, and all that are not of the chosen pair fade. */
+  function paint(touching, pair) {
+    const hit = new Uint8Array(data.objects);
+    for (const p of touching) for (const i of data.pairOf(p)) hit[i] = 1;
+    bodies.forEach((body, i) => {
+      const own = pair ? pair.indexOf(i) : -1, faded = pair !== null && own < 0;
+      body.material = materials[(hit[i] ? 'touching' : own >= 0 ? names[2 + own] : 'body') + faded];
+      body.renderOrder = faded ? 2 : 0;
+    });
+    changed = true;
+  }
+
+  const rowsOf = body => {
+    const e = new THREE.Matrix4().makeRotationFromQuaternion(body.quaternion).elements;
+    return [0, 1, 2].map(r => [e[r], e[4 + r], e[8 + r]]);
+  };
+
+  /** Draws these nodes' volumes of the pair's two bodies (or nothing). */
+  function showVolumes(pair, nodes) {
+    shown.forEach(({ group }, side) => {
+      group.visible = pair !== null && nodes[side].length > 0;
+      if (!group.visible) return;
+      const i = pair[side], body = bodies[i];
+      const { corners, normals, lines } = volumes.shape(data.meshIndexOf(i), nodes[side], volumes.realigned ? rowsOf(body) : null);
+      const [faces, outline] = group.children;
+      for (const child of group.children) child.geometry.dispose(), child.geometry = new THREE.BufferGeometry();
+      faces.geometry.setAttribute('position', new THREE.BufferAttribute(corners, 3));
+      faces.geometry.setAttribute('normal', new THREE.BufferAttribute(normals, 3));
+      outline.geometry.setAttribute('position', new THREE.BufferAttribute(lines, 3));
+    });
+    placeVolumes(pair);
+  }
+  /** After the bodies have moved: volumes that keep their shape go with them. */
+  function placeVolumes(pair) {
+    if (pair) shown.forEach(({ group }, side) => {
+      group.position.copy(bodies[pair[side]].position);
+      if (!volumes.realigned) group.quaternion.copy(bodies[pair[side]].quaternion);
+    });
+    changed = true;
+  }
+
+  /** A ball around bodies where they stand, or over the whole trace where none are named. */
+  function ballAround(some) {
+    const low = new THREE.Vector3(Infinity, Infinity, Infinity), high = low.clone().negate(), at = new THREE.Vector3();
+    const step = some ? 1 : Math.max(1, Math.floor(data.frames / 64));
+    for (let f = some ? frame : 0; f < (some ? frame + 1 : data.frames); f += step)
+      for (const i of some ?? bodies.keys()) {
+        const { center, radius } = bodies[i].geometry.boundingSphere, k = f * stride + i * 7, v = data.poses;
+        at.copy(center).applyQuaternion(new THREE.Quaternion(v[k + 4], v[k + 5], v[k + 6], v[k + 3]).normalize());
+        at.x += v[k], at.y += v[k + 1], at.z += v[k + 2];
+        low.min(at.clone().addScalar(-radius)), high.max(at.clone().addScalar(radius));
+      }
+    if (!(low.x <= high.x)) return { centre: new THREE.Vector3(), radius: 1 };
+    const all = high.clone().sub(low).length() / 2;
+    return { centre: low.add(high).multiplyScalar(0.5), radius: all || 1 };
+  }
+  function lookAt(some) {
+    const { centre, radius } = ballAround(some);
+    const narrow = Math.min(1, camera.aspect), way = some ? camera.position.clone().sub(controls.target).normalize() : new THREE.Vector3(0.55, -0.75, 0.4).normalize();
+    controls.target.copy(centre);
+    const distance = (some ? 0.92 : 0.75) * radius / Math.sin(camera.fov * Math.PI / 360) / narrow;
+    camera.position.copy(centre).addScaledVector(way, distance);
+    camera.near = distance / 500, camera.far = distance * 50;
+    camera.updateProjectionMatrix();
+    controls.update();
+    changed = true;
+  }
+
+  function fit() {
+    const { width, height } = canvas.getBoundingClientRect();
+    if (width === 0 || height === 0) return;
+    renderer.setSize(width, height, false);
+    camera.aspect = width / height;
+    camera.updateProjectionMatrix();
+    changed = true;
+  }
+  new ResizeObserver(fit).observe(canvas);
+
+  /** Calls back with the number of a body that was clicked, not dragged; null for none. */
+  function onClick(act) {
+    let down = null;
+    canvas.addEventListener('pointerdown', event => { down = [event.clientX, event.clientY]; });
+    canvas.addEventListener('pointerup', event => {
+      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
+      const box = canvas.getBoundingClientRect(), ray = new THREE.Raycaster();
+      ray.setFromCamera(new THREE.Vector2((event.clientX - box.left) / box.width * 2 - 1, 1 - (event.clientY - box.top) / box.height * 2), camera);
+      act(ray.intersectObjects(bodies, false)[0]?.object.userData.index ?? null);
+    });
+  }
+
+  function draw() {
+    if (!changed) return;
+    changed = false;
+    renderer.render(world, camera);
+  }
+
+  look.onChange(colours);
+  colours();
+  put(0);
+  fit();
+  lookAt(null);
+  return { put, paint, showVolumes, placeVolumes, lookAt, onClick, draw };
+})();

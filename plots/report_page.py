@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The report as HTML: a section for each record, and the page around them."""
+
+import html
+import json
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+import findings
+import records
+import words
+from refused import Refused
+
+PLOTS = Path(__file__).resolve().parent
+MOST_ROWS = 1000  # of a table; the record has them all
+MARKS = re.compile(r"[^\w.-]+")
+
+
+@dataclass
+class Section:
+    name: str
+    folder: str
+    description: str
+    figures: list  # files beside the page
+    rows: pd.DataFrame
+    table: pd.DataFrame
+    machine: dict
+    command: str
+    definition: str
+
+
+def section_of(record, out):
+    """Reads a record, and puts its figures beside the page."""
+    rows = records.read(record)
+    definition = rows.attrs["definition"]
+    machine = read_text(record / "machine.json")
+    try:
+        machine = json.loads(machine) if machine else {}
+    except ValueError as fault:
+        raise Refused(f"{record}/machine.json: {fault}") from None
+    return Section(rows.attrs["name"], record.resolve().name, definition.get("description", ""),
+                   figures_of(record, rows.attrs["name"], out), rows, medians(rows), machine,
+                   read_text(record / "command.txt").strip(),
+                   read_text(record / "definition.toml").strip())
+
+
+def read_text(path):
+    return path.read_text() if path.is_file() else ""
+
+
+def figures_of(record, name, out):
+    folder = Path("figures") / MARKS.sub("-", f"{record.resolve().parent.name}-{record.resolve().name}")
+    (out / folder).mkdir(parents=True, exist_ok=True)
+    for old in (out / folder).glob("*.p*"):
+        old.unlink()
+    for figure in sorted((record / "figures").glob("*.png")):
+        shutil.copy(figure, out / folder)
+    if not any((out / folder).glob("*.png")):
+        drawn(record, name, out / folder)
+    return [(folder / path.name).as_posix() for path in sorted((out / folder).glob("*.png"))]
+
+
+def drawn(record, name, folder):
+    """What the record's own script draws, where it has one, or plots/draw."""
+    script = PLOTS / f"{name.replace('-', '_')}.py"
+    for program in (script, PLOTS / "draw"):
+        if program.is_file() and not any(folder.glob("*.png")):
+            subprocess.run([sys.executable, "-B", program, record, "--out", folder], capture_output=True, check=False)
+    for other in folder.glob("*.pdf"):
+        other.unlink()
+
+
+def medians(rows):
+    """A line for each setting, what is measured as the median over repetitions; columns that say the same
+    everywhere are left out."""
+    settings = [c for c in rows.attrs["settings"] if rows[c].nunique() > 1 and c != "repetition"]
+    measured = [c for c in rows if c not in rows.attrs["settings"] and c not in ("variant", "repetition")
+                and pd.api.types.is_numeric_dtype(rows[c]) and rows[c].notna().any() and rows[c].nunique() > 1]
+    if not settings:
+        return rows[measured]
+    return rows.groupby(settings, sort=False, dropna=False)[measured].median().reset_index()
+
+
+# HTML
+
+def text(value):
+    return html.escape(str(value))
+
+
+def cell(value):
+    if isinstance(value, str):
+        return f"<td>{text(value)}</td>"
+    if pd.isna(value):
+        return "<td></td>"
+    shown = f"{value:,.0f}" if value == int(value) and abs(value) < 1e15 else f"{value:.4g}"
+    return f"<td class=n>{shown}</td>"
+
+
+def table_of(section):
+    table, units = section.table, section.rows.attrs["units"]
+    heads = "".join(head(column, units.get(column, ""), section.rows.attrs["kind"]) for column in table)
+    shown = table.head(MOST_ROWS).astype(object)
+    lines = "\n".join(f"<tr>{''.join(map(cell, row))}</tr>" for row in shown.itertuples(index=False))
+    left_out = f'<p class="faint">The first {MOST_ROWS:,} of {len(table):,} rows.</p>' if len(table) > MOST_ROWS else ""
+    return (f'<details class="table"><summary>Table: {len(table):,} settings, medians over repetitions</summary>'
+            f'{left_out}<div class="scroll"><table><thead><tr>{heads}</tr></thead><tbody>\n{lines}\n</tbody></table>'
+            "</div></details>")
+
+
+def head(column, unit, kind):
+    title = words.called(column, kind) + (f", {unit}" if unit else "")
+    return f'<th scope="col" title="{text(title)}"><button type="button">{text(column)}</button></th>'
+
+
+def facts_of(section):
+    machine = dict(section.machine)
+    version, _, commit = str(machine.pop("bvlab", "")).partition(" ")
+    if str(machine.get("memory", "")).endswith(" kB"):
+        machine["memory"] = f"{int(machine['memory'].split()[0]) / 1e6:.0f} GB"
+    facts = [("Command", f"<code>{text(section.command)}</code>"), ("Commit", f"<code>{text(commit)}</code> (bvlab {text(version)})"),
+             ("Machine", text(", ".join(f"{machine[k]}{' cores' if k == 'cores' else ''}" for k in
+                                        ("processor", "cores", "memory", "system") if k in machine))),
+             ("Compiler", text(f"{machine.get('compiler', '')} {machine.get('flags', '')}")),
+             ("Libraries", text(machine.get("libraries", ""))), ("Record", f"<code>{text(section.folder)}</code>")]
+    facts = [(name, value) for name, value in facts if value.strip()]
+    lines = "".join(f"<dt>{name}</dt><dd>{value}</dd>" for name, value in facts)
+    return f'<dl>{lines}</dl><details><summary>Definition</summary><pre>{text(section.definition)}</pre></details>'
+
+
+def html_of(section, anchor):
+    said = findings.sentence_of(section.rows)
+    figures = "".join(f'<a href="{text(file)}"><img src="{text(file)}" alt="{text(section.name)}: {text(Path(file).stem)}" '
+                      'loading="lazy"></a>' for file in section.figures)
+    return (f'<section id="{anchor}" class="experiment"><h2><a href="#{anchor}">{text(section.name)}</a></h2>'
+            f'<p class="asks">{text(section.description)}</p>'
+            + (f'<p class="says">{text(said)}</p>' if said else "")
+            + f'<div class="figures">{figures}</div>{table_of(section)}{facts_of(section)}</section>')
+
+
+def write(sections, scenes, out):
+    """Writes OUT/index.html with what it needs in it, and figures and scenes beside it; says where."""
+    sections = sorted(sections, key=lambda section: (section.name, section.folder))
+    anchors = [MARKS.sub("-", f"{section.name}-{section.folder}") for section in sections]
+    links = "".join(f'<li><a href="#{anchor}">{text(section.name)}</a></li>'
+                    for section, anchor in zip(sections, anchors))
+    shown = "".join(f'<li><a href="{text(file)}">{text(name)}</a> <span>{text(description)}</span></li>'
+                    for name, description, file in scenes)
+    parts = {"links": links, "count": str(len(sections)),
+             "scenes": f'<section id="scenes"><h2>Scenes in 3D</h2><ul>{shown}</ul></section>' if scenes else "",
+             "sections": "\n".join(html_of(section, anchor) for section, anchor in zip(sections, anchors))}
+    folder = PLOTS / "page"
+    page = (folder / "report.html").read_text()
+    page = re.sub(r'<link rel="stylesheet" href="(.*?)">', lambda m: f"<style>\n{(folder / m[1]).read_text()}</style>", page)
+    page = re.sub(r'<script src="(.*?)"></script>', lambda m: f"<script>\n{(folder / m[1]).read_text()}</script>", page)
+    page = re.sub(r"<!--(\w+)-->", lambda m: parts[m[1]], page)
+    out.mkdir(parents=True, exist_ok=True)
+    unfinished = out / "index.html.unfinished"
+    unfinished.write_text(page)
+    unfinished.replace(out / "index.html")
+    return out / "index.html"

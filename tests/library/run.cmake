@@ -1,0 +1,35 @@
+# The library as somebody else uses it: installed with Eigen alone, found by find_package, and README's
+# example compiled against it and run.
+#   cmake -DSOURCE=... -DWORK=... -P run.cmake
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE fault OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT fault EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "${command}\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/library -DBVLAB_BUILD_EXPERIMENTS=OFF -DBVLAB_BUILD_TESTS=OFF)
+run(${CMAKE_COMMAND} --install ${WORK}/library --prefix ${WORK}/installed)
+run(${CMAKE_COMMAND} -S ${SOURCE}/tests/library -B ${WORK}/example -DCMAKE_PREFIX_PATH=${WORK}/installed
+    -DCMAKE_BUILD_TYPE=Release)
+run(${CMAKE_COMMAND} --build ${WORK}/example)
+run(${WORK}/example/example)
+foreach(line "apart by 1\\.[0-9]+" "[1-9][0-9]* pairs touch" "boxes 0 and 1 overlap")
+  if(NOT output MATCHES "${line}")
+    message(FATAL_ERROR "the example does not say '${line}':\n${output}")
+  endif()
+endforeach()
+
+# What README shows is a part of this example, to the letter.
+file(READ ${SOURCE}/README.md readme)
+file(READ ${SOURCE}/tests/library/example.cpp example)
+if(NOT readme MATCHES "```cpp\n([^`]*)```")
+  message(FATAL_ERROR "README.md shows no code")
+endif()
+string(FIND "${example}" "${CMAKE_MATCH_1}" place)
+if(place EQUAL -1)
+  message(FATAL_ERROR "README.md shows what is not in tests/library/example.cpp")
+endif()

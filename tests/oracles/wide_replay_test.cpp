@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The program's replays over wide trees find what recursion over binary ones finds.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/replay/configurations.hpp"
+#include "tests/oracles/settings.hpp"
+
+namespace bvlab {
+namespace {
+
+Variant binary(const std::string& query) {
+  Variant variant;
+  variant.query = query;
+  return variant;
+}
+
+Variant wide(const std::string& query) {
+  Variant variant = binary(query);
+  variant.tree = "wide", variant.volume = "slab-box";
+  return variant;
+}
+
+ReplayOptions options(unsigned threads) {
+  ReplayOptions options;
+  options.threads = threads;
+  return options;
+}
+
+/// Distances to the rounding that both leave open.
+void expect_same(const ReplayResult& found, const ReplayResult& truth, const std::string& where) {
+  EXPECT_EQ(found.touching, truth.touching) << where;
+  EXPECT_EQ(found.contacts, truth.contacts) << where;
+  EXPECT_EQ(found.hits, truth.hits) << where;
+  ASSERT_EQ(found.distances.size(), truth.distances.size()) << where;
+  for (std::size_t i = 0; i < truth.distances.size(); ++i) {
+    EXPECT_EQ(found.distances[i] == 0, truth.distances[i] == 0) << where << ' ' << i;
+    EXPECT_NEAR(found.distances[i], truth.distances[i], 1e-13 * truth.distances[i]) << where;
+  }
+}
+
+class WideReplay : public testing::TestWithParam<const char*> {};
+
+TEST_P(WideReplay, IsRecursionOverBinaryTrees) {
+  const std::string query = GetParam();
+  std::uint64_t hits = 0;
+  for (const auto& setting : settings(query == "touching" ? 300 : 60)) {
+    const Played scene = played(setting);
+    const auto truth = replay(scene.meshes, scene.trace, binary(query), {});
+    hits += truth.hits;
+    for (const unsigned threads : {1u, 2u})
+      for (const std::uint32_t leaf_size : {1u, 3u, 1000u}) {
+        Variant variant = wide(query);
+        variant.leaf_size = leaf_size;
+        variant.build = leaf_size == 3 ? "bottom-up" : "top-down-surface-area";
+        expect_same(replay(scene.meshes, scene.trace, variant, options(threads)), truth,
+                    setting.name + (" leaves of " + std::to_string(leaf_size)));
+      }
+  }
+  EXPECT_GT(hits, 0u);
+}
+
+TEST_P(WideReplay, ConfigurationsAnswerTheSame) {
+  const Played scene = played(settings(60)[0]);
+  const auto truth = replay(scene.meshes, scene.trace, binary(GetParam()), {});
+  for (const auto& each : configurations())
+    expect_same(
+        replay(scene.meshes, scene.trace, configured(binary(GetParam()), each.name), options(2)),
+        truth, each.name);
+}
+
+TEST_P(WideReplay, FewObjectsAndFrames) {
+  const std::vector<TriangleMesh> meshes{formula_mesh("star", 60)};
+  for (const auto& [frames, objects] :
+       {std::pair<std::size_t, std::size_t>{0, 0}, {0, 1}, {0, 5}, {3, 0}, {3, 1}, {1, 2}}) {
+    Trace trace{frames, objects, {}};
+    for (std::size_t i = 0; i < frames * objects; ++i)
+      trace.values.insert(trace.values.end(), {0.1 * static_cast<double>(i), 0, 0, 1, 0, 0, 0});
+    const auto truth = replay(meshes, trace, binary(GetParam()), {});
+    for (const unsigned threads : {1u, 2u})
+      expect_same(replay(meshes, trace, wide(GetParam()), options(threads)), truth,
+                  std::to_string(frames) + " of " + std::to_string(objects));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Queries, WideReplay, testing::Values("touching", "contacts", "distance"),
+                         [](const auto& info) { return std::string(info.param); });
+
+/// Every pair is looked at, and no fewer triangles than touch are tested.
+TEST(WideReplays, CountWhatTheyDo) {
+  const Played scene = played(settings(40)[0]);
+  for (const char* query : {"touching", "contacts"}) {
+    ReplayOptions counting = options(1);
+    counting.count = Count::on;
+    const auto one = replay(scene.meshes, scene.trace, wide(query), counting);
+    EXPECT_EQ(one.considered, scene.trace.pairs() * scene.trace.frames);
+    EXPECT_GE(one.n_v, one.considered);
+    EXPECT_GE(one.n_p, one.hits);
+    EXPECT_GT(one.n_u, 0u);
+    EXPECT_EQ(one.front, 0);
+    counting.keep_series = true;
+    const auto series = replay(scene.meshes, scene.trace, wide(query), counting);
+    std::uint64_t n_v = 0;
+    for (const auto& frame : series.series) n_v += frame.n_v;
+    EXPECT_EQ(n_v, one.n_v);
+  }
+}
+
+TEST(WideReplays, RefuseWhatThereIsNot) {
+  const auto refused = [](auto change) {
+    Variant variant = wide("touching");
+    change(variant);
+    EXPECT_THROW(check(variant), Unusable);
+  };
+  refused([](Variant& v) { v.volume = "sphere"; });
+  refused([](Variant& v) { v.strategy = "deferred"; });
+  refused([](Variant& v) { v.tree = "binary"; });
+  refused([](Variant& v) { v.tree = "tall"; });
+  EXPECT_THROW(configured(Variant{}, "best"), Unusable);
+}
+
+}  // namespace
+}  // namespace bvlab

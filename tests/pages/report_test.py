@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""plots/report: the page of records opens from a file, its tables sort, its search finds."""
+
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from browser import ROOT, Browser
+
+COLUMN = "return [...document.querySelector('table').tBodies[0].rows].map(row => row.cells[arguments[0]].textContent)"
+
+
+def record_of(name):
+    return next(path.parent for path in sorted((ROOT / "experiments" / "record").glob("*/definition.toml"))
+                if f'name = "{name}"' in path.read_text())
+
+
+class Report(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.out = Path(cls.temporary.name) / "report"
+        done = subprocess.run([ROOT / "plots" / "report", record_of("peers-cgal"), record_of("boxes-triangles"), "--out",
+                               cls.out, "--no-scenes"], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        cls.page = Path(done.stdout.strip())
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def test_opens_sorts_and_searches(self):
+        with Browser() as browser:
+            browser.open(self.page)
+            self.assertEqual(browser.errors(), [])
+            self.assertTrue(browser.wait_for("return [...document.images].slice(0, 1).every(i => i.naturalWidth > 100)"))
+            self.assertEqual(browser.run("return document.querySelectorAll('.experiment').length"), 2)
+            self.assertIn("best peer", browser.text(".says"))
+
+            browser.click(".table summary")
+            column = browser.run("return document.querySelector('tbody tr td.n:last-child').cellIndex")
+            for direction in ("ascending", "descending"):
+                browser.run("document.querySelectorAll('table:first-of-type th button')[arguments[0]].click()", column)
+                shown = [float(x.replace(",", "")) for x in browser.run(COLUMN, column) if x]
+                self.assertGreater(len(set(shown)), 1)
+                self.assertEqual(shown, sorted(shown, reverse=direction == "descending"))
+            browser.keep("report")
+
+            browser.driver.find_element("id", "search").send_keys("cgal rigid_triangle")
+            self.assertEqual(browser.run("return [...document.querySelectorAll('.experiment:not([hidden]) h2')]"
+                                         ".map(h => h.textContent)"), ["peers-cgal"])
+
+            light = browser.run("return getComputedStyle(document.body).backgroundColor")
+            browser.click("#theme")
+            self.assertNotEqual(browser.run("return getComputedStyle(document.body).backgroundColor"), light)
+            self.assertEqual(browser.errors(), [])
+
+    def test_narrow_pages_do_not_scroll_sideways(self):
+        with Browser(width=390, height=844, dark=True) as browser:
+            browser.open(self.page)
+            self.assertEqual(browser.run("return document.documentElement.dataset.theme"), "dark")
+            self.assertLessEqual(browser.run("return document.documentElement.scrollWidth - innerWidth"), 0)
+            browser.keep("report-narrow")
+
+    def test_needs_nothing_else(self):
+        page = self.page.read_text()
+        self.assertNotRegex(page, r'(src|href)="(https?:)?//')
+        self.assertNotIn("<!--links-->", page)
+
+    def test_refused(self):
+        done = subprocess.run([ROOT / "plots" / "report", self.out, "--out", self.out], capture_output=True, text=True,
+                              check=False)
+        self.assertEqual((done.returncode, len(done.stderr.strip().splitlines())), (2, 1))
+        self.assertIn("definition.toml", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
