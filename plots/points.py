@@ -51,9 +51,7 @@ def measured(rows, text, figure):
         raise Refused(f"'{text}' holds names, not numbers")
     values = values.astype(float).replace([np.inf, -np.inf], np.nan)
     if values.isna().all():
-        beside = "alone" in rows and (rows.alone == "no").any()
-        raise Refused(f"'{text}' is known for no row" + (
-            ", as times beside other work are left out" if beside and "s" in expression.unit() else ""))
+        raise Refused(f"'{text}' is known for no row")
     records.say_left_out(rows[values.isna()].variant, f"which have no {text}, of {figure.name}")
     return rows.assign(value=values)[values.notna()], expression
 

@@ -31,7 +31,8 @@ def read(record, table=""):
     "" for ours; `variant`, what distinguishes what was run, as "sphere deferred", "blocks" or a peer's name;
     later_ns and later_pairs, those of all frames but the first; and the columns of <name>.coherence.csv.
 
-    Times are NaN in rows that were measured beside other work (column `alone` "no"), and where nothing was timed.
+    Times are NaN in rows that were measured beside other work (column `alone` "no") where their cell has others, and
+    where nothing was timed.
 
     attrs: name and kind (of the study, "" for an experiment), definition (a dictionary), settings (the columns that
     say what was run), units (of each column: ns, B, radii, °, or ""). Refused where it is no record.
@@ -139,13 +140,22 @@ def with_coherence(rows, path):
 
 
 def own_times(rows):
-    """Times only of rows that had their node to themselves; a record from before rows said so is taken at its word."""
+    """Times of rows that had their node to themselves, where their cell has any; where it has none they stay, which
+    is said, since a busy machine is better seen than hidden. A record from before rows said so is taken at its word."""
     times = [column for column in rows if words.is_time(column)]
     rows[times] = rows[times].apply(pd.to_numeric, errors="coerce")  # blank in all rows, where nothing was timed
     beside = rows.alone == "no" if "alone" in rows else pd.Series(False, rows.index)
-    if beside.any():
-        print(f"left out: times of {beside.sum()} of {len(rows)} rows, which were measured beside other work")
-        rows[times] = rows[times].mask(beside)
+    if not beside.any():
+        return rows
+    cell = list(rows.columns[: list(rows.columns).index("repetition")]) if "repetition" in rows else []
+    quiet = ~beside & rows[times].notna().any(axis=1)
+    quiet_in_cell = quiet.groupby([rows[c].astype(str) for c in cell]).transform("any") if cell else quiet | quiet.any()
+    left_out = beside & quiet_in_cell
+    if left_out.any():
+        print(f"left out: times of {left_out.sum()} of {len(rows)} rows, which were measured beside other work")
+        rows[times] = rows[times].mask(left_out)
+    if kept := (beside & ~left_out).sum():
+        print(f"beside other work: times of {kept} of {len(rows)} rows, of cells in which none was measured alone")
     return rows
 
 

@@ -100,9 +100,10 @@ class Points(unittest.TestCase):
         counted = self.points(beside, x="degrees", y="n_v / pairs", series="variant")
         self.assertEqual(self.at(counted, 1, "obb recursive").middle, 20)
 
-    def test_no_time_is_drawn_where_all_were_beside_other_work(self):
-        with self.assertRaisesRegex(Refused, "times beside other work are left out"):
-            self.points(lambda rows: rows.assign(alone="no"), x="degrees", y="time_ns / pairs")
+    def test_times_of_cells_in_which_none_was_alone_stay_and_are_named(self):
+        points = self.points(lambda rows: rows.assign(alone="no"), x="degrees", y="time_ns / pairs", series="variant")
+        self.assertAlmostEqual(self.at(points, 1, "sphere recursive").middle, 110)  # of 100, 110 and 120
+        self.assertIn("beside other work: times of 36 of 36 rows", self.printed.getvalue())
 
     def test_records_of_counts_alone(self):
         def untimed(rows):
