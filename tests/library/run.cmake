@@ -1,6 +1,6 @@
 # The library as somebody else uses it: installed with Eigen alone, found by find_package, and README's
 # example compiled against it and run.
-#   cmake -DSOURCE=... -DWORK=... -P run.cmake
+#   cmake -DSOURCE=... -DWORK=... -DGENERATOR=... -P run.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE fault OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT fault EQUAL 0)
@@ -11,9 +11,9 @@ function(run)
 endfunction()
 
 file(REMOVE_RECURSE ${WORK})
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/library -DBVLAB_BUILD_EXPERIMENTS=OFF -DBVLAB_BUILD_TESTS=OFF)
+run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE} -B ${WORK}/library -DBVLAB_BUILD_EXPERIMENTS=OFF -DBVLAB_BUILD_TESTS=OFF)
 run(${CMAKE_COMMAND} --install ${WORK}/library --prefix ${WORK}/installed)
-run(${CMAKE_COMMAND} -S ${SOURCE}/tests/library -B ${WORK}/example -DCMAKE_PREFIX_PATH=${WORK}/installed
+run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/tests/library -B ${WORK}/example -DCMAKE_PREFIX_PATH=${WORK}/installed
     -DCMAKE_BUILD_TYPE=Release)
 run(${CMAKE_COMMAND} --build ${WORK}/example)
 run(${WORK}/example/example)
