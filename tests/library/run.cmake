@@ -11,9 +11,9 @@ function(run)
 endfunction()
 
 file(REMOVE_RECURSE ${WORK})
-run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE} -B ${WORK}/library -DBVLAB_BUILD_EXPERIMENTS=OFF -DBVLAB_BUILD_TESTS=OFF)
+run(${CMAKE_COMMAND} -G "${GENERATOR}" -S ${SOURCE} -B ${WORK}/library -DBVLAB_BUILD_EXPERIMENTS=OFF -DBVLAB_BUILD_TESTS=OFF)
 run(${CMAKE_COMMAND} --install ${WORK}/library --prefix ${WORK}/installed)
-run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/tests/library -B ${WORK}/example -DCMAKE_PREFIX_PATH=${WORK}/installed
+run(${CMAKE_COMMAND} -G "${GENERATOR}" -S ${SOURCE}/tests/library -B ${WORK}/example -DCMAKE_PREFIX_PATH=${WORK}/installed
     -DCMAKE_BUILD_TYPE=Release)
 run(${CMAKE_COMMAND} --build ${WORK}/example)
 run(${WORK}/example/example)
