@@ -5,6 +5,7 @@ import os
 import shutil
 import tempfile
 import time
+import unittest
 from pathlib import Path
 
 from selenium import webdriver
@@ -15,6 +16,14 @@ BVLAB = os.environ.get("BVLAB", str(ROOT / "build" / "release" / "bvlab"))
 OPTIONS = ["--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
            "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage", "--force-device-scale-factor=1",
            "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--host-resolver-rules=MAP * ~NOTFOUND"]
+
+
+def require_browser():
+    """Skips the tests of a module where Chromium is installed and does not start, as in some containers."""
+    try:
+        Browser().driver.quit()
+    except Exception as error:  # whatever stands in its way
+        raise unittest.SkipTest(f"Chromium does not start here: {str(error).splitlines()[0]}") from error
 
 
 class Browser:

@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 import numpy as np
-from browser import BVLAB, Browser
+from browser import BVLAB, Browser, require_browser
 
 # How many pixels of the scene are drawn, and a number that another picture hardly has.
 PICTURE = """
@@ -28,6 +28,10 @@ return [drawn / (copy.width * copy.height), sum];
 
 def run(*words):
     return subprocess.run([BVLAB, *map(str, words)], capture_output=True, text=True, check=False)
+
+
+def setUpModule():
+    require_browser()
 
 
 class ReplayPage(unittest.TestCase):

@@ -6,7 +6,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from browser import ROOT, Browser
+from browser import ROOT, Browser, require_browser
 
 COLUMN = "return [...document.querySelector('table').tBodies[0].rows].map(row => row.cells[arguments[0]].textContent)"
 
@@ -14,6 +14,10 @@ COLUMN = "return [...document.querySelector('table').tBodies[0].rows].map(row =>
 def record_of(name):
     return next(path.parent for path in sorted((ROOT / "experiments" / "record").glob("*/definition.toml"))
                 if f'name = "{name}"' in path.read_text())
+
+
+def setUpModule():
+    require_browser()
 
 
 class Report(unittest.TestCase):
