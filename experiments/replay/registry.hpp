@@ -4,6 +4,7 @@
 /// (registry.cpp.in), so that an entry that is added recompiles itself and the tables alone.
 #pragma once
 
+#include <cstdlib>
 #include <span>
 #include <string>
 #include <string_view>
