@@ -2,7 +2,7 @@
 """Records as pandas frames.
 
     import records
-    rows = records.read("experiments/record/2026-11-21.51")
+    rows = records.read("experiments/record/hierarchies")
     rows.attrs["units"]["time_ns"]                     # "ns"
     rows.groupby(["query", "variant"]).time_ns.median()
 """
