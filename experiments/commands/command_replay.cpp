@@ -244,14 +244,15 @@ void add_replay(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--relative-error", arguments->variant.relative_error,
-                   "distances may be so much above the truth, never below")
+                   "distances may be at most this part above the exact one, never below")
       ->capture_default_str();
   command->add_option("--precision", arguments->variant.precision, "see `bvlab list precisions`")
       ->capture_default_str();
   command
-      ->add_option("--budget", arguments->budget,
-                   "so many tests of volumes for each pair and frame: 0 apart, 1 touching, 2 not "
-                   "known yet, with a bound on how deep")
+      ->add_option(
+          "--budget", arguments->budget,
+          "at most this many volume tests for each pair and frame: 0 apart, 1 touching, 2 not "
+          "known yet, with a bound on how deep")
       ->check(whole_number(0, 1u << 30));
   command->add_option("--threads", arguments->threads)
       ->check(whole_number(1, 1024))
