@@ -306,7 +306,7 @@ def draw(runs, said, out):
     models = list(dict.fromkeys(rows.motion_model))
     looks = style.looks(models)
     sources = [source for source in said if source != ITSELF]
-    figure, axes = plt.subplots(1, len(sources) + 1, figsize=(3.1 * len(sources) + 4.2, 3.6),
+    figure, axes = plt.subplots(1, len(sources) + 1, figsize=(3.1 * len(sources) + 4.2, 4.6),
                                 width_ratios=[1] * len(sources) + [1.15])
     both = np.concatenate([said[source][LAW] for source in sources] + [rows.tests_saved])
     low, high = 0.8 * both.min(), 1.25 * both.max()
@@ -334,18 +334,21 @@ def draw_errors(axis, runs, said):
     rows = runs.measured
     settings = list(dict.fromkeys(rows.setting))
     seeds = rows.seed.to_numpy()
-    shown = [(LAW, PREFIX), (LAW, OTHERS), (ALONE, PREFIX), (REGRESSION, PREFIX), (LAST, PREFIX)]
+    shown = [(LAW, PREFIX), (LAW, OTHERS), (ALONE, PREFIX), (REGRESSION, PREFIX), (LAST, PREFIX), (LAST, OTHERS)]
     shown = [each for each in shown if each[1] in said]
     marks = [("#1b1b1b", "o", "full"), ("#1b1b1b", "o", "none"), ("#d95f0e", "s", "full"), ("#8c6bb1", "D", "full"),
-             ("#41a5c4", "^", "full")]
+             ("#41a5c4", "^", "full"), ("#41a5c4", "^", "none")]
     for k, ((name, source), (color, marker, fill)) in enumerate(zip(shown, marks)):
         middle = [middle_and_most(off_by(said[source][name], runs)[here], seeds[here])[0]
                   for here in ((rows.setting == setting).to_numpy() for setting in settings)]
         middle = np.maximum(np.array(middle), 0.05)
-        at = np.arange(len(settings)) + 0.15 * (k - (len(shown) - 1) / 2)
+        at = np.arange(len(settings)) + 0.13 * (k - (len(shown) - 1) / 2)
         axis.errorbar(middle[:, 0], at, xerr=[middle[:, 0] - middle[:, 1], middle[:, 2] - middle[:, 0]], linestyle="none",
                       color=color, marker=marker, markersize=3.5, elinewidth=0.8, markeredgewidth=0.8,
                       markerfacecolor=color if fill == "full" else "white", label=f"{name}, {source}")
+    for between in range(1, len(settings)):
+        axis.axhline(between - 0.5, color="#dddddd", linewidth=0.6)
+    axis.grid(False, axis="y")
     axis.set_yticks(range(len(settings)), [plain(setting) for setting in settings], fontsize=7)
     axis.set(xscale="log", xlabel="error, median (%), with its interval")
     axis.invert_yaxis()

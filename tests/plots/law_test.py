@@ -30,13 +30,14 @@ class Law(unittest.TestCase):
             self.assertAlmostEqual(law.window_over_recursion(runs_of(), defer, 0.5, 40)[0], share)
 
     def test_a_list_that_is_never_still_is_never_rebuilt(self):
-        never = runs_of(stillness=0.0)
+        # Straight on, so that no run is a shorter way than the first.
+        never = runs_of(stillness=0.0, persistence=1.0)
         self.assertAlmostEqual(law.list_over_recursion(never, 0, 1)[0], (1 + 99 / 2) / 100)
         self.assertAlmostEqual(law.window_over_recursion(never, 0, 1, 20)[0], 1 / 2)
-        # Where bodies go straight on, it gains as much in every run.
+        # It gains as much in every run.
         grows = runs_of(stillness=0.0, growth=0.1, persistence=1.0)
         length = 1 + 0.1 * (np.arange(20, 100) - 1)
-        self.assertAlmostEqual(law.window_over_recursion(grows, 0, 1, 20)[0], length.mean() / 2, places=3)
+        self.assertAlmostEqual(law.window_over_recursion(grows, 0, 1, 20)[0], length.mean() / 2, places=2)  # nearly straight on
 
 
 class Unseen(unittest.TestCase):
@@ -44,7 +45,7 @@ class Unseen(unittest.TestCase):
 
     def predictions(self, change):
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
-            keep = dict(seed=3, volume=1, query=1, setting=["wander, 0.02 / 2", "pile"])
+            keep = dict(seed=3, volume=["sphere"], query=["contacts"], setting=["wander, 0.02 / 2", "pile"])
             runs = law_unseen.read(small_record("law-unseen", Path(folder) / "record", keep, {}, None, change))
             said = law_unseen.all_predictions(runs, law_unseen.Fit(0.5, *law_unseen.regressed(
                 runs.sources[law_unseen.PREFIX], law_unseen.alone(runs.sources[law_unseen.PREFIX]))))

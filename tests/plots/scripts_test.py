@@ -23,7 +23,7 @@ SPECS = {
                    RECURSIVE),
     "hierarchies": ("hierarchies", dict(work=2, motion=1), dict(volume="sphere", strategy=("recursive", STRATEGIES)),
                     RECURSIVE),
-    "law_unseen": ("law-unseen", dict(seed=2, volume=1, setting=["wander, 0.002 / 0.2", "planner", "pile"]),
+    "law_unseen": ("law-unseen", dict(seed=2, volume=["sphere"], setting=["wander, 0.002 / 0.2", "planner", "pile"]),
                    dict(setting="pile", strategy=("deferred", STRATEGIES)), None),
     "nine_bunnies": ("nine-bunnies", dict(seed=2, reading=2, frame=50),
                      dict(variant=("deferred", STRATEGIES), reading="one body, one freedom", density="dense"), None),
