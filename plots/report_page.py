@@ -2,7 +2,6 @@
 """The report as HTML: a section for each record, and the page around them."""
 
 import html
-import json
 import re
 import shutil
 import subprocess
@@ -13,9 +12,9 @@ from pathlib import Path
 import pandas as pd
 
 import findings
+import provenance
 import records
 import words
-from refused import Refused
 
 PLOTS = Path(__file__).resolve().parent
 MOST_ROWS = 1000  # of a table; the record has them all
@@ -39,11 +38,7 @@ def section_of(record, out):
     """Reads a record, and puts its figures beside the page."""
     rows = records.read(record)
     definition = rows.attrs["definition"]
-    machine = read_text(record / "machine.json")
-    try:
-        machine = json.loads(machine) if machine else {}
-    except ValueError as fault:
-        raise Refused(f"{record}/machine.json: {fault}") from None
+    machine = provenance.machine_of(record)
     return Section(rows.attrs["name"], record.resolve().name, definition.get("description", ""),
                    figures_of(record, rows.attrs["name"], out), rows, medians(rows), machine,
                    read_text(record / "command.txt").strip(),
@@ -120,10 +115,12 @@ def head(column, unit, kind):
 
 def facts_of(section):
     machine = dict(section.machine)
-    version, _, commit = str(machine.pop("bvlab", "")).partition(" ")
+    by = provenance.made(machine)
     if str(machine.get("memory", "")).endswith(" kB"):
         machine["memory"] = f"{int(machine['memory'].split()[0]) / 1e6:.0f} GB"
-    facts = [("Command", f"<code>{text(section.command)}</code>"), ("Commit", f"<code>{text(commit)}</code> (bvlab {text(version)})"),
+    facts = [("Command", f"<code>{text(section.command)}</code>"),
+             ("Commit", f"<code>{text(by.commit)}</code>{' with changes' if by.changes else ''} (bvlab {text(by.version)})"
+              if by.commit else ""), ("Date", text(by.date)),
              ("Machine", text(", ".join(f"{machine[k]}{' cores' if k == 'cores' else ''}" for k in
                                         ("processor", "cores", "memory", "system") if k in machine))),
              ("Compiler", text(f"{machine.get('compiler', '')} {machine.get('flags', '')}")),
