@@ -6,8 +6,8 @@
         return {"blocks": ...}
 
 A quote is a piece of a page with places for numbers, {name:format}; the function computes the values from the record
-of that name, or of several. Line breaks are as the page has them. A value may be a number, a name ({best}), several of
-them, or an Interval, which is written "1.5 to 1.6", and "1.6" where both ends are the same when rounded. What a page
+of that name, or of several. Line breaks are as the page has them. A value may be a number, a name ({best}), a list of
+them, which is written "1, 2 and 3", or an Interval, which is written "1.5 to 1.6", and "1.6" where both ends are the same when rounded. What a page
 says in words is claimed: claim(raise_is_best, "raise is the fastest").
 
 A table is a quote that begins with the line of its columns; the function gives {"rows": [[cell, ...], ...]}.
@@ -56,13 +56,14 @@ class Interval:
 
 
 def written(value, spec):
-    """"2g" rounds to two digits and writes no exponent; "d" has blanks between thousands."""
+    """".2g" rounds to two digits and writes no exponent; "d" has blanks between thousands, "s" is 289k."""
     if isinstance(value, (list, tuple)):
-        return ", ".join(written(each, spec) for each in value)
+        texts = [written(each, spec) for each in value]
+        return ", ".join(texts[:-1]) + " and " * (len(texts) > 1) + texts[-1]
     if isinstance(value, (str, Interval)):
         return format(value, spec)
     if spec.endswith("g"):
-        value, digits = float(f"{value:.{spec[:-1] or 6}g}"), 0
+        value, digits = float(format(value, spec)), 0
         while digits < 12 and abs(round(value, digits) - value) > 1e-12 * abs(value):
             digits += 1
         return f"{value:.{digits}f}"
@@ -153,7 +154,7 @@ def literal(text):
 def place_pattern(spec):
     if not spec:
         return r"(\S(?:[^\n]*?\S)??)"
-    return rf"({NUMBER}[kM]?(?:(?:\s+to\s+|,\s+){NUMBER}[kM]?)*)"
+    return rf"({NUMBER}[kM]?(?:(?:\s+to\s+|\s+and\s+|,\s+){NUMBER}[kM]?)*)"
 
 
 def found(quote, text):
