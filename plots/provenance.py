@@ -61,6 +61,8 @@ def fault_of(record, root=ROOT):
         return "names no commit"
     if by.changes:
         return f"was made from {by.commit[:12]} with changes"
+    if by.changes is None:
+        return f"does not say whether {by.commit[:12]} had changes"
     if git("merge-base", "--is-ancestor", by.commit, "HEAD", root=root).returncode:
         return f"was made from {by.commit[:12]}, which is not in the history"
     return ""

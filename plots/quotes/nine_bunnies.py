@@ -62,3 +62,4 @@ speedups.also(README,
 stated(README, "a definition's", "Nine bunnies of 500 polygons")
 stated(README, "a version", "Debian 12", "C++20")
 stated(README, "the program's numbering and dimensions", "page in 3D", "(0,1) (0,2) ... (1,2) ...")
+stated(README, "what is demanded", "the column `differing` must be 0")

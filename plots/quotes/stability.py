@@ -2,7 +2,7 @@
 """Wrong answers on scenes where the right one hangs on the last digits; triangle tests."""
 
 import records
-from quoting import RESULTS, Interval, claim, quotes, stated
+from quoting import RESULTS, Interval, claim, quotes
 
 
 @quotes("stability-map", RESULTS,

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What wins where, strategies beside the best rebuilds, real workloads, and whole scenes."""
 
-import law
 import records
 from quotes.relation import measured
-from quoting import RESULTS, Interval, claim, quotes, stated
+from quoting import RESULTS, Interval, claim, quotes
 
 MEETING = {"obb", "rss", "aabb"}
 
@@ -103,9 +102,8 @@ MOVING = [(1, 5, "all move, 5 degrees"), (1, 0.1, "all move, a tenth of a degree
 @quotes("worlds", RESULTS, "| | 1000: FCL | Bullet | 10 000: FCL | Bullet |")
 def worlds(record):
     rows = records.read(record)
-    rows = rows.assign(ms=rows.later_ns / 1e6 if "later_ns" in rows else rows.time_ns / 1e6)
-    middle = rows.groupby(["objects", "moving", "degrees", "peer", "variant"]).ms.median()
     records.wrong_answers(rows)
+    middle = rows.groupby(["objects", "moving", "degrees", "peer", "variant"]).time_ns.median()
 
     def cell(objects, moving, degrees, peer):
         scene = middle[objects, moving, degrees]
