@@ -15,6 +15,8 @@ A table is a quote that begins with the line of its columns; the function gives 
 Numbers that no record gives (published ones, what a definition sets, units) are said to be such: stated(page, why, text).
 """
 
+import contextlib
+import io
 import re
 from dataclasses import dataclass, field
 from functools import cache
@@ -116,7 +118,8 @@ def quotes(names, page, *texts):
     def of(function):
         @cache
         def values():
-            return function(*(record_of(name) for name in names))
+            with contextlib.redirect_stdout(io.StringIO()):  # what is left out is said where figures are drawn
+                return function(*(record_of(name) for name in names))
         for text in texts:
             QUOTES.append(Quote(page, text, values, names))
         # Another page may quote the same values: they are computed once.

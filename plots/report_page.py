@@ -32,6 +32,7 @@ class Section:
     machine: dict
     command: str
     definition: str
+    results: list  # what results.md says of it
 
 
 def section_of(record, out):
@@ -42,11 +43,20 @@ def section_of(record, out):
     return Section(rows.attrs["name"], record.resolve().name, definition.get("description", ""),
                    figures_of(record, rows.attrs["name"], out), rows, medians(rows), machine,
                    read_text(record / "command.txt").strip(),
-                   read_text(record / "definition.toml").strip())
+                   read_text(record / "definition.toml").strip(), paragraphs_on(record))
 
 
 def read_text(path):
     return path.read_text() if path.is_file() else ""
+
+
+def paragraphs_on(record):
+    """Those of results.md that link to this record; its numbers are held against the records by a test."""
+    results = PLOTS.parent / "experiments" / "results.md"
+    if record.resolve().parent != results.parent / "record":
+        return []
+    return [part for part in read_text(results).split("\n\n")
+            if f"](record/{record.resolve().name})" in part and not part.startswith("|")]
 
 
 def figures_of(record, name, out):
@@ -108,6 +118,14 @@ def table_of(section):
             "</div></details>")
 
 
+def from_markdown(part):
+    """A paragraph of results.md as HTML: links without addresses, bold, code; HTML that stands in it stays."""
+    part = re.sub(r"\(\[record\]\([^)]*\)(?:[:,] )?", "(", part).replace(" ()", "")
+    part = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", part).replace("N<sub>", "<i>N</i><sub>")
+    part = re.sub(r"\*\*(.*?)\*\*", r"<b>\1</b>", part)
+    return re.sub(r"`([^`]*)`", r"<code>\1</code>", part)
+
+
 def head(column, unit, kind):
     title = words.called(column, kind) + (f", {unit}" if unit else "")
     return f'<th scope="col" title="{text(title)}"><button type="button">{text(column)}</button></th>'
@@ -137,6 +155,7 @@ def html_of(section, anchor):
     return (f'<section id="{anchor}" class="experiment"><h2><a href="#{anchor}">{text(section.name)}</a></h2>'
             f'<p class="asks">{text(section.description)}</p>'
             + (f'<p class="says">{text(said)}</p>' if said else "")
+            + "".join(f'<p class="results">{from_markdown(part)}</p>' for part in section.results)
             + f'<div class="figures">{figures}</div>{table_of(section)}{facts_of(section)}</section>')
 
 
