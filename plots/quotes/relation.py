@@ -41,15 +41,15 @@ def relation(record):
         return [100 * error[~unseen].median(), 100 * error[unseen].median()]
     half = lists.survival >= 0.5
     still = lists.assign(growth=0.0, stillness=1.0)
-    claim(rows.mesh.nunique() == 6 and rows.motion.nunique() == 9 and rows.manner.nunique() == 3, "six shapes, nine motions, "
-          "three manners of moving")
+    claim(rows.mesh.nunique() == 6 and rows.motion.nunique() == 9 and rows.motion_model.nunique() == 3, "six shapes, nine motions, "
+          "three motion models")
     claim(rows.strategy.nunique() == 7 and rows.volume.nunique() == 2, "seven strategies, two volumes")
     claim(lists[~half].tests_saved.median() < 1, "lists lose where less than half of the front is there again")
     crossings = {query: law.crossing(rows[rows["query"] == query], "separation-list", "tests_saved")[0]
                  for query in dict.fromkeys(rows["query"])}
     fitted, left_out = (law.errors(rows, kappa)[name] for name in ("fitted", "left out"))
     return {"kappa": kappa, "fitted": 100 * fitted[0], "fitted_most": 100 * fitted[1], "unseen": 100 * left_out[0],
-            "unseen_most": 100 * left_out[1], "persisting": 100 * off[lists.manner == "all bodies, persisting"].median(),
+            "unseen_most": 100 * left_out[1], "persisting": 100 * off[lists.motion_model == "all bodies, persisting"].median(),
             "zero": medians(law.predicted(lists, 0)), "one": medians(law.predicted(lists, 1)),
             "constant": 100 * law.constant_errors(rows)[0], "still": medians(law.predicted(still, kappa)),
             "half": 100 * off[half].quantile(0.95), "less": 100 * off[~half].median(), **crossings}

@@ -73,10 +73,10 @@ def best_rebuilds(record):
         "where one moves at a time")
 def adaptive(record):
     rows, _ = measured(record)
-    cell = ["motion", "manner", "mesh", "volume", "query"]
+    cell = ["motion", "motion_model", "mesh", "volume", "query"]
     time = rows.set_index([*cell, "strategy"]).time_ns.unstack()
     ratio = time.adaptive / time.min(axis=1)
-    one = ratio.index.get_level_values("manner").str.startswith("one")
+    one = ratio.index.get_level_values("motion_model").str.startswith("one")
     claim(rows.frames.max() == 100, "runs of a hundred frames")
     return {"all": ratio[~one].median(), "one": ratio[one].median()}
 
