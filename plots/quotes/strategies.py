@@ -55,8 +55,8 @@ def over_scene(record):
 def best_rebuilds(record):
     rows = records.read(record)
     records.wrong_answers(rows)
-    middle = rows.groupby(["query", "degrees", "strategy"])[["n_v", "best_tests", "time_ns"]].median()
-    tests, time = (middle.n_v / middle.best_tests).unstack(), middle.time_ns.unstack()
+    middle = rows.groupby(["query", "degrees", "strategy"])[["n_v", "best_tests", "time_ns", "later_ns"]].median()
+    tests, time = (middle.n_v / middle.best_tests).unstack(), middle.later_ns.unstack()
     price = (middle.time_ns / middle.n_v).unstack()
     adaptive = time.adaptive / time.min(axis=1)
     violent = adaptive.index.get_level_values("degrees") >= 15
