@@ -36,13 +36,13 @@ PLACE = re.compile(r"\{(\w+)(?::([^}]*))?\}")
 UNREAD = re.compile(r"```.*?```|`[^`\n]*`|\]\([^)]*\)|<su[bp]>.*?</su[bp]>|https?://\S+", re.DOTALL)
 
 
-class Untrue(Exception):
-    """A sentence that the record does not bear out any more."""
+UNTRUE = []  # sentences that records do not bear out any more, while a function computes values
 
 
 def claim(holds, sentence):
+    """What a page says in words: where it does not hold, numbers are still written, and the sentence is named."""
     if not holds:
-        raise Untrue(f"no longer so: {sentence}")
+        UNTRUE.append(sentence)
 
 
 class Interval:
@@ -89,7 +89,7 @@ def short(count):
 class Quote:
     page: str
     text: str
-    values: object  # a function of no arguments
+    values: object  # a function of no arguments: the values, and what does not hold of what is claimed
     records: list = field(default_factory=list)
 
     @property
@@ -118,8 +118,9 @@ def quotes(names, page, *texts):
     def of(function):
         @cache
         def values():
+            UNTRUE.clear()
             with contextlib.redirect_stdout(io.StringIO()):  # what is left out is said where figures are drawn
-                return function(*(record_of(name) for name in names))
+                return function(*(record_of(name) for name in names)), list(UNTRUE)
         for text in texts:
             QUOTES.append(Quote(page, text, values, names))
         # Another page may quote the same values: they are computed once.
@@ -174,14 +175,12 @@ def found(quote, text):
     return matches[0].start(), matches[0].end(), matches[0]
 
 
-def said(quote, match):
+def said(quote, values, match):
     """The text that should stand: with the record's values, and the page's line breaks."""
-    values = quote.values()
     if quote.is_table:
-        rows = values["rows"] if isinstance(values, dict) else values
         head = quote.text.strip()
         lines = [head, "|" + "---|" * (head.count("|") - 1)]
-        return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]).replace("|  |", "| |") + "\n"
+        return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in values["rows"]]).replace("|  |", "| |") + "\n"
     blanks = iter(group for group in match.groups() if group.isspace())
     text, parts = quote.text.strip(), []
     for piece in re.split(r"(\{\w+(?::[^}]*)?\})", text):
@@ -212,10 +211,12 @@ class Page:
             try:
                 start, end, match = found(quote, self.text)
                 self.known += covered(quote, start, match, end)
-                stands, should = self.text[start:end], said(quote, match)
+                values, untrue = quote.values()
+                self.faults += [fault for each in untrue if (fault := f"{name}: no longer so: {each}") not in self.faults]
+                stands, should = self.text[start:end], said(quote, values, match)
                 same = stands == should if quote.is_table else stands.split() == should.split()
                 self.pieces.append((start, end, stands if same else should, quote))
-            except (Untrue, Refused) as fault:
+            except Refused as fault:
                 text = str(fault)
                 self.faults.append(text if text.startswith(name) else f"{quote.name()}: {text}")
             except Exception as fault:  # a record of another form: the other quotes are still looked at

@@ -69,7 +69,7 @@ class Agreement(unittest.TestCase):
                 pairs = list(zip(name.split(), value if isinstance(value, list) else [value]))
             for macro, number in pairs:
                 with self.subTest(macro):
-                    self.assertAlmostEqual(float(paper[macro]) * factor / number, 1, places=3)
+                    self.assertAlmostEqual(float(paper[macro]) * factor / number, 1, places=2)
 
 
 if __name__ == "__main__":
