@@ -7,8 +7,8 @@
 
 A quote is a piece of a page with places for numbers, {name:format}; the function computes the values from the record
 of that name, or of several. Line breaks are as the page has them. A value may be a number, a name ({best}), a list of
-them, which is written "1, 2 and 3", or an Interval, which is written "1.5 to 1.6", and "1.6" where both ends are the same when rounded. What a page
-says in words is claimed: claim(raise_is_best, "raise is the fastest").
+them, which is written "1, 2 and 3", or an Interval, which is written "1.5 to 1.6", and "1.6" where both ends are the
+same when rounded. What a page says in words is claimed: claim(raise_is_best, "raise is the fastest").
 
 A table is a quote that begins with the line of its columns; the function gives {"rows": [[cell, ...], ...]}.
 
@@ -18,7 +18,7 @@ Numbers that no record gives (published ones, what a definition sets, units) are
 import contextlib
 import io
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -30,7 +30,7 @@ README, RESULTS = "README.md", "experiments/results.md"
 PAGES = [README, RESULTS]
 NUMBER = r"[-+]?\d+(?:[ ,]\d{3})*(?:\.\d+)?"
 # In a page: with k or M behind it, but not in a word (sweep1, float64, 26-DOP) nor a heading's.
-SHOWN = re.compile(rf"(?<![\w.-])(?:(?<=\w)-)?\d+(?:[ ,]\d{{3}})*(?:\.\d+)?(?![\w]|\.\d|-[A-Za-z])|(?<![\w.-])\d+(?:\.\d+)?[kM]\b")
+SHOWN = re.compile(r"(?<![\w.-])(?:\d+(?:[ ,]\d{3})*(?:\.\d+)?(?!\w|\.\d|-[A-Za-z])|\d+(?:\.\d+)?[kM]\b)")
 PLACE = re.compile(r"\{(\w+)(?::([^}]*))?\}")
 # Not read for numbers: code, the addresses of links, what a formula lowers or raises.
 UNREAD = re.compile(r"```.*?```|`[^`\n]*`|\]\([^)]*\)|<su[bp]>.*?</su[bp]>|https?://\S+", re.DOTALL)
@@ -90,7 +90,6 @@ class Quote:
     page: str
     text: str
     values: object  # a function of no arguments: the values, and what does not hold of what is claimed
-    records: list = field(default_factory=list)
 
     @property
     def is_table(self):
@@ -122,9 +121,9 @@ def quotes(names, page, *texts):
             with contextlib.redirect_stdout(io.StringIO()):  # what is left out is said where figures are drawn
                 return function(*(record_of(name) for name in names)), list(UNTRUE)
         for text in texts:
-            QUOTES.append(Quote(page, text, values, names))
+            QUOTES.append(Quote(page, text, values))
         # Another page may quote the same values: they are computed once.
-        function.also = lambda other, *more: QUOTES.extend(Quote(other, text, values, names) for text in more)
+        function.also = lambda other, *more: QUOTES.extend(Quote(other, text, values) for text in more)
         return function
     return of
 

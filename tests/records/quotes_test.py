@@ -43,10 +43,10 @@ class Pages(unittest.TestCase):
 
 
 class Quotes(unittest.TestCase):
-    def page(self, stands, *quotes):
+    def page(self, stands, *said):
         """Of quotes that are a text and values."""
         listed = [Quote("page", text, lambda values=values, untrue=untrue: (values, untrue))
-                  for text, values, *untrue in quotes]
+                  for text, values, *untrue in said]
         with mock.patch.object(quoting, "QUOTES", listed):
             return Page("page", stands)
 
