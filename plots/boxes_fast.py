@@ -26,7 +26,7 @@ def read(folders):
     wrong = records.wrong_answers(rows)
     records.say_left_out(rows[wrong].method + " on " + rows[wrong].set, "where their pairs differ")
     rows = rows[~wrong]
-    records.say_left_out(set(rows.threads) - {1}, "runs on so many threads")
+    records.say_left_out(set(rows.threads) - {1}, "runs on other numbers of threads")
     return rows[rows.threads == 1]
 
 

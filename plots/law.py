@@ -23,7 +23,7 @@ import records
 LISTS = {"separation-list": 0, "deferred": 1}
 # The fit sees the bunny and the knot, when all bodies move or one does. Everything else is left out of it.
 FITTED_MESHES = ["bunny", "knot"]
-FITTED_MANNERS = ["all bodies, all freedoms", "one body, one freedom"]
+FITTED_MOTION_MODELS = ["all bodies, all freedoms", "one body, one freedom"]
 
 
 def read(record):
@@ -32,16 +32,16 @@ def read(record):
     records.wrong_answers(rows)
     records.say_left_out(rows[rows.peer != ""].peer, "which keep no front")
     rows = rows[rows.peer == ""]
-    unknown = rows.ends.isna()
+    unknown = rows.entries.isna()
     records.say_left_out(rows[unknown].variant, "whose coherence was not measured")
     cell = [c for c in rows.attrs["settings"] if c not in ("strategy", "variant")]
     rows = rows[~unknown].groupby(cell + ["strategy"], sort=False, as_index=False, dropna=False)
     rows = rows.median(numeric_only=True)
     recursive = rows[rows.strategy == "recursive"][cell + ["time_ns", "n_v", "n_p"]]
     rows = rows.merge(recursive, on=cell, suffixes=("", "_recursive"))
-    rows["survival"] = rows.kept / rows.ends
-    rows["stillness"] = rows.still_ends / rows.ends
-    rows["growth"] = rows.grown / rows.ends
+    rows["survival"] = rows.kept / rows.entries
+    rows["stillness"] = rows.still_entries / rows.entries
+    rows["growth"] = rows.grown / rows.entries
     rows["leaves"] = rows.motion_leaf / rows.near_runs
     rows["gaps"] = rows.motion_gap / rows.near_runs
     rows["tests_saved"] = rows.n_v_recursive / rows.n_v
@@ -58,15 +58,15 @@ def strategies_of(rows):
 def fitted(rows):
     """Which rows the fit may see."""
     seen = rows.mesh.isin(FITTED_MESHES)
-    if "manner" in rows:
-        seen &= rows.manner.isin(FITTED_MANNERS)
+    if "motion_model" in rows:
+        seen &= rows.motion_model.isin(FITTED_MOTION_MODELS)
     if "motion" in rows:  # motions of one kind only are left out
         seen &= ~rows.motion.str.match(r"^0 /|.*/ 0$")
     return seen
 
 
 def way_out(persistence, steps):
-    """How far a walk gets in so many steps, in steps."""
+    """How far a walk gets in `steps` steps, in lengths of a step."""
     p = np.minimum(persistence, 1 - 1e-4)
     return np.sqrt(np.maximum(steps * (1 + p) / (1 - p) - 2 * p * (1 - p**steps) / (1 - p) ** 2, 0))
 

@@ -17,7 +17,7 @@ RECURSIVE = dict(strategy="recursive")
 SPECS = {
     "boxes_fast": ("boxes-fast", dict(set=2), dict(method=("blocks", [stranger("method"), "grid", "brute-force"]),
                                                    set="random", motion="drift"), None),
-    "coherence": ("coherence", dict(mesh=2, motion=2, manner=1), dict(volume="obb", strategy=("deferred", STRATEGIES)),
+    "coherence": ("coherence", dict(mesh=2, motion=2, motion_model=1), dict(volume="obb", strategy=("deferred", STRATEGIES)),
                   RECURSIVE),
     "cost_model": ("cost-model", dict(volume=3), dict(volume="sphere", strategy="deferred", density="dense"),
                    RECURSIVE),

@@ -50,8 +50,8 @@ class WidePairs {
       place(bodies_[i], poses[i], origin_);
       centres_[i] = poses[i](balls_[i].centre);
       // What is off, of a corner and of the centre, and of how far they are apart.
-      reaches_[i] =
-          (balls_[i].radius + 4 * bodies_[i].standing().noise) * (1 + 16 * unit_roundoff<double>);
+      reaches_[i] = (balls_[i].radius + 4 * bodies_[i].orthonormal_pose().noise) *
+                    (1 + 16 * unit_roundoff<double>);
     }
     std::size_t near = pairs_.size();
     before_ = counter.n_v + counter.n_p;
@@ -97,29 +97,29 @@ class WidePairs {
     std::array<Traversal, at_once> traversals{Traversal(workspaces_[0]), Traversal(workspaces_[1])};
     std::array<std::uint32_t, at_once> pair;
     std::size_t next = 0, active = 0;
-    std::array<Traversal*, at_once> turn;
+    std::array<Traversal*, at_once> frame_change;
     const auto begin = [&](std::size_t slot) {
       pair[slot] = near_[next++];
       const auto [i, j] = pairs_[pair[slot]];
-      turn[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter);
+      frame_change[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter);
     };
     for (; active < at_once && next < near; ++active) {
-      turn[active] = &traversals[active];
+      frame_change[active] = &traversals[active];
       begin(active);
     }
     while (active > 0)
       for (std::size_t slot = 0; slot < active;) {
-        if (turn[slot]->advance()) {
+        if (frame_change[slot]->advance()) {
           ++slot;
           continue;
         }
         counter.asked(before_);
-        take(pair[slot], turn[slot]->query());
+        take(pair[slot], frame_change[slot]->query());
         if (next < near) {
           begin(slot++);
         } else {
           --active;
-          std::swap(turn[slot], turn[active]), std::swap(pair[slot], pair[active]);
+          std::swap(frame_change[slot], frame_change[active]), std::swap(pair[slot], pair[active]);
         }
       }
   }
