@@ -42,6 +42,8 @@ def write_boxes(paper):
         lines.append(line)
     paper.table("boxes", "l" + "r" * len(columns), ["ms a frame"] + [f"{s}, {thousands(n)}" for s, n in columns], lines)
     paper.text("boxes-text", published_text(columns, cells))
+    hybrid = [min((cells[m, k, "off"], m) for m in PUBLISHED_METHODS if (m, k, "off") in cells)[1] == "hybrid" for k in range(len(columns))]
+    paper.put_text(hybridBest=sum(hybrid), hybridSets=len(hybrid))
     saved = [1 - cells[m, k, "on"] / cells[m, k, "off"] for m in PUBLISHED_METHODS if m.startswith("sweep")
              for k in range(len(columns)) if (m, k, "on") in cells and (m, k, "off") in cells]
     if saved:
@@ -145,6 +147,7 @@ def write_boxes_displacement(paper):
     if not record:
         return
     rows = records.read(record)
+    write_beaten(paper, rows)
     rows = rows[rows.method == "blocks"]
     middle = rows.groupby(["set", "displacement", "coherent"]).frame_ns.median().unstack("coherent")
     ratio = (middle["on"] / middle["off"]).unstack("displacement")
@@ -156,6 +159,16 @@ def write_boxes_displacement(paper):
     if paper.out:
         draw_displacement(ratio, paper.figures())
     paper.have("boxes-displacement")
+
+
+def write_beaten(paper, rows):
+    """Where another method is faster than blocks by more than a tenth."""
+    best = rows[rows.differing == 0].groupby(["set", "displacement", "method"]).frame_ns.min().unstack("method")
+    others = best.drop(columns="blocks")
+    beaten = [f"{escape(others.loc[cell].idxmin())} on {escape(cell[0])} at {cell[1]:g} ({times(best.blocks[cell] / others.loc[cell].min())})"
+              for cell in best.index if others.loc[cell].min() < 0.9 * best.blocks[cell]]
+    paper.text("boxes-beaten", f"It is beaten by more than a tenth in {len(beaten)} of {len(best)} cells: " + listed(beaten) + ", where the number is how many times as fast that is."
+               if beaten else f"No method or peer beats it by a tenth in any of the {len(best)} cells.")
 
 
 def draw_displacement(ratio, out):

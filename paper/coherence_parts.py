@@ -3,11 +3,12 @@
 
 import numpy as np
 
+import coherence
 import column
 import law
 import nine_bunnies
 import style
-from sheet import duration, escape, listed, medians, percent, read_right, times
+from sheet import duration, escape, listed, medians, percent, read_right, signed, times
 
 PART_LABEL = {"one body": "one", "all bodies": "all", "one freedom": "one", "all freedoms": "all"}
 SHORT = {"recursive": "R", "recursive-both": "B", "separation-list": "L", "deferred": "D", "by-cost": "C", "raise": "U",
@@ -36,6 +37,9 @@ def write_nine_bunnies(paper):
     for who, of in (("oneBody", one), ("allBodies", every)):
         paper.put_range(f"{who}List", of["separation-list"], two)
         paper.put_range(f"{who}Deferred", of["deferred"], two)
+    reached = [key for key, of in time.iterrows() if of["separation-list"] >= paper.values["publishedList"]
+               and of["deferred"] >= paper.values["publishedDeferred"]]
+    paper.put_text(bunniesInTime=f"{len(reached)} of {len(time)} readings reach both" if reached else "no reading reaches both")
     rows = []
     for (r, d), saved in tests.iterrows():
         parts = r.split(", ")
@@ -85,7 +89,7 @@ def write_coherence(paper):
     off = off_by(law.predicted(lists, kappa), lists)
     paper.put("lawKappa", kappa, f"{kappa:.2f}")
     paper.put_text(lawCells=len(lists), lawCellsFitted=int(seen.sum()), lawCellsLeftOut=int((~seen).sum()),
-                   lawShapes=rows.mesh.nunique(), lawMotions=rows.motion.nunique(), lawManners=rows.manner.nunique(),
+                   lawShapes=rows.mesh.nunique(), lawMotions=rows.motion.nunique(), lawModels=rows.motion_model.nunique(),
                    lawFittedShapes=listed(map(escape, law.FITTED_MESHES)))
     others = opponents(lists, kappa)
     paper.table("law-errors", "lrrrr", ["", "median", r"95\,\%", "median", r"95\,\%"],
@@ -93,12 +97,12 @@ def write_coherence(paper):
                  for name, said in others.items()],
                 [r" & \multicolumn{2}{c}{fitted} & \multicolumn{2}{c@{}}{left out} \\"])
     where = {"contacts": lists["query"] == "contacts", "touching": lists["query"] == "touching",
-             **{m: lists.manner == m for m in dict.fromkeys(lists.manner)},
+             **{m: lists.motion_model == m for m in dict.fromkeys(lists.motion_model)},
              "survival of a half and more": lists.survival >= 0.5, "survival below a half": lists.survival < 0.5}
     paper.table("law-regimes", "lrrrr", ["", "cells", "median", r"95\,\%", r"$R$, $c$ alone"],
                 [[escape(name), str(int(part.sum())), *two_errors(off[part]),
                   percent(off_by(alone(lists), lists)[part].median())] for name, part in where.items()])
-    persisting = ~seen & lists.manner.str.contains("persisting")
+    persisting = ~seen & lists.motion_model.str.contains("persisting")
     paper.put_percent(lawErrorFitted=off[seen].median(), lawErrorLeftOut=off[~seen].median(),
                       lawErrorPersisting=off[persisting].median(), aloneErrorFitted=off_by(alone(lists), lists)[seen].median(),
                       aloneErrorLeftOut=off_by(alone(lists), lists)[~seen].median())
@@ -113,6 +117,7 @@ def write_coherence(paper):
     if paper.out:
         draw_law(lists, kappa, paper.figures())
         draw_strategies(rows, paper.figures())
+        draw_curve(kappa, paper.figures())
     paper.have("coherence")
 
 
@@ -163,8 +168,12 @@ def write_measures(paper, rows):
     paper.table("coherence-crossing", "llrrrrrrr", ["query", "strategy", "below", "wins", "below", "wins", "least", "med.", "most"],
                 lines, [r" & & \multicolumn{2}{c}{tests} & \multicolumn{2}{c}{time} & \multicolumn{3}{c@{}}{speedup, time} \\"])
     ranks = law.rank_correlations(rows)
+    most = {s: abs(ranks.loc[s]).idxmax() for s in ranks.index}
+    words = {"leaves": "motion in leaf sizes", "gaps": "motion in gaps"}
+    paper.text("measures-text", "most is told by " + listed(
+        f"{words.get(m, m)} ({listed(escape(s) for s in most if most[s] == m)})" for m in dict.fromkeys(most.values())))
     paper.table("coherence-measures", "lrrrrr", ["", "survival", "stillness", "growth", "leaves", "gaps"],
-                [[escape(s)] + [f"{v:.2f}" for v in line] for s, line in zip(ranks.index, ranks.values)])
+                [[escape(s)] + [signed(f"{v:.2f}") for v in line] for s, line in zip(ranks.index, ranks.values)])
 
 
 def share_axis(axis, ticks, texts):
@@ -198,6 +207,15 @@ def draw_law(lists, kappa, out):
     return column.finish(figure, axes, out, "law")
 
 
+def draw_curve(kappa, out):
+    """What the law says of a pair with 100 entries, of which a run opens more and more."""
+    figure, (axis,) = column.panels(1, 1.5)
+    coherence.draw_curve(axis, kappa)
+    axis.get_legend().remove()
+    axis.set_ylabel("speedup in tests")
+    return column.finish(figure, [axis], out, "law-curve")
+
+
 def draw_strategies(rows, out):
     """Medians of what each strategy saves, over the share of the front that is lost."""
     strategies = law.strategies_of(rows)
@@ -214,8 +232,8 @@ def draw_strategies(rows, out):
             values += list(middle[saved])
         axis.axhline(1, color="black", linewidth=0.6)
         axis.set_title(title)
-        axis.set_xlabel("share of the front lost a frame")
         share_axis(axis, [0, 0.01, 0.1, 1], ["0", "1%", "10%", "all"])
+    column.across(figure, "share of the front lost a frame")
     axes[0].set_ylabel("recursive / strategy")
     column.log_axis(axes[0], values)
     return column.finish(figure, axes, out, "strategies")
@@ -230,10 +248,10 @@ def draw_margins(group, fit, out):
                       markeredgewidth=0.4, markerfacecolor="none", color=looks[volume]["color"], label=volume)
         axis.axhline(1, color="black", linewidth=0.6)
         axis.set_title(title)
-        axis.set_xlabel("motion a frame, in leaf sizes")
         column.log_axis(axis, group.leaves, "x")
     leaves = np.geomspace(group.leaves.min(), group.leaves.max(), 50)
     axes[0].plot(leaves, np.minimum(1, fit[0] * leaves ** fit[1]), color="black", linewidth=1.2, label="fitted")
+    column.across(figure, "motion a frame, in leaf sizes")
     axes[0].set_ylabel("margins / recursive")
     column.log_axis(axes[0], np.concatenate([1 / group.all_saved, 1 / group.time_saved]))
     return column.finish(figure, axes, out, "margins")
@@ -274,8 +292,8 @@ def draw_rebuilds(over, out):
         column.lines(axis, table, looks)
         axis.axhline(1, color="black", linewidth=0.6)
         axis.set_title(query)
-        axis.set_xlabel("rotation a frame, degrees")
-    axes[0].set_ylabel("tests / tests of the best rebuilds")
+    column.across(figure, "rotation a frame, degrees")
+    axes[0].set_ylabel("tests / those of the best")
     column.log_axis(axes[0], over.over_best)
     return column.finish(figure, axes, out, "best-rebuilds")
 
@@ -334,8 +352,10 @@ def write_workloads(paper):
                 of = rows[(rows.workload == workload) & (rows.volume == volume) & (rows.strategy == strategy)]
                 line.append(duration(of.a_pair.iloc[0]).replace(r"\,ns", "") if len(of) else "--")
         lines.append(line)
+    volumes = list(dict.fromkeys(rows.volume))
+    above = " & ".join([""] + [rf"\multicolumn{{{len(volumes)}}}{{c}}{{{escape(w)}}}" for w in dict.fromkeys(rows.workload)]) + r" \\"
     heads = [(w, v) for w in dict.fromkeys(rows.workload) for v in dict.fromkeys(rows.volume)]
-    paper.table("workloads", "l" + "r" * len(heads), ["ns a pair"] + [f"{escape(w)}, {escape(v)}" for w, v in heads], lines)
+    paper.table("workloads", "l" + "r" * len(heads), ["ns a pair"] + [escape(v) for _, v in heads], lines, [above])
     kappa = getattr(paper, "kappa", None)
     lists = rows[rows.strategy.isin(law.LISTS)]
     if kappa is not None and len(lists):

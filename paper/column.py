@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures as wide as a column or the page, in letters of the size in which they are printed."""
+"""Figures as wide as a column, in letters of the size in which they are printed."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -8,32 +8,36 @@ from matplotlib.ticker import NullLocator
 import style
 from words import number
 
-COLUMN, PAGE = 3.3, 6.85  # inches
+COLUMN = 3.3  # inches
 LETTERS = {"font.size": 7, "axes.titlesize": 7, "axes.labelsize": 7, "legend.fontsize": 6.5, "xtick.labelsize": 6.5,
-           "ytick.labelsize": 6.5, "lines.linewidth": 1, "lines.markersize": 3, "axes.linewidth": 0.6,
+           "ytick.labelsize": 6.5, "lines.linewidth": 0.9, "lines.markersize": 2.8, "axes.linewidth": 0.6,
            "grid.linewidth": 0.4, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
 
 
 def panels(count, height, width=COLUMN, **keywords):
     """A figure and its panels, beside each other."""
-    with plt.rc_context(LETTERS):
-        figure, axes = plt.subplots(1, count, figsize=(width, height), squeeze=False, layout="constrained", **keywords)
+    plt.rcParams.update(LETTERS)  # in place of those that style sets for wider figures
+    figure, axes = plt.subplots(1, count, figsize=(width, height), squeeze=False, layout="constrained", **keywords)
     return figure, list(axes[0])
 
 
+def across(figure, label):
+    """One label under all panels."""
+    figure.supxlabel(label, fontsize=LETTERS["axes.labelsize"])
+
+
 def finish(figure, axes, out, name):
-    with plt.rc_context(LETTERS):
-        handles, labels = style.labelled(axes)
-        if len(labels) > 1:
-            style.legend_below(figure, handles, labels)
-        return style.save(figure, out, name)
+    handles, labels = style.labelled(axes)
+    if len(labels) > 1:
+        style.legend_below(figure, handles, labels)
+    return style.save(figure, out, name)
 
 
 def log_axis(axis, values, letters="y"):
     """Ticks at 1 and 3 of each decade, written as numbers."""
     low, high = np.floor(np.log10(min(values))), np.ceil(np.log10(max(values)))
-    wide = high - low > 3
-    ticks = [f * 10.0**e for e in np.arange(low, high + 1) for f in ((1,) if wide else (1, 3))]
+    step = 1 if high - low < 5 else 2
+    ticks = [f * 10.0**e for e in np.arange(low, high + 1, step) for f in ((1,) if high - low > 3 else (1, 3))]
     ticks = [t for t in ticks if 0.7 * min(values) <= t <= 1.5 * max(values)]
     for letter in letters:
         of = getattr(axis, f"{letter}axis")

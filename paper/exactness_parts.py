@@ -68,9 +68,9 @@ def write_stability(paper):
         paper.put_text(stabilityFclWorst=escape(fcl.idxmax()))
     embree = rows[rows.peer == "embree"]
     where = listed(escape(s) for s in dict.fromkeys(embree[embree.wrong > 0].stressor))
-    paper.text("stability-embree", f" Embree, which calls our triangle test, is wrong under the stressor \\emph{{{where}}} alone." if len(embree) and
+    paper.text("stability-embree", f"Embree, which calls our triangle test, is wrong under the stressor \\emph{{{where}}} alone." if len(embree) and
                embree[embree.wrong > 0].stressor.nunique() == 1 else "")
-    paper.have("stability")
+    paper.have("stability-map")
 
 
 def share_of(total):
@@ -110,7 +110,7 @@ def write_distance_error(paper):
     paper.put_text(errorOutside=int(rows.outside.sum()), errorAnswers=count(rows.answers.sum()))
     seen = (rows.largest_error / rows.relative_error)[rows.relative_error > 0]
     paper.put_range("errorSeen", seen, "{:.2f}".format)
-    parts = []
+    parts, won = [], []
     for mesh in dict.fromkeys(rows.mesh):
         best = {error: table.loc[mesh][error].idxmin() for error in table}
         spans = []
@@ -120,7 +120,10 @@ def write_distance_error(paper):
             else:
                 spans.append([error, error, volume])
         parts.append(f"on the {escape(mesh)} " + listed(f"{escape(v)} ({a:g}" + (f" to {b:g})" if b != a else ")") for a, b, v in spans))
-    paper.text("distance-best", "; ".join(parts))
+        won += [mesh] if "shell" in best.values() else []
+    nowhere = "best in no cell of Table~\\ref{hierarchies}, " if getattr(paper, "shell_best", 1) == 0 else ""
+    paper.text("distance-best", "; ".join(parts) + (f". Shells, {nowhere}win here on the {listed(map(escape, won))}: "
+                                                    "they are meant for surface that is curved" if won else ""))
     if paper.out:
         draw_distance(table, paper.figures())
     paper.have("distance-error")
@@ -133,8 +136,8 @@ def draw_distance(table, out):
     for axis, mesh in zip(axes, meshes):
         column.lines(axis, table.loc[mesh].T / 1e3, looks)
         axis.set_title(mesh)
-        axis.set_xlabel("relative error allowed")
         axis.tick_params(axis="x", labelrotation=45)
+    column.across(figure, "relative error allowed")
     axes[0].set_ylabel(r"time an answer ($\mu$s)")
     column.log_axis(axes[0], table.to_numpy().ravel() / 1e3)
     return column.finish(figure, axes, out, "distance-error")

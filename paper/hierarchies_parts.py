@@ -113,6 +113,7 @@ def write_cost_model(paper):
                      + [f"{near.ratio.median():.2f}", f"{near.left.median():.0f}", percent(fits[-1], 0)])
     paper.table("cost-model", "lrrrrrr", ["", "$C_u$", "$C_v$", "alone", "pred.", "rest", "fit"], lines)
     paper.put_text(costTriangle=f"{triangle:.1f}")
+    paper.put("costSphere", costs["sphere"]["batched"], f"{costs['sphere']['batched']:.1f}")
     paper.put_range("costPredicted", [ratio.quantile(0.05), ratio.quantile(0.95)], "{:.2f}".format)
     paper.put("costPredictedLow", ratio.quantile(0.25), f"{ratio.quantile(0.25):.2f}")
     paper.put("costPredictedHigh", ratio.quantile(0.75), f"{ratio.quantile(0.75):.2f}")
@@ -150,7 +151,7 @@ def write_hierarchies(paper):
         table.setdefault(key[:2], {})[key[2]] = gain
     lines = [[escape(work), {"5 degrees": "fast", "a tenth of a degree": "slow"}.get(motion, escape(motion))]
              + [times(of[d][what]) for what in ("fixed", "best") for d in densities] for (work, motion), of in table.items()]
-    paper.table("hierarchies", "ll" + "r" * 2 * len(densities), ["query, polygons", ""] + [d[:6] + "." if len(d) > 6 else d for d in densities] * 2, lines,
+    paper.table("hierarchies", "ll" + "r" * 2 * len(densities), ["query, polygons", ""] + [d[:5] + "." if len(d) > 6 else d for d in densities] * 2, lines,
                 [r" & & \multicolumn{%d}{c}{one configuration} & \multicolumn{%d}{c@{}}{best of %d} \\"
                  % (len(densities), len(densities), middle[middle.peer == ""].variant.nunique())])
     paper.put_range("librariesFixed", [g["fixed"] for g in gains])
@@ -158,10 +159,11 @@ def write_hierarchies(paper):
     largest = max(gains, key=lambda g: g["best"] / g["all_frames"] if g["query"] == "distance" else 0)
     paper.put_times(firstLater=largest["best"], firstAll=largest["all_frames"])
     slow = [g for g in gains if g["motion"] != gains[0]["motion"]]
+    paper.shell_best = sum(g["variant"].startswith("shell") for g in gains)
     paper.put_text(slowCells=len(slow), slowMargins=sum(g["variant"].endswith("margins") for g in slow))
     paper.put_text(librariesRepetitions=rows.repetition.nunique(), librariesLosses=sum(g["fixed"] < 1 for g in gains),
                    librariesCells=len(gains),
-                   shellBest=sum(g["variant"].startswith("shell") for g in gains))
+                   shellBest=paper.shell_best)
     sparse = middle[(middle.density == "sparse") & (middle["query"] == "contacts")].groupby("work").a_pair.min()
     paper.put("librariesSparse", sparse.max(), duration(sparse.max()))
     paper.have("hierarchies")

@@ -14,5 +14,6 @@ def write_machine(paper):
     unnamed = sum(not commit for commit in commits)
     paper.put_text(recordsCount=len(machines), recordsProcessor=listed(map(escape, of["processor"])), recordsCores=listed(of["cores"]),
                    recordsCompiler=listed(map(escape, of["compiler"])), recordsLibraries=escape("; ".join(of["libraries"])))
-    faults = [f"{count} {what}" for count, what in ((changed, "from a tree with changes"), (unnamed, "without naming a commit")) if count]
-    paper.numbers["recordsFaults"] = f"Of the records {listed(faults)} were made." if faults else "Every record names the commit that it was made from."
+    faults = [f"{count} {what}" for count, what in ((changed, "are of a tree with changes"), (unnamed, "name no commit")) if count]
+    paper.numbers["recordsFaults"] = (f"Of the {len(machines)} records {' and '.join(faults)}." if faults else
+                                      "Every record names the commit that it was made from.")

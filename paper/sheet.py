@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the paper takes from records: numbers by name, tables, texts and figures in the folder that LaTeX reads."""
 
-import subprocess
 import sys
 from pathlib import Path
 
 import records
-
-PLOTS = Path(__file__).resolve().parent.parent / "plots"
 
 
 class Paper:
@@ -68,12 +65,6 @@ class Paper:
         """Where figures go, or nothing where none are drawn."""
         return self.out and self.out / "figures"
 
-    def plot(self, record, script="draw"):
-        """The figures that the record's definition declares, or those of a script."""
-        if self.out:
-            subprocess.run([sys.executable, str(PLOTS / script), str(record), "--out", str(self.out / "figures")],
-                           check=True, stdout=subprocess.DEVNULL)
-
     def write_numbers(self):
         text = "".join(f"\\newcommand{{\\{name}}}{{{value}}}\n" for name, value in self.numbers.items())
         (self.out / "numbers.tex").write_text(text)
@@ -86,7 +77,12 @@ def latest(folder, name):
 
 
 def percent(value, digits=1):
-    return f"{100 * value:.{digits}f}\\,\\%"
+    return signed(f"{100 * value:.{digits}f}\\,\\%")
+
+
+def signed(text):
+    """With a minus and not a hyphen."""
+    return text.replace("-", "$-$", 1) if text.startswith("-") else text
 
 
 def times(value):
