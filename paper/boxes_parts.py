@@ -6,6 +6,7 @@ import column
 import records
 import style
 from sheet import escape, listed, percent, thousands, times
+from words import number
 
 # The six that were published.
 PUBLISHED_METHODS = ["hybrid", "hash", "sweep1", "sweep2", "sweep3", "sweep4"]
@@ -95,7 +96,7 @@ def write_boxes_fast(paper):
         paper.put_range(f"boxes{what.title()}", values)
     paper.put_text(boxesPeers=listed(map(escape, names)))
     paper.numbers["boxesStillCaveat"] = "" if any("dbvt" in n for n in names) else (
-        "Bullet's dynamic tree, the best peer where nothing moves, is not among them, so that the column says too much: see the text.")
+        "Bullet's dynamic tree, the best peer where nothing moves, is not among them, so that the column says too much: see below.")
     paper.have("boxes-fast")
 
 
@@ -165,7 +166,7 @@ def write_beaten(paper, rows):
     """Where another method is faster than blocks by more than a tenth."""
     best = rows[rows.differing == 0].groupby(["set", "displacement", "method"]).frame_ns.min().unstack("method")
     others = best.drop(columns="blocks")
-    beaten = [f"{escape(others.loc[cell].idxmin())} on {escape(cell[0])} at {cell[1]:g} ({times(best.blocks[cell] / others.loc[cell].min())})"
+    beaten = [f"{escape(others.loc[cell].idxmin())} on {escape(cell[0])} at {number(cell[1])} ({times(best.blocks[cell] / others.loc[cell].min())})"
               for cell in best.index if others.loc[cell].min() < 0.9 * best.blocks[cell]]
     paper.text("boxes-beaten", f"It is beaten by more than a tenth in {len(beaten)} of {len(best)} cells: " + listed(beaten) + ", where the number is how many times as fast that is."
                if beaten else f"No method or peer beats it by a tenth in any of the {len(best)} cells.")
