@@ -48,7 +48,7 @@ def write_boxes(paper):
     saved = [1 - cells[m, k, "on"] / cells[m, k, "off"] for m in PUBLISHED_METHODS if m.startswith("sweep")
              for k in range(len(columns)) if (m, k, "on") in cells and (m, k, "off") in cells]
     if saved:
-        paper.put_range("sweepSaved", saved, lambda v: percent(v, 0))
+        paper.put_range("coherenceSaves", saved, lambda v: percent(v, 0))
     paper.have("boxes")
 
 

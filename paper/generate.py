@@ -15,6 +15,8 @@ tables/, figures/, and have/<name>.tex for every experiment of which there is a 
 import sys
 from pathlib import Path
 
+import matplotlib
+
 sys.dont_write_bytecode = True
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "plots")]
@@ -37,8 +39,9 @@ PARTS = (machine.write_machine, coherence.write_nine_bunnies, coherence.write_co
 
 def filled(records, out=None):
     paper = Paper(records, out)
-    for part in PARTS:
-        part(paper)
+    with matplotlib.rc_context():  # letters of print are for the paper's figures alone
+        for part in PARTS:
+            part(paper)
     return paper
 
 
