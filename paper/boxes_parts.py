@@ -10,6 +10,7 @@ from words import number
 
 # The six that were published.
 PUBLISHED_METHODS = ["hybrid", "hash", "sweep1", "sweep2", "sweep3", "sweep4"]
+MOVES = {"drift": "drift each their own way", "rigid": "move together", "breathe": "shrink and grow"}
 FAST = ["boxes-fast", "boxes-triangles", "boxes-fast-large", "boxes-million"]
 
 
@@ -50,6 +51,22 @@ def write_boxes(paper):
     if saved:
         paper.put_range("coherenceSaves", saved, lambda v: percent(v, 0))
     paper.have("boxes")
+
+
+def write_boxes_motions(paper):
+    """What coherence saves each sweep under each of the second text's motions, at the largest sets."""
+    record = paper.record("boxes-motions")
+    if not record:
+        return
+    rows = records.read(record)
+    records.wrong_answers(rows)
+    rows = rows[(rows.peer == "") & (rows.frame_ns > 0) & rows.method.str.startswith("sweep")]
+    rows = rows[rows.boxes == rows.groupby("set").boxes.transform("max")]
+    middle = rows.groupby(["motion", "set", "method", "coherent"], sort=False).frame_ns.median().unstack("coherent")
+    saved = (1 - middle["on"] / middle["off"]).dropna()
+    paper.text("boxes-motions", listed(f"{percent(of.min(), 0)} to {percent(of.max(), 0)} where boxes {MOVES.get(motion, escape(motion))}"
+                                       for motion, of in saved.groupby(level="motion", sort=False)))
+    paper.have("boxes-motions")
 
 
 def milliseconds(value):

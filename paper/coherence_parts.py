@@ -51,6 +51,40 @@ def write_nine_bunnies(paper):
     paper.have("nine-bunnies")
 
 
+def write_talk(paper):
+    """The talk's tree, as near as it describes it, beside Quinlan's division: what each reading saves."""
+    record = paper.record("talk")
+    if not record:
+        return
+    rows = read_right(record)
+    middle = medians(rows, ["build", "reading", "density", "seed", "strategy"], ["n_v", "time_ns"])
+    two = "{:.2f}".format
+    saved = {}
+    for what in ("n_v", "time_ns"):
+        wide = middle.pivot_table(index=["build", "reading", "density", "seed"], columns="strategy", values=what, sort=False)
+        saved[what] = wide[["recursive"]].to_numpy() / wide[nine_bunnies.LISTS]
+    of = {what: table.groupby(level=["build", "reading"], sort=False).mean() for what, table in saved.items()}
+    builds = list(dict.fromkeys(rows.build))
+    lines = []
+    for reading in dict.fromkeys(rows.reading):
+        parts = reading.split(", ")
+        line = [PART_LABEL.get(part, escape(part)) for part in parts[:2]] + ["yes" if len(parts) > 2 else "no"]
+        lines.append(line + [two(of[what].loc[(build, reading), name]) for build in builds for name in nine_bunnies.LISTS
+                             for what in ("n_v", "time_ns")])
+    heads = " & ".join([r"\multicolumn{3}{@{}l}{}"] + [rf"\multicolumn{{4}}{{c}}{{{escape(b)}}}" for b in builds]) + r" \\"
+    kinds = " & ".join([r"\multicolumn{3}{@{}l}{moves}"] + [r"\multicolumn{2}{c}{list} & \multicolumn{2}{c}{deferred}"] * len(builds)) + r" \\"
+    paper.table("talk", "lll" + "r" * 4 * len(builds), ["bodies", "freed.", "rej."] + ["$N_v$", "time"] * 2 * len(builds), lines, [heads, kinds])
+    paper.put_text(talkSeeds=rows.seed.nunique(), talkBuilds=listed(f"\\emph{{{escape(b)}}}" for b in builds))
+    for what, name in (("n_v", "Tests"), ("time_ns", "Time")):
+        paper.put_range(f"talk{name}List", of[what]["separation-list"], two)
+        paper.put_range(f"talk{name}Deferred", of[what]["deferred"], two)
+    reached = [key for key, line in of["time_ns"].iterrows() if line["separation-list"] >= paper.values["publishedList"]
+               and line["deferred"] >= paper.values["publishedDeferred"]]
+    paper.put_text(talkInTime=f"{len(reached)} of {len(of['time_ns'])} pairs of tree and reading reach the published times"
+                   if reached else "no pair of tree and reading reaches the published times")
+    paper.have("talk")
+
+
 # The law and its opponents --------------------------------------------------------------------------------------------
 
 

@@ -29,11 +29,11 @@ import worlds_parts as worlds  # noqa: E402
 from sheet import Paper  # noqa: E402
 
 # The law is fitted in one part and tried on others.
-PARTS = (machine.write_machine, coherence.write_nine_bunnies, coherence.write_coherence, coherence.write_best_rebuilds, coherence.write_winners,
+PARTS = (machine.write_machine, coherence.write_nine_bunnies, coherence.write_talk, coherence.write_coherence, coherence.write_best_rebuilds, coherence.write_winners,
          coherence.write_workloads, coherence.write_sweep, hierarchies.write_tightness, hierarchies.write_fits,
          hierarchies.write_posing, hierarchies.write_cost_model, hierarchies.write_hierarchies, hierarchies.write_narrow_phase,
-         hierarchies.write_tori, hierarchies.write_closest_features, exactness.write_triangles, exactness.write_stability,
-         exactness.write_precision, exactness.write_distance_error, exactness.write_budget, boxes.write_boxes,
+         hierarchies.write_tori, hierarchies.write_peers_cgal, hierarchies.write_closest_features, exactness.write_triangles, exactness.write_stability,
+         exactness.write_precision, exactness.write_distance_error, exactness.write_budget, boxes.write_boxes, boxes.write_boxes_motions,
          boxes.write_boxes_fast, boxes.write_boxes_peers, boxes.write_boxes_displacement, worlds.write_worlds)
 
 

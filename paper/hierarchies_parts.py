@@ -195,6 +195,20 @@ def write_narrow_phase(paper):
     paper.have("narrow-phase")
 
 
+def write_peers_cgal(paper):
+    record = paper.record("peers-cgal")
+    if not record:
+        return
+    rows = read_right(record)
+    rows = rows.assign(a_pair=rows.time_ns / rows.pairs)
+    middle = rows.groupby(["motion", "density", "variant"]).a_pair.median().unstack("variant")
+    ours = [name for name in middle if "recursive" in name]
+    if ours and "cgal" in middle:
+        paper.put_range("cgalRigid", (middle["cgal"] / middle[ours[0]]).dropna())
+        paper.put_text(cgalBeside=escape(ours[0]))
+        paper.have("peers-cgal")
+
+
 def write_tori(paper):
     record = paper.record("tori")
     if not record:

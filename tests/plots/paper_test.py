@@ -39,10 +39,11 @@ def group_at(text, start):
 
 def with_what_is_there(text, there):
     """The text without the parts of absent records."""
-    while found := re.search(r"\\(?:with|if)record(?=\{)", text):
+    while found := re.search(r"\\(withrecord|ifrecord|recordelse)(?=\{)", text):
         end, name = group_at(text, found.end())
         end, body = group_at(text, end)
-        text = text[:found.start()] + (body if name in there else "") + text[end:]
+        end, other = group_at(text, end) if found[1] == "recordelse" else (end, "")
+        text = text[:found.start()] + (body if name in there else other) + text[end:]
     return text
 
 
