@@ -145,6 +145,7 @@ def write_coherence(paper):
                       lawTailKept=off[where["survival of a half and more"]].quantile(0.95),
                       lawErrorLost=off[where["survival below a half"]].median(),
                       aloneTailFitted=off_by(alone(lists), lists)[seen].quantile(0.95))
+    paper.put_percent(0, lawFarMost=((lists.pair_runs - lists.near_runs) / lists.n_v_recursive).max())
     write_ceiling(paper, lists)
     write_margins(paper, rows)
     write_measures(paper, rows)

@@ -158,6 +158,9 @@ def write_hierarchies(paper):
     paper.put_range("librariesBest", [g["best"] for g in gains])
     largest = max((g for g in gains if g["query"] == "distance"), key=lambda g: g["best"])
     paper.put_times(firstLater=largest["best"], firstAll=largest["all_frames"])
+    of_cell = rows[rows.peer == ""].groupby([*cell, "variant"]).time_ns
+    apart = of_cell.max() / of_cell.min() - 1
+    paper.put_percent(0, repetitionsApart=apart.median(), repetitionsTail=apart.quantile(0.95))
     slow = [g for g in gains if g["motion"] != gains[0]["motion"]]
     paper.shell_best = sum(g["variant"].startswith("shell") for g in gains)
     paper.put_text(slowCells=len(slow), slowMargins=sum(g["variant"].endswith("margins") for g in slow))
