@@ -44,10 +44,18 @@ def write_boxes(paper):
         lines.append(line)
     paper.table("boxes", "l" + "r" * len(columns), ["ms a frame"] + [f"{s}, {thousands(n)}" for s, n in columns], lines)
     paper.text("boxes-text", published_text(columns, cells))
-    hybrid = [min((cells[m, k, "off"], m) for m in PUBLISHED_METHODS if (m, k, "off") in cells)[1] == "hybrid" for k in range(len(columns))]
+    hybrid = [
+        min((cells[m, k, "off"], m) for m in PUBLISHED_METHODS if (m, k, "off") in cells)[1] == "hybrid"
+        for k in range(len(columns))
+    ]
     paper.put_text(hybridBest=sum(hybrid), hybridSets=len(hybrid))
-    saved = [1 - cells[m, k, "on"] / cells[m, k, "off"] for m in PUBLISHED_METHODS if m.startswith("sweep")
-             for k in range(len(columns)) if (m, k, "on") in cells and (m, k, "off") in cells]
+    saved = [
+        1 - cells[m, k, "on"] / cells[m, k, "off"]
+        for m in PUBLISHED_METHODS
+        if m.startswith("sweep")
+        for k in range(len(columns))
+        if (m, k, "on") in cells and (m, k, "off") in cells
+    ]
     if saved:
         paper.put_range("coherenceSaves", saved, lambda v: percent(v, 0))
     paper.have("boxes")
@@ -64,8 +72,13 @@ def write_boxes_motions(paper):
     rows = rows[rows.boxes == rows.groupby("set").boxes.transform("max")]
     middle = rows.groupby(["motion", "set", "method", "coherent"], sort=False).frame_ns.median().unstack("coherent")
     saved = (1 - middle["on"] / middle["off"]).dropna()
-    paper.text("boxes-motions", listed(f"{percent(of.min(), 0)} to {percent(of.max(), 0)} where boxes {MOVES.get(motion, escape(motion))}"
-                                       for motion, of in saved.groupby(level="motion", sort=False)))
+    paper.text(
+        "boxes-motions",
+        listed(
+            f"{percent(of.min(), 0)} to {percent(of.max(), 0)} where boxes {MOVES.get(motion, escape(motion))}"
+            for motion, of in saved.groupby(level="motion", sort=False)
+        ),
+    )
     paper.have("boxes-motions")
 
 
@@ -75,16 +88,32 @@ def milliseconds(value):
 
 def published_text(columns, cells):
     names = [f"{s}, {thousands(n)}" for s, n in columns]
-    best = {k: min((v, m) for (m, c, o), v in cells.items() if c == k and o == "off" and m in PUBLISHED_METHODS)
-            for k in range(len(columns))}
-    kept = {k: min(((v, m) for (m, c, o), v in cells.items() if c == k and o == "on" and m.startswith("sweep")),
-                   default=None) for k in range(len(columns))}
-    text = "Of the published methods the fastest from scratch is " + listed(
-        f"{escape(m)} ({names[k]})" for k, (v, m) in best.items()) + "."
-    won = [f"{escape(kept[k][1])} on {names[k]}, in {100 * kept[k][0] / best[k][0]:.0f}\\,\\% of that time" for k in kept
-           if kept[k] and kept[k][0] < best[k][0]]
+    best = {
+        k: min((v, m) for (m, c, o), v in cells.items() if c == k and o == "off" and m in PUBLISHED_METHODS)
+        for k in range(len(columns))
+    }
+    kept = {
+        k: min(
+            ((v, m) for (m, c, o), v in cells.items() if c == k and o == "on" and m.startswith("sweep")), default=None
+        )
+        for k in range(len(columns))
+    }
+    text = (
+        "Of the published methods the fastest from scratch is "
+        + listed(f"{escape(m)} ({names[k]})" for k, (v, m) in best.items())
+        + "."
+    )
+    won = [
+        f"{escape(kept[k][1])} on {names[k]}, in {100 * kept[k][0] / best[k][0]:.0f}\\,\\% of that time"
+        for k in kept
+        if kept[k] and kept[k][0] < best[k][0]
+    ]
     # Only the sweeps make use of coherence.
-    return text + (" With coherence it is beaten by " + listed(won) + "." if won else " With coherence no sweep is faster than that.")
+    return text + (
+        " With coherence it is beaten by " + listed(won) + "."
+        if won
+        else " With coherence no sweep is faster than that."
+    )
 
 
 def write_boxes_fast(paper):
@@ -96,7 +125,8 @@ def write_boxes_fast(paper):
     rows = rows[(rows.peer != "") | (rows.method == "blocks")]
     keys = ["set", "count", "motion", "peer", "method", "coherent"]
     middle = rows.groupby(keys, sort=False, as_index=False).agg(
-        first=("first_ns", "median"), later=("frame_ns", "median"), pairs=("overlaps", "median"))
+        first=("first_ns", "median"), later=("frame_ns", "median"), pairs=("overlaps", "median")
+    )
     names = list(dict.fromkeys(rows[rows.peer != ""].method))
     lines, found = [], {}
     for (count, name), group in middle.groupby(["count", "set"], sort=False):
@@ -107,13 +137,21 @@ def write_boxes_fast(paper):
             if value:
                 found.setdefault(what, []).append(value)
         pairs = drift.pairs.iloc[0] if len(drift) else 0
-        lines.append([escape(name), thousands(count), thousands(pairs), *(times(v) if v else "--" for v in cells.values())])
+        lines.append(
+            [escape(name), thousands(count), thousands(pairs), *(times(v) if v else "--" for v in cells.values())]
+        )
     paper.table("boxes-fast", "lrrrrrrr", ["set", "boxes", "pairs", "cold", "warm", r"drift", "still", "telep."], lines)
     for what, values in found.items():
         paper.put_range(f"boxes{what.title()}", values)
     paper.put_text(boxesPeers=listed(map(escape, names)))
-    paper.numbers["boxesStillCaveat"] = "" if any("dbvt" in n for n in names) else (
-        "Bullet's dynamic tree, the best peer where nothing moves, is not among them, so that the column says too much: see below.")
+    paper.numbers["boxesStillCaveat"] = (
+        ""
+        if any("dbvt" in n for n in names)
+        else (
+            "Bullet's dynamic tree, the best peer where nothing moves, is not among them, so that the column says too "
+            "much: see below."
+        )
+    )
     paper.have("boxes-fast")
 
 
@@ -145,7 +183,10 @@ def write_boxes_peers(paper):
         return
     rows = records.read(record)
     wrong = records.wrong_answers(rows)
-    paper.put_text(boxesMissing=listed(map(escape, sorted(set(rows[wrong].method)))), boxesPeersCount=thousands(rows["count"].max()))
+    paper.put_text(
+        boxesMissing=listed(map(escape, sorted(set(rows[wrong].method)))),
+        boxesPeersCount=thousands(rows["count"].max()),
+    )
     still = rows[~wrong & (rows.motion == "still")]
     middle = still.groupby(["set", "peer", "method", "coherent"], as_index=False).frame_ns.median()
     ratios, best = [], []
@@ -156,7 +197,9 @@ def write_boxes_peers(paper):
         ratios.append(peer.frame_ns / ours)
         best.append(peer.method)
     paper.put_range("stillBest", ratios)
-    paper.put_text(stillBestPeers=listed(f"{escape(m)} ({best.count(m)} of {len(best)} sets)" for m in dict.fromkeys(best)))
+    paper.put_text(
+        stillBestPeers=listed(f"{escape(m)} ({best.count(m)} of {len(best)} sets)" for m in dict.fromkeys(best))
+    )
     paper.have("boxes-peers")
 
 
@@ -183,10 +226,20 @@ def write_beaten(paper, rows):
     """Where another method is faster than blocks by more than a tenth."""
     best = rows[rows.differing == 0].groupby(["set", "displacement", "method"]).frame_ns.min().unstack("method")
     others = best.drop(columns="blocks")
-    beaten = [f"{escape(others.loc[cell].idxmin())} on {escape(cell[0])} at {number(cell[1])} ({times(best.blocks[cell] / others.loc[cell].min())})"
-              for cell in best.index if others.loc[cell].min() < 0.9 * best.blocks[cell]]
-    paper.text("boxes-beaten", f"It is beaten by more than a tenth in {len(beaten)} of {len(best)} cells: " + listed(beaten) + ", where the number is how many times as fast that is."
-               if beaten else f"No method or peer beats it by a tenth in any of the {len(best)} cells.")
+    beaten = [
+        f"{escape(others.loc[cell].idxmin())} on {escape(cell[0])} at {number(cell[1])} "
+        f"({times(best.blocks[cell] / others.loc[cell].min())})"
+        for cell in best.index
+        if others.loc[cell].min() < 0.9 * best.blocks[cell]
+    ]
+    paper.text(
+        "boxes-beaten",
+        f"It is beaten by more than a tenth in {len(beaten)} of {len(best)} cells: "
+        + listed(beaten)
+        + ", where the number is how many times as fast that is."
+        if beaten
+        else f"No method or peer beats it by a tenth in any of the {len(best)} cells.",
+    )
 
 
 def draw_displacement(ratio, out):

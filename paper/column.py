@@ -9,9 +9,20 @@ import style
 from words import number
 
 COLUMN = 3.3  # inches
-LETTERS = {"font.size": 7, "axes.titlesize": 7, "axes.labelsize": 7, "legend.fontsize": 6.5, "xtick.labelsize": 6.5,
-           "ytick.labelsize": 6.5, "lines.linewidth": 0.9, "lines.markersize": 2.8, "axes.linewidth": 0.6,
-           "grid.linewidth": 0.4, "xtick.major.width": 0.6, "ytick.major.width": 0.6}
+LETTERS = {
+    "font.size": 7,
+    "axes.titlesize": 7,
+    "axes.labelsize": 7,
+    "legend.fontsize": 6.5,
+    "xtick.labelsize": 6.5,
+    "ytick.labelsize": 6.5,
+    "lines.linewidth": 0.9,
+    "lines.markersize": 2.8,
+    "axes.linewidth": 0.6,
+    "grid.linewidth": 0.4,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+}
 
 
 def panels(count, height, width=COLUMN, **keywords):

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The paper's parts on exactness: triangle tests, stability, time against error."""
 
-import numpy as np
-
 import column
 import records
 import style
-from sheet import count, duration, escape, listed, percent, times
+from sheet import count, duration, escape, listed, percent
 
 
 def write_triangles(paper):
@@ -23,9 +21,14 @@ def write_triangles(paper):
     for test, source in dict.fromkeys(zip(rows.test, rows.source)):
         group = of.loc[test, source]
         share = group.wrong / group.pairs
-        lines.append([escape(test) + (f", {names[source]}" if names.get(source) else ""),
-                      f"{group.ns_per_call.min():.0f}--{group.ns_per_call.max():.0f}", str(int((group.wrong > 0).sum())),
-                      f"{1000 * share.max():.0f}" if share.max() >= 1e-3 or share.max() == 0 else "$<$1"])
+        lines.append(
+            [
+                escape(test) + (f", {names[source]}" if names.get(source) else ""),
+                f"{group.ns_per_call.min():.0f}--{group.ns_per_call.max():.0f}",
+                str(int((group.wrong > 0).sum())),
+                f"{1000 * share.max():.0f}" if share.max() >= 1e-3 or share.max() == 0 else "$<$1",
+            ]
+        )
     paper.table("triangles", "lrrr", ["", "ns a call", "sets", r"worst, \textperthousand"], lines)
     exact = of.loc["exact"]
     paper.put_text(triangleSets=sets, trianglePairs=count(rows.pairs.max()), exactWrong=int(exact.wrong.sum()))
@@ -47,9 +50,14 @@ def write_stability(paper):
         paper.put(f"stability{name}Wrong", int(total.wrong), count(total.wrong))
         paper.put(f"stability{name}Missed", int(total.false_negatives), count(total.false_negatives))
     stressors = list(dict.fromkeys(rows.stressor))
-    paper.put_text(stabilityStressors=len(stressors), stabilityLevels=len(rows[["stressor", "level"]].drop_duplicates()))
+    paper.put_text(
+        stabilityStressors=len(stressors), stabilityLevels=len(rows[["stressor", "level"]].drop_duplicates())
+    )
     lines, kinds = [], {}
-    groups = [(f"ours, {p}", rows[(rows.peer == "") & (rows.precision == p)]) for p in dict.fromkeys(rows[rows.peer == ""].precision)]
+    groups = [
+        (f"ours, {p}", rows[(rows.peer == "") & (rows.precision == p)])
+        for p in dict.fromkeys(rows[rows.peer == ""].precision)
+    ]
     groups += [(p, rows[rows.peer == p]) for p in dict.fromkeys(rows[rows.peer != ""].peer)]
     for name, group in groups:
         by = group.groupby("stressor")[["answers", "wrong", "false_negatives"]].sum()
@@ -59,7 +67,12 @@ def write_stability(paper):
         kinds.setdefault(tuple(shares), []).append(name)
     for shares, names in kinds.items():
         lines.append([escape(", ".join(names)), *shares])
-    paper.table("stability", "l" + "r" * (len(stressors) + 3), [""] + [escape(s.removeprefix("exact ")) for s in stressors] + ["wrong", "missed", "of"], lines)
+    paper.table(
+        "stability",
+        "l" + "r" * (len(stressors) + 3),
+        [""] + [escape(s.removeprefix("exact ")) for s in stressors] + ["wrong", "missed", "of"],
+        lines,
+    )
     peers = rows[rows.peer != ""].groupby("peer")[["wrong"]].sum().wrong.sort_values()
     fcl = peers[[p for p in peers.index if p.startswith("fcl")]]
     paper.put_range("stabilityPeers", peers, count)
@@ -68,8 +81,12 @@ def write_stability(paper):
         paper.put_text(stabilityFclWorst=escape(fcl.idxmax()))
     embree = rows[rows.peer == "embree"]
     where = listed(escape(s) for s in dict.fromkeys(embree[embree.wrong > 0].stressor))
-    paper.text("stability-embree", f"Embree, which calls our triangle test, is wrong under the stressor \\emph{{{where}}} alone." if len(embree) and
-               embree[embree.wrong > 0].stressor.nunique() == 1 else "")
+    paper.text(
+        "stability-embree",
+        f"Embree, which calls our triangle test, is wrong under the stressor \\emph{{{where}}} alone."
+        if len(embree) and embree[embree.wrong > 0].stressor.nunique() == 1
+        else "",
+    )
     paper.have("stability-map")
 
 
@@ -95,7 +112,10 @@ def write_precision(paper):
         paper.put_range("precisionAdjacent", middle.loc["adjacent"], lambda v: percent(v, 0))
     ratio = rows.groupby(["method", "set", "offset", "numbers"]).ns_per_frame.median().unstack()
     ratio = (ratio["float, outward"] / ratio["double"]).groupby("method").quantile([0, 0.5, 1]).unstack()
-    paper.text("precision-time", listed(f"\\emph{{{escape(m)}}} {r[0.5]:.2f} ({r[0.0]:.2f} to {r[1.0]:.2f})" for m, r in ratio.iterrows()))
+    paper.text(
+        "precision-time",
+        listed(f"\\emph{{{escape(m)}}} {r[0.5]:.2f} ({r[0.0]:.2f} to {r[1.0]:.2f})" for m, r in ratio.iterrows()),
+    )
     paper.have("boxes-precision")
 
 
@@ -119,11 +139,22 @@ def write_distance_error(paper):
                 spans[-1][1] = error
             else:
                 spans.append([error, error, volume])
-        parts.append(f"on the {escape(mesh)} " + listed(f"{escape(v)} ({a:g}" + (f" to {b:g})" if b != a else ")") for a, b, v in spans))
+        parts.append(
+            f"on the {escape(mesh)} "
+            + listed(f"{escape(v)} ({a:g}" + (f" to {b:g})" if b != a else ")") for a, b, v in spans)
+        )
         won += [mesh] if "shell" in best.values() else []
-    nowhere = "best in no cell of Table~\\ref{hierarchies}, " if getattr(paper, "shell_best", 1) == 0 else ""
-    paper.text("distance-best", "; ".join(parts) + (f". Shells, {nowhere}win here on the {listed(map(escape, won))}: "
-                                                    "they are meant for surface that is curved" if won else ""))
+    nowhere = "best in no cell of Table~\\ref{hierarchies}, " if paper.shell_best == 0 else ""
+    paper.text(
+        "distance-best",
+        "; ".join(parts)
+        + (
+            f". Shells, {nowhere}win here on the {listed(map(escape, won))}: "
+            "they are meant for surface that is curved"
+            if won
+            else ""
+        ),
+    )
     if paper.out:
         draw_distance(table, paper.figures())
     paper.have("distance-error")
@@ -149,11 +180,16 @@ def write_budget(paper):
         return
     rows = records.read(record)
     rows["an_answer"] = rows.time_ns / rows.answers
-    middle = rows.groupby(["mesh", "volume", "budget"], as_index=False)[["an_answer", "mean_deepest_per_radius"]].median()
+    middle = rows.groupby(["mesh", "volume", "budget"], as_index=False)[
+        ["an_answer", "mean_deepest_per_radius"]
+    ].median()
     parts = []
     for most, word in ((0.1, "a tenth"), (0.01, "a hundredth")):
         good = middle[middle.mean_deepest_per_radius <= most]
         best = good.loc[good.groupby("mesh").an_answer.idxmin()]
-        parts.append(f"{word} of the radius " + listed(f"{duration(r.an_answer)} ({escape(r.mesh)}, {escape(r.volume)})" for r in best.itertuples()))
+        parts.append(
+            f"{word} of the radius "
+            + listed(f"{duration(r.an_answer)} ({escape(r.mesh)}, {escape(r.volume)})" for r in best.itertuples())
+        )
     paper.text("budget", "; ".join(parts))
     paper.have("budget")

@@ -21,20 +21,47 @@ sys.dont_write_bytecode = True
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "plots")]
 import boxes_parts as boxes  # noqa: E402
-import coherence_parts as coherence  # noqa: E402
+import bunnies_parts as bunnies  # noqa: E402
 import exactness_parts as exactness  # noqa: E402
-import hierarchies_parts as hierarchies  # noqa: E402
+import law_parts as law  # noqa: E402
+import libraries_parts as libraries  # noqa: E402
 import machine_part as machine  # noqa: E402
+import strategies_parts as strategies  # noqa: E402
+import volumes_parts as volumes  # noqa: E402
 import worlds_parts as worlds  # noqa: E402
 from sheet import Paper  # noqa: E402
 
 # The law is fitted in one part and tried on others.
-PARTS = (machine.write_machine, coherence.write_nine_bunnies, coherence.write_talk, coherence.write_coherence, coherence.write_best_rebuilds, coherence.write_winners,
-         coherence.write_workloads, coherence.write_sweep, hierarchies.write_tightness, hierarchies.write_fits,
-         hierarchies.write_posing, hierarchies.write_cost_model, hierarchies.write_hierarchies, hierarchies.write_narrow_phase,
-         hierarchies.write_tori, hierarchies.write_peers_cgal, hierarchies.write_closest_features, exactness.write_triangles, exactness.write_stability,
-         exactness.write_precision, exactness.write_distance_error, exactness.write_budget, boxes.write_boxes, boxes.write_boxes_motions,
-         boxes.write_boxes_fast, boxes.write_boxes_peers, boxes.write_boxes_displacement, worlds.write_worlds)
+PARTS = (
+    machine.write_machine,
+    bunnies.write_nine_bunnies,
+    bunnies.write_talk,
+    law.write_coherence,
+    strategies.write_best_rebuilds,
+    strategies.write_winners,
+    strategies.write_workloads,
+    law.write_sweep,
+    volumes.write_tightness,
+    volumes.write_fits,
+    volumes.write_posing,
+    volumes.write_cost_model,
+    libraries.write_hierarchies,
+    libraries.write_narrow_phase,
+    libraries.write_tori,
+    libraries.write_peers_cgal,
+    libraries.write_closest_features,
+    exactness.write_triangles,
+    exactness.write_stability,
+    exactness.write_precision,
+    exactness.write_distance_error,
+    exactness.write_budget,
+    boxes.write_boxes,
+    boxes.write_boxes_motions,
+    boxes.write_boxes_fast,
+    boxes.write_boxes_peers,
+    boxes.write_boxes_displacement,
+    worlds.write_worlds,
+)
 
 
 def filled(records, out=None):

@@ -15,6 +15,8 @@ class Paper:
     def __init__(self, records, out=None):
         self.records, self.out = Path(records), out and Path(out)
         self.numbers, self.values = {}, {}
+        # What one part finds and another needs: the law's constant, cells of the tournament in which a shell is best.
+        self.kappa = self.shell_best = None
         for folder in ("tables", "figures", "have") if self.out else ():
             (self.out / folder).mkdir(parents=True, exist_ok=True)
 
@@ -56,7 +58,13 @@ class Paper:
 
     def table(self, name, alignment, header, rows, above=()):
         """`above`: lines of LaTeX over the header; a row that is a string is LaTeX, too."""
-        lines = [r"\begin{tabular}{@{}" + alignment + "@{}}", r"\toprule", *above, " & ".join(header) + r" \\", r"\midrule"]
+        lines = [
+            r"\begin{tabular}{@{}" + alignment + "@{}}",
+            r"\toprule",
+            *above,
+            " & ".join(header) + r" \\",
+            r"\midrule",
+        ]
         lines += [row if isinstance(row, str) else " & ".join(row) + r" \\" for row in rows]
         lines += [r"\bottomrule", r"\end{tabular}"]
         self.text(name, "\n".join(lines))

@@ -31,19 +31,36 @@ def write_worlds(paper):
     answers = rows[rows.peer == ""].groupby(SCENE).touching.first().sum()
     differing = rows[rows.peer != ""].groupby(["peer", *SCENE]).differing.first().groupby("peer").sum()
     peers = list(dict.fromkeys(rows[rows.peer != ""].peer))
-    paper.put_text(worldsAgreement=f"Of {count(answers)} touching pairs, " + listed(
-        f"{count(differing[peer])} differ in {PIPELINES.get(peer, peer)}" for peer in peers) + ".")
+    paper.put_text(
+        worldsAgreement=f"Of {count(answers)} touching pairs, "
+        + listed(f"{count(differing[peer])} differ in {PIPELINES.get(peer, peer)}" for peer in peers)
+        + "."
+    )
     one = next((name for name in FIXED if (rows.variant == name).any()), rows[rows.peer == ""].variant.iloc[0])
     paper.put_text(worldsFixed=escape(one))
     lines, gains = [], {peer: [] for peer in peers}
     # A frame in which nothing moves is an empty call.
     for scene, best, fixed, theirs in worlds_table(rows[(rows.room == rows.room.min()) & (rows.moving > 0)], one):
-        ms = (lambda v: f"{v:.3f}" if v < 1 else f"{v:.2f}" if v < 10 else f"{v:.0f}")
-        lines.append([str(scene["objects"]), f"{scene['degrees']:g}$^\\circ$", percent(scene["moving"], 0), escape(best.variant), ms(best.ms),
-                      ms(fixed), *(f"{times(theirs[p] / best.ms)}" if p in theirs else "--" for p in peers)])
+        ms = lambda v: f"{v:.3f}" if v < 1 else f"{v:.2f}" if v < 10 else f"{v:.0f}"
+        lines.append(
+            [
+                str(scene["objects"]),
+                f"{scene['degrees']:g}$^\\circ$",
+                percent(scene["moving"], 0),
+                escape(best.variant),
+                ms(best.ms),
+                ms(fixed),
+                *(f"{times(theirs[p] / best.ms)}" if p in theirs else "--" for p in peers),
+            ]
+        )
         for peer in set(peers) & set(theirs.index):
             gains[peer].append(theirs[peer] / fixed)
     for peer in peers:
         paper.put_range(f"worlds{PIPELINES.get(peer, peer).title().replace(', ', '')}", gains[peer])
-    paper.table("worlds", "rrrlrr" + "r" * len(peers), ["bodies", "", "moving", "best of ours", "ms", "fixed", *(PIPELINES.get(p, p) for p in peers)], lines)
+    paper.table(
+        "worlds",
+        "rrrlrr" + "r" * len(peers),
+        ["bodies", "", "moving", "best of ours", "ms", "fixed", *(PIPELINES.get(p, p) for p in peers)],
+        lines,
+    )
     paper.have("worlds")

@@ -33,7 +33,7 @@ def group_at(text, start):
     for place in range(start, len(text)):
         depth += {"{": 1, "}": -1}.get(text[place], 0)
         if depth == 0:
-            return place + 1, text[start + 1:place]
+            return place + 1, text[start + 1 : place]
     raise ValueError("braces that do not close")
 
 
@@ -43,7 +43,7 @@ def with_what_is_there(text, there):
         end, name = group_at(text, found.end())
         end, body = group_at(text, end)
         end, other = group_at(text, end) if found[1] == "recordelse" else (end, "")
-        text = text[:found.start()] + (body if name in there else other) + text[end:]
+        text = text[: found.start()] + (body if name in there else other) + text[end:]
     return text
 
 
@@ -56,7 +56,7 @@ class PaperText(unittest.TestCase):
             cls.tables = {path.stem for path in (Path(folder) / "tables").iterdir()}
         cls.numbers, cls.values = paper.numbers, paper.values
         text = "\n".join(re.sub(r"(?<!\\)%.*", "", line) for line in (PAPER / "main.tex").read_text().splitlines())
-        cls.text = with_what_is_there(text[text.index(r"\begin{document}"):], cls.there)
+        cls.text = with_what_is_there(text[text.index(r"\begin{document}") :], cls.there)
 
     def test_macros_are_made(self):
         used = set(re.findall(r"\\([a-z]+[A-Z][A-Za-z]*)", self.text))
@@ -74,7 +74,7 @@ class PaperText(unittest.TestCase):
         self.assertNotIn("nan", " ".join(map(str, self.numbers.values())))
 
     def test_abstract_is_short(self):
-        abstract = self.text[self.text.index(r"\begin{abstract}") + 16:self.text.index(r"\end{abstract}")]
+        abstract = self.text[self.text.index(r"\begin{abstract}") + 16 : self.text.index(r"\end{abstract}")]
         words = re.sub(r"\\([A-Za-z]+)(\{\})?", lambda m: self.numbers.get(m[1], ""), abstract)
         words = re.sub(r"[\\{}]|,(?=%)", "", words)
         self.assertLessEqual(len(words.split()), 200)
@@ -86,8 +86,12 @@ class PaperText(unittest.TestCase):
         known = set(re.findall(r"^@\w+\{([^,]+),", (PAPER / "references.bib").read_text(), re.M))
         cited = {key for keys in re.findall(r"\\cite\{([^}]*)\}", self.text) for key in keys.split(",")}
         self.assertEqual(cited - known, set())
-        named = {key for folder in ("hierarchies", "traversal", "broadphase") for path in (ROOT / folder).rglob("*.hpp")
-                 for key in KEY.findall(path.read_text())}
+        named = {
+            key
+            for folder in ("hierarchies", "traversal", "broadphase")
+            for path in (ROOT / folder).rglob("*.hpp")
+            for key in KEY.findall(path.read_text())
+        }
         self.assertEqual(named - known, set())
 
 
