@@ -117,15 +117,27 @@ def write_talk(paper):
     for what, name in (("n_v", "Tests"), ("time_ns", "Time")):
         paper.put_range(f"talk{name}List", of[what]["separation-list"], two)
         paper.put_range(f"talk{name}Deferred", of[what]["deferred"], two)
-    reached = [
-        key
-        for key, line in of["time_ns"].iterrows()
-        if line["separation-list"] >= paper.values["publishedList"]
-        and line["deferred"] >= paper.values["publishedDeferred"]
-    ]
-    paper.put_text(
-        talkInTime=f"{len(reached)} of {len(of['time_ns'])} pairs of tree and reading reach the published times"
-        if reached
-        else "no pair of tree and reading reaches the published times"
-    )
+    paper.text("talk-prices", prices_text(rows, paper.values))
+    paper.put_text(talkInTime=reach_text(of["time_ns"], paper.values))
     paper.have("talk")
+
+
+def reach_text(speedups, published):
+    """In how many lines both lists are as fast as was published."""
+    both = (speedups["separation-list"] >= published["publishedList"]) & (
+        speedups["deferred"] >= published["publishedDeferred"]
+    )
+    return f"{both.sum()} of {len(both)} pairs of tree and reading reach both published ratios"
+
+
+def prices_text(rows, published):
+    """Speedups by cost where a pair of triangles costs as much as so many tests of volumes, as in scalar code."""
+    keys, parts = ["build", "reading", "density", "seed"], []
+    for price in (2, 10):
+        cost = rows.assign(cost=rows.n_v + price * rows.n_p).pivot_table(
+            index=keys, columns="strategy", values="cost", sort=False
+        )
+        ratio = (cost[["recursive"]].to_numpy() / cost[nine_bunnies.LISTS]).groupby(level=["build", "reading"]).mean()
+        ranges = " and ".join(f"{ratio[name].min():.2f} to {ratio[name].max():.2f}" for name in nine_bunnies.LISTS)
+        parts.append(f"at {price} tests {ranges}, so that {reach_text(ratio, published)}")
+    return "; ".join(parts)

@@ -3,6 +3,7 @@
 
 import numpy as np
 import records
+import tournament
 from sheet import duration, escape, listed, medians, percent, read_right, times
 
 
@@ -87,26 +88,33 @@ def write_narrow_phase(paper):
     rows = rows[~rows.wrong_answer].assign(a_pair=rows.later_ns / rows.later_pairs)
     methods = list(dict.fromkeys(rows[name]))
     middle = rows.groupby(["work", "polygons", name], sort=False).a_pair.median()
-    lines, ratios = [], []
+    lines = []
     for work, polygons in dict.fromkeys(zip(rows.work, rows.polygons)):
         of = {m: middle.get((work, polygons, m), np.nan) for m in methods}
         lines.append(
             [escape(work), str(polygons)] + ["--" if np.isnan(of[m]) else f"{of[m] / 1e3:.2f}" for m in methods]
         )
-        if "recommended" in of:
-            peers = [v for m, v in of.items() if (rows[rows[name] == m].peer != "").any() and not np.isnan(v)]
-            ratios += [min(peers) / of["recommended"]] if peers else []
     paper.table("narrow-phase", "lr" + "r" * len(methods), ["work", "polygons"] + [escape(m) for m in methods], lines)
-    if ratios:
-        paper.text(
-            "narrow-phase-text",
-            f"The best peer takes {times(min(ratios))} to {times(max(ratios))} times as long as the "
-            f"recommended configuration, which is one for all rows and was fixed before. Ours is ahead in "
-            f"{sum(r > 1 for r in ratios)} of {len(ratios)} rows.",
-        )
-    else:
-        paper.text("narrow-phase-text", "")
+    paper.text("narrow-phase-text", tournament_text(tournament.read(record)))
     paper.have("narrow-phase")
+
+
+def tournament_text(rows):
+    """The recommended configuration beside the fastest peer, from the roots and with coherence, with intervals."""
+    peers = list(dict.fromkeys(rows[rows.peer != ""].method))
+    parts = []
+    for names, what in (
+        ([m for m in peers if "coherent" not in m], "that starts from the roots"),
+        ([m for m in peers if "coherent" in m], "that uses coherence"),
+    ):
+        found = tournament.tournament(rows, "recommended", names) if names else []
+        if len(found):
+            parts.append(
+                f"The fastest peer {what} takes {times(found.ratio.min())} to {times(found.ratio.max())} times as long "
+                f"as ours; the interval lies above 1 in {(found.low > 1).sum()} and below in "
+                f"{(found.high < 1).sum()} of {len(found)} rows."
+            )
+    return " ".join(parts)
 
 
 def write_peers_cgal(paper):
