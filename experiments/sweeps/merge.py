@@ -6,7 +6,7 @@ import os
 import tempfile
 
 TABLES = ["frames", "coherence", "disagreements", ""]  # the one that says that all is there is the last
-PROGRAM = ["bvlab", "compiler", "flags", "libraries"]  # what the counts may depend on
+PROGRAM = ["bvlab", "commit", "changes", "compiler", "flags", "libraries"]  # what the counts may depend on
 NODE = ["processor", "cores", "memory", "system", "kernel"]
 
 
