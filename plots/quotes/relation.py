@@ -25,7 +25,7 @@ def off_by(rows, predicted):
         "with &kappa; = {kappa:.2f}, the only constant fitted, the speedup in volume tests to a median of {fitted:.1f} % (95 % of "
         "cells within {fitted_most:.0f} %), and of what was left out {unseen:.1f} % ({unseen_most:.0f} %; for persisting motions "
         "{persisting:.1f} %, median).",
-        "&kappa; matters little to the medians (0 gives {zero:.1f} %, 1 gives {one:.1f} %).",
+        "&kappa; matters little to these medians (0 gives {zero:.1f} %, 1 gives {one:.1f} %).",
         "The talk's 2n and n give {constant:.0f} %; R and c alone, as if lists stayed as they were, {still:.1f} %. Of the cells in "
         "which at least half of the front is there again 95 % lie within {half:.0f} % of it; where less is, it is off by {less:.0f} % "
         "(median), and says no more than that lists lose.",
