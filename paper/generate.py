@@ -41,6 +41,7 @@ PARTS = (
     strategies.write_winners,
     strategies.write_workloads,
     law.write_sweep,
+    law.write_law_unseen,
     volumes.write_tightness,
     volumes.write_fits,
     volumes.write_posing,

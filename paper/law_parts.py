@@ -4,6 +4,7 @@
 import coherence
 import column
 import law
+import law_unseen
 import numpy as np
 import style
 from sheet import escape, listed, percent, signed
@@ -300,3 +301,31 @@ def write_sweep(paper):
     paper.put_percent(sweepError=off.median(), sweepAlone=off_by(alone(lists), lists).median())
     paper.put_percent(0, sweepTail=off.quantile(0.95))
     paper.have("sweep")
+
+
+def write_law_unseen(paper):
+    """The law from the first frames of runs that were made after it was written down."""
+    record = paper.record("law-unseen")
+    if not record:
+        return
+    fit = law_unseen.fit_of_coherence()
+    runs = law_unseen.read(record)
+    said = law_unseen.all_predictions(runs, fit)[law_unseen.PREFIX]
+    regimes = law_unseen.regimes(runs)
+    easy, pile, less = (regimes[name] for name in ("half or more, not persisting", "model: pile", "survival: less than half"))
+    off = {name: law_unseen.off_by(said[name], runs) for name in (law_unseen.LAW, law_unseen.ALONE, law_unseen.LAST, "kappa 0", "kappa 1")}
+    of_law = off[law_unseen.LAW]
+    paper.put_text(unseenSettings=runs.measured.setting.nunique(), unseenSeeds=runs.measured.seed.nunique())
+    paper.put_percent(
+        unseenLaw=np.median(of_law),
+        unseenZero=np.median(off["kappa 0"]),
+        unseenOne=np.median(off["kappa 1"]),
+        unseenAlone=np.median(off[law_unseen.ALONE]),
+        unseenLast=np.median(off[law_unseen.LAST]),
+        unseenEasy=np.median(of_law[easy]),
+        unseenEasyLast=np.median(off[law_unseen.LAST][easy]),
+    )
+    paper.put_percent(
+        0, unseenTail=np.quantile(of_law, 0.95), unseenPile=np.median(of_law[pile]), unseenLost=np.median(of_law[less])
+    )
+    paper.have("law-unseen")
