@@ -16,6 +16,7 @@
 #include "experiments/closest_features/climbing_root.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/hierarchies_of.hpp"
+#include "experiments/replay/loops_of.hpp"
 #include "experiments/replay/play.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/studies/study.hpp"
@@ -134,20 +135,43 @@ ReplayResult fastest_of(const std::function<ReplayResult()>& play) {
   return fastest;
 }
 
-template <class V, class Query>
-ReplayResult engine_of_its_own(const Scene& scene, const Hierarchy<V>& hierarchy, Count count) {
-  const std::vector<Shape<V>> shapes(scene.trace.objects, {&scene.meshes[0], &hierarchy});
+/// Recursion over bodies whose volume is not in the list, started as over one that is.
+template <class Query>
+ReplayResult recursed(const Scene& scene,
+                      const std::function<std::unique_ptr<BodyLoops<Query>>()>& loops,
+                      Count count) {
   ReplayOptions options;
   options.count = count;
   ReplayResult result;
-  const auto engine = [&](auto) {
+  const auto engine = [&]<class Counter>(std::type_identity<Counter>) {
     return [&](std::vector<ObjectPair> pairs) {
-      return AllPairs<NativeBatch<typename V::scalar>, V, Recursive>(shapes, std::move(pairs),
-                                                                     Recursive());
+      return AllPairsOf<AnyBodies<Query, Counter>, Recursive>(AnyBodies<Query, Counter>(loops()),
+                                                              std::move(pairs), Recursive());
     };
   };
   detail::play_over<Query>(engine, scene.trace, Variant{}, options, result);
   return result;
+}
+
+template <class V, class Query>
+class RecursiveLoops final : public detail::LoopsBesides<V, Query> {
+ public:
+  using detail::LoopsBesides<V, Query>::LoopsBesides;
+  Walked traverse(const ObjectPair& pair, Query& query, NoFront, Start start) override {
+    return this->bodies_.pair(pair, query, this->counter_).template from_roots<NoFront>(start);
+  }
+  // What recursion never asks for.
+  Walked traverse(const ObjectPair&, Query&, NoFrontBoth, Start) override { std::abort(); }
+  Walked traverse(const ObjectPair&, Query&, Front&) override { std::abort(); }
+  Walked traverse(const ObjectPair&, Query&, RisingFront&) override { std::abort(); }
+  Walked traverse(const ObjectPair&, Query&, const KeptMargins&) override { std::abort(); }
+};
+
+template <class V, class Query>
+ReplayResult engine_of_its_own(const Scene& scene, const Hierarchy<V>& hierarchy, Count count) {
+  const std::vector<Shape<V>> shapes(scene.trace.objects, {&scene.meshes[0], &hierarchy});
+  return recursed<Query>(
+      scene, [&] { return std::make_unique<RecursiveLoops<V, Query>>(shapes); }, count);
 }
 
 template <class V, class Query>
