@@ -91,7 +91,7 @@ constexpr bool is_listed = false;
 template <int K>
 constexpr bool is_listed<Kdop<float, K, Realigned>> = true;
 
-/// A volume of the list is replayed by what was compiled for it already.
+/// What was compiled for a volume of the list already makes its hierarchies and replays it.
 template <class V, class Query>
 ReplayResult replayed(const Scene& scene, Count count) {
   Variant variant;
@@ -184,7 +184,7 @@ ReplayResult played(const Scene& scene, const Hierarchy<V>& hierarchy, Count cou
 
 template <class V, class Query>
 Cell asking(int k, std::string policy, const Scene& scene,
-            std::shared_ptr<Hierarchy<V>> hierarchy) {
+            std::shared_ptr<const Hierarchy<V>> hierarchy) {
   return {k,
           std::move(policy),
           std::string(Query::name),
@@ -202,12 +202,22 @@ Cell asking(int k, std::string policy, const Scene& scene,
           {}};
 }
 
+template <class V>
+std::shared_ptr<const Hierarchy<V>> hierarchy_over(const Scene& scene) {
+  if constexpr (is_listed<V>) {
+    const std::shared_ptr<AnyHierarchies> all =
+        volume_entry(V::name).hierarchies(scene.meshes, Variant{});
+    return {all, &static_cast<const HierarchiesOf<V>&>(*all)[0]};
+  } else {
+    const auto& mesh = scene.meshes[0];
+    return std::make_shared<Hierarchy<V>>(mesh, builds::TopDownPrincipal::topology(mesh, 1));
+  }
+}
+
 template <int K, class Posing>
 void add_policy(const std::string& policy, const Scene& scene, std::vector<Cell>& cells) {
   using V = Kdop<float, K, Posing>;
-  const auto& mesh = scene.meshes[0];
-  auto hierarchy =
-      std::make_shared<Hierarchy<V>>(mesh, builds::TopDownPrincipal::topology(mesh, 1));
+  const auto hierarchy = hierarchy_over<V>(scene);
   cells.push_back(asking<V, Touching>(K, policy, scene, hierarchy));
   cells.push_back(asking<V, Contacts>(K, policy, scene, hierarchy));
   cells.push_back({K,
