@@ -12,6 +12,7 @@
 #include "hierarchies/bounding_volume.hpp"
 #include "hierarchies/build/topology.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
+#include "hierarchies/geometry/written_out.hpp"
 #include "hierarchies/hierarchy_extent.hpp"
 
 namespace bvlab {
@@ -92,7 +93,7 @@ class Hierarchy {
   void surround(const TriangleMesh& mesh) {
     double reach = 0, radius = 0;
     for (const auto& v : volumes_) reach = std::max(reach, static_cast<double>(reach_of(v)));
-    for (const auto& v : mesh.vertices) reach = std::max(reach, v.stableNorm());
+    for (const auto& v : mesh.vertices) reach = std::max(reach, stable_norm(v));
     reach *= 1 + 8 * unit_roundoff<typename V::scalar>;
     Vec3<double> low = mesh.corners(0)[0], high = low;
     for (const auto& triangle : mesh.triangles)
@@ -101,7 +102,7 @@ class Hierarchy {
     const Vec3<double> centre = low / 2 + high / 2;
     for (const auto& triangle : mesh.triangles)
       for (const auto v : triangle)
-        radius = std::max(radius, (mesh.vertices[v] - centre).stableNorm());
+        radius = std::max(radius, stable_norm(mesh.vertices[v] - centre));
     radius *= 1 + 16 * unit_roundoff<double>;
     extent_ = {centre, radius, reach, nodes_.size()};
   }

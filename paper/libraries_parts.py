@@ -160,7 +160,7 @@ def write_tori(paper):
     paper.text(
         "tori",
         "; ".join(parts)
-        + f". Keeping a front loses there in {kept - len(lost)} of {kept} pairs of volume and query"
+        + f". FrontPolicy a front loses there in {kept - len(lost)} of {kept} pairs of volume and query"
         + (f"; it wins with {listed(lost)}" if lost else "")
         + ".",
     )

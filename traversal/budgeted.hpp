@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "hierarchies/geometry/written_out.hpp"
 #include "traversal/body.hpp"
 #include "traversal/gather.hpp"
 #include "traversal/queries/candidate.hpp"
@@ -44,7 +45,7 @@ class PatchSizes {
             low = low.cwiseMin(p), high = high.cwiseMax(p);
       }
       // The difference, the norm's five operations and the rounding to float: less than 2^-20.
-      const double diagonal = (high - low).stableNorm() * (1 + 0x1p-20);
+      const double diagonal = stable_norm(high - low) * (1 + 0x1p-20);
       sizes_[i] = rounded_up<float>(diagonal);
     }
   }

@@ -35,6 +35,7 @@
 #include <limits>
 
 #include "hierarchies/geometry/pose.hpp"
+#include "hierarchies/geometry/written_out.hpp"
 #include "hierarchies/hierarchy_extent.hpp"
 
 namespace bvlab {
@@ -50,7 +51,7 @@ struct ReferencePose {
   ReferencePose(const Pose& pose, const HierarchyExtent& extent)
       : rotation(pose.rotation), centre(pose(extent.centre)) {
     constexpr double u = unit_roundoff<double>;
-    defect = (rotation.transpose() * rotation - Mat3<double>::Identity()).norm() + 16 * u;
+    defect = defect_of(rotation) + 16 * u;
     noise = 32 * u * (extent.reach + pose.translation.norm()) + std::numeric_limits<double>::min();
   }
 };

@@ -23,6 +23,7 @@
 #include "broadphase/box.hpp"
 #include "hierarchies/geometry/pose.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
+#include "hierarchies/geometry/written_out.hpp"
 
 namespace bvlab {
 
@@ -40,7 +41,7 @@ class RotatedMeshBox {
             double& most = support_[at(x, y, z)];
             most = std::max(most, ((x * v[0] + y * v[1]) + z * v[2]) + room);
           }
-      reach_ = std::max(reach_, v.stableNorm());
+      reach_ = std::max(reach_, stable_norm(v));
     }
     reach_ *= 1 + 8 * unit_roundoff<double>;
   }

@@ -14,11 +14,11 @@ namespace bvlab {
 
 namespace detail {
 
+/// All but the traversals.
 template <BoundingVolume V, class Query>
-class LoopsOver final : public BodyLoops<Query> {
+class LoopsBesides : public BodyLoops<Query> {
  public:
-  LoopsOver(const AnyHierarchies& hierarchies, std::size_t objects)
-      : bodies_(static_cast<const HierarchiesOf<V>&>(hierarchies).shapes(objects)) {}
+  explicit LoopsBesides(std::span<const Shape<V>> shapes) : bodies_(shapes) {}
 
   std::size_t size() const override { return bodies_.size(); }
   const TriangleMesh& mesh(std::size_t i) const override { return bodies_.mesh(i); }
@@ -46,6 +46,22 @@ class LoopsOver final : public BodyLoops<Query> {
     return sum;
   }
 
+ protected:
+  struct Posed {
+    std::uint32_t epoch = 0;
+    std::size_t volumes = 0;
+  };
+
+  Bodies<NativeBatch<typename V::scalar>, V> bodies_;
+  std::vector<Posed> told_;  // of each body, when it was asked last
+  NotCounting counter_;
+};
+
+template <BoundingVolume V, class Query>
+class LoopsOver final : public LoopsBesides<V, Query> {
+ public:
+  using LoopsBesides<V, Query>::LoopsBesides;
+
   TraversalStatistics traverse(const ObjectPair& pair, Query& query, NoFront,
                                Start start) override {
     return bodies_.pair(pair, query, counter_).template from_roots<NoFront>(start);
@@ -66,20 +82,14 @@ class LoopsOver final : public BodyLoops<Query> {
   }
 
  private:
-  struct Posed {
-    std::uint32_t epoch = 0;
-    std::size_t volumes = 0;
-  };
-
-  Bodies<NativeBatch<typename V::scalar>, V> bodies_;
-  std::vector<Posed> told_;  // of each body, when it was asked last
-  NotCounting counter_;
+  using LoopsBesides<V, Query>::bodies_, LoopsBesides<V, Query>::counter_;
 };
 
 template <BoundingVolume V, class Query>
 std::unique_ptr<BodyLoops<Query>> loops_over(const AnyHierarchies& hierarchies,
                                              std::size_t objects) {
-  return std::make_unique<LoopsOver<V, Query>>(hierarchies, objects);
+  return std::make_unique<LoopsOver<V, Query>>(
+      static_cast<const HierarchiesOf<V>&>(hierarchies).shapes(objects));
 }
 
 }  // namespace detail

@@ -16,6 +16,7 @@
 #include "experiments/closest_features/climbing_root.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/hierarchies_of.hpp"
+#include "experiments/replay/loops_of.hpp"
 #include "experiments/replay/play.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/studies/study.hpp"
@@ -90,7 +91,7 @@ constexpr bool is_listed = false;
 template <int K>
 constexpr bool is_listed<Kdop<float, K, Realigned>> = true;
 
-/// A volume of the list is replayed by what was compiled for it already.
+/// What was compiled for a volume of the list already makes its hierarchies and replays it.
 template <class V, class Query>
 ReplayResult replayed(const Scene& scene, Count count) {
   Variant variant;
@@ -134,20 +135,48 @@ ReplayResult fastest_of(const std::function<ReplayResult()>& play) {
   return fastest;
 }
 
-template <class V, class Query>
-ReplayResult engine_of_its_own(const Scene& scene, const Hierarchy<V>& hierarchy, Count count) {
-  const std::vector<Shape<V>> shapes(scene.trace.objects, {&scene.meshes[0], &hierarchy});
+/// Recursion over bodies whose volume is not in the list, started as over one that is.
+template <class Query>
+ReplayResult recursed(const Scene& scene,
+                      const std::function<std::unique_ptr<BodyLoops<Query>>()>& loops,
+                      Count count) {
   ReplayOptions options;
   options.count = count;
   ReplayResult result;
-  const auto engine = [&](auto) {
+  const auto engine = [&]<class Counter>(std::type_identity<Counter>) {
     return [&](std::vector<ObjectPair> pairs) {
-      return AllPairs<NativeBatch<typename V::scalar>, V, Recursive>(shapes, std::move(pairs),
-                                                                     Recursive());
+      return AllPairsOf<AnyBodies<Query, Counter>, Recursive>(AnyBodies<Query, Counter>(loops()),
+                                                              std::move(pairs), Recursive());
     };
   };
   detail::play_over<Query>(engine, scene.trace, Variant{}, options, result);
   return result;
+}
+
+template <class V, class Query>
+class RecursiveLoops final : public detail::LoopsBesides<V, Query> {
+ public:
+  using detail::LoopsBesides<V, Query>::LoopsBesides;
+  TraversalStatistics traverse(const ObjectPair& pair, Query& query, NoFront,
+                               Start start) override {
+    return this->bodies_.pair(pair, query, this->counter_).template from_roots<NoFront>(start);
+  }
+  // What recursion never asks for.
+  TraversalStatistics traverse(const ObjectPair&, Query&, NoFrontBoth, Start) override {
+    std::abort();
+  }
+  TraversalStatistics traverse(const ObjectPair&, Query&, Front&) override { std::abort(); }
+  TraversalStatistics traverse(const ObjectPair&, Query&, RisingFront&) override { std::abort(); }
+  TraversalStatistics traverse(const ObjectPair&, Query&, const KeptMargins&) override {
+    std::abort();
+  }
+};
+
+template <class V, class Query>
+ReplayResult engine_of_its_own(const Scene& scene, const Hierarchy<V>& hierarchy, Count count) {
+  const std::vector<Shape<V>> shapes(scene.trace.objects, {&scene.meshes[0], &hierarchy});
+  return recursed<Query>(
+      scene, [&] { return std::make_unique<RecursiveLoops<V, Query>>(shapes); }, count);
 }
 
 template <class V, class Query>
@@ -160,7 +189,7 @@ ReplayResult played(const Scene& scene, const Hierarchy<V>& hierarchy, Count cou
 
 template <class V, class Query>
 Cell asking(int k, std::string policy, const Scene& scene,
-            std::shared_ptr<Hierarchy<V>> hierarchy) {
+            std::shared_ptr<const Hierarchy<V>> hierarchy) {
   return {k,
           std::move(policy),
           std::string(Query::name),
@@ -178,12 +207,22 @@ Cell asking(int k, std::string policy, const Scene& scene,
           {}};
 }
 
+template <class V>
+std::shared_ptr<const Hierarchy<V>> hierarchy_over(const Scene& scene) {
+  if constexpr (is_listed<V>) {
+    const std::shared_ptr<AnyHierarchies> all =
+        volume_entry(V::name).hierarchies(scene.meshes, Variant{});
+    return {all, &static_cast<const HierarchiesOf<V>&>(*all)[0]};
+  } else {
+    const auto& mesh = scene.meshes[0];
+    return std::make_shared<Hierarchy<V>>(mesh, builds::TopDownPrincipal::topology(mesh, 1));
+  }
+}
+
 template <int K, class Posing>
 void add_policy(const std::string& policy, const Scene& scene, std::vector<Cell>& cells) {
   using V = Kdop<float, K, Posing>;
-  const auto& mesh = scene.meshes[0];
-  auto hierarchy =
-      std::make_shared<Hierarchy<V>>(mesh, builds::TopDownPrincipal::topology(mesh, 1));
+  const auto hierarchy = hierarchy_over<V>(scene);
   cells.push_back(asking<V, Touching>(K, policy, scene, hierarchy));
   cells.push_back(asking<V, Contacts>(K, policy, scene, hierarchy));
   cells.push_back({K,

@@ -33,6 +33,7 @@
 
 #include "hierarchies/geometry/pose.hpp"
 #include "hierarchies/geometry/scalar.hpp"
+#include "hierarchies/geometry/written_out.hpp"
 
 namespace bvlab {
 
@@ -123,16 +124,12 @@ struct Placement {
 
   static constexpr double sound_defect = 32 * unit_roundoff<double>;
 
-  static double defect_of(const Mat3<double>& m) {
-    return (m.transpose() * m - Mat3<double>::Identity()).norm();
-  }
-
   /// Each step squares the defect, down to less than 32u, which is rounding. What is no rotation by
   /// far is replaced, lest it make numbers that are none.
   static Mat3<double> orthonormal(Mat3<double> m, double defect) {
     if (!(defect <= 0.01)) return Mat3<double>::Identity();
     for (int step = 0; step < 8 && !(defect <= sound_defect); ++step) {
-      m = (m * (1.5 * Mat3<double>::Identity() - 0.5 * (m.transpose() * m))).eval();
+      m = towards_orthonormal(m);
       defect = defect_of(m);
     }
     return m;

@@ -2,6 +2,7 @@
 /// Where a body stands: a rotation and a translation, object to world, in double precision.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -35,9 +36,11 @@ struct Pose {
 /// unit length. Nothing where the quaternion is zero or a number is not finite.
 inline std::optional<Pose> pose_from(const Vec3<double>& translation, double w, double x, double y,
                                      double z) {
-  const Eigen::Vector4d quaternion(w, x, y, z);
-  const double largest = quaternion.cwiseAbs().maxCoeff();
-  if (!quaternion.allFinite() || !translation.allFinite() || largest == 0) return std::nullopt;
+  const double largest = std::max({std::abs(w), std::abs(x), std::abs(y), std::abs(z)});
+  const bool finite = std::isfinite(w) && std::isfinite(x) && std::isfinite(y) &&
+                      std::isfinite(z) && std::isfinite(translation[0]) &&
+                      std::isfinite(translation[1]) && std::isfinite(translation[2]);
+  if (!finite || largest == 0) return std::nullopt;
   // A power of two changes no digit, and keeps the squares from under- and overflowing.
   if (largest < 0x1p-301 || largest >= 0x1p300) {
     int exponent = 0;

@@ -26,6 +26,7 @@
 #include <limits>
 
 #include "hierarchies/geometry/pose.hpp"
+#include "hierarchies/geometry/written_out.hpp"
 
 namespace bvlab {
 
@@ -46,8 +47,7 @@ struct OrthonormalPose {
     // As Placement does: each step of Newton's iteration squares the defect.
     if (left <= 1e-4)
       for (int step = 0; step < 8 && !(left <= sound); ++step) {
-        const Mat3<double> product = rotation.transpose() * rotation;
-        rotation = (rotation * (1.5 * Mat3<double>::Identity() - 0.5 * product)).eval();
+        rotation = towards_orthonormal(rotation);
         left = squared_defect_of(rotation);
       }
     if (left <= sound) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hierarchies/geometry/enclosing_ball.hpp"
+#include "hierarchies/geometry/written_out.hpp"
 #include "hierarchies/hierarchy.hpp"
 #include "hierarchies/wide/collapse.hpp"
 #include "hierarchies/wide/lanes.hpp"
@@ -37,7 +38,7 @@ struct MeshBall {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
       for (const auto& corner : mesh.corners(i)) corners.push_back(corner);
     centre = enclosing_ball(corners).centre;
-    for (const auto& corner : corners) radius = std::max(radius, (corner - centre).stableNorm());
+    for (const auto& corner : corners) radius = std::max(radius, stable_norm(corner - centre));
     radius *= 1 + 16 * unit_roundoff<double>;
   }
 };
@@ -96,7 +97,7 @@ class WideHierarchy {
       }
       reach_ = std::max(reach_, static_cast<double>(reach_of(nodes_[i].volume)));
     }
-    for (const auto& v : mesh.vertices) reach_ = std::max(reach_, v.stableNorm());
+    for (const auto& v : mesh.vertices) reach_ = std::max(reach_, stable_norm(v));
     reach_ *= 1 + 8 * unit_roundoff<scalar>;
   }
 

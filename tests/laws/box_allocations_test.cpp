@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "broadphase/broadphase.hpp"
+#include "experiments/replay/box_methods.hpp"
 #include "tests/laws/boxes_for_test.hpp"
 
 namespace {
@@ -46,20 +46,19 @@ TEST(Allocations, NoneInSteadyState) {
       }
   };
   for (const Coherence coherence : {Coherence::off, Coherence::on})
-    Methods<float>::for_each([&](auto type) {
-      using M = typename decltype(type)::type;
+    for (const auto* entry : method_entries()) {
       MethodSettings settings;
       settings.coherence = coherence;
-      M method(settings);
-      for (int frame = 0; frame < 48; ++frame) at(frame), method.overlapping(boxes);
+      const auto method = entry->narrow(settings);
+      for (int frame = 0; frame < 48; ++frame) at(frame), method->overlapping(boxes);
       const std::size_t before = allocations;
       std::size_t found = 0;
       for (int frame = 48; frame < 64; ++frame)
-        at(frame), found += method.overlapping(boxes).size();
+        at(frame), found += method->overlapping(boxes).size();
       EXPECT_EQ(allocations - before, 0u)
-          << M::name << (coherence == Coherence::on ? ", coherent" : "");
+          << entry->name << (coherence == Coherence::on ? ", coherent" : "");
       EXPECT_GT(found, 0u);
-    });
+    }
 }
 
 }  // namespace

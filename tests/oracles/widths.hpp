@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "hierarchies/builds.hpp"
+#include "experiments/replay/hierarchies_of.hpp"
+#include "experiments/replay/registry.hpp"
 #include "hierarchies/bounding_volume.hpp"
+#include "hierarchies/builds.hpp"
 #include "tests/oracles/settings.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
@@ -16,14 +18,8 @@ namespace bvlab {
 
 /// All contacts of all frames, tested W at a time.
 template <class B, class V>
-std::vector<std::array<std::uint32_t, 5>> at_width(const Played& scene) {
-  std::vector<Hierarchy<V>> hierarchies;
-  for (const auto& mesh : scene.meshes)
-    hierarchies.emplace_back(mesh, builds::BottomUpLocal::topology(mesh, 1));
-  std::vector<Shape<V>> shapes;
-  for (std::size_t i = 0; i < scene.trace.objects; ++i)
-    shapes.push_back(
-        {&scene.meshes[i % scene.meshes.size()], &hierarchies[i % scene.meshes.size()]});
+std::vector<std::array<std::uint32_t, 5>> at_width(const Played& scene,
+                                                   const std::vector<Shape<V>>& shapes) {
   AllPairs<B, V, Deferred> engine(
       shapes, all_object_pairs(static_cast<std::uint32_t>(shapes.size())), Deferred{});
   std::vector<std::array<std::uint32_t, 5>> contacts;
@@ -48,6 +44,18 @@ std::vector<std::array<std::uint32_t, 5>> at_width(const Played& scene) {
   return contacts;
 }
 
+/// The width of the program's own loops is played by them.
+template <int W, class V>
+std::vector<std::array<std::uint32_t, 5>> at_width_of_floats(const Played& scene, Variant variant,
+                                                             const std::vector<Shape<V>>& shapes) {
+  if constexpr (std::is_same_v<Batch<float, W>, NativeBatch<float>>) {
+    variant.strategy = Deferred::name, variant.query = Contacts::name;
+    return replay(scene.meshes, scene.trace, variant, {}).contacts;
+  } else {
+    return at_width<Batch<float, W>>(scene, shapes);
+  }
+}
+
 template <class V>
 void expect_the_same_at_every_width() {
   for (const auto& setting : settings(150)) {
@@ -55,13 +63,19 @@ void expect_the_same_at_every_width() {
     Variant variant;
     variant.query = "contacts";
     const auto contacts = replay(scene.meshes, scene.trace, variant, {}).contacts;
-    using Double = Over<V, double>;
-    EXPECT_EQ((at_width<float, V>(scene)), contacts) << setting.name;
-    EXPECT_EQ((at_width<Batch<float, 4>, V>(scene)), contacts) << setting.name;
-    EXPECT_EQ((at_width<Batch<float, 8>, V>(scene)), contacts) << setting.name;
-    EXPECT_EQ((at_width<Batch<float, 16>, V>(scene)), contacts) << setting.name;
-    EXPECT_EQ((at_width<double, Double>(scene)), contacts) << setting.name;
-    EXPECT_EQ((at_width<Batch<double, 4>, Double>(scene)), contacts) << setting.name;
+    Variant local;
+    local.volume = V::name, local.build = builds::BottomUpLocal::name;
+    const auto hierarchies = volume_entry(V::name).hierarchies(scene.meshes, local);
+    const auto shapes =
+        static_cast<const HierarchiesOf<V>&>(*hierarchies).shapes(scene.trace.objects);
+    EXPECT_EQ((at_width<float>(scene, shapes)), contacts) << setting.name;
+    EXPECT_EQ((at_width_of_floats<4>(scene, local, shapes)), contacts) << setting.name;
+    EXPECT_EQ((at_width_of_floats<8>(scene, local, shapes)), contacts) << setting.name;
+    EXPECT_EQ((at_width_of_floats<16>(scene, local, shapes)), contacts) << setting.name;
+    const HierarchiesOf<Over<V, double>> in_double(scene.meshes, local);
+    const auto wide = in_double.shapes(scene.trace.objects);
+    EXPECT_EQ((at_width<double>(scene, wide)), contacts) << setting.name;
+    EXPECT_EQ((at_width<Batch<double, 4>>(scene, wide)), contacts) << setting.name;
   }
 }
 

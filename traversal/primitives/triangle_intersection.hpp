@@ -232,9 +232,9 @@ struct OpenPairs64 {
 constexpr bool refines_in_batches = native_width<double> >= 8;
 
 /// Second stage, and integers for the rest: bit i is set where the pair with place i shares a
-/// point.
-inline std::uint64_t refined_hits(const OpenPairs64& open) {
-  constexpr int width = 8;
+/// point. A template so that it is compiled where it is needed alone.
+template <int width = 8>
+std::uint64_t refined_hits(const OpenPairs64& open) {
   using S = Batch<double, width>;
   std::uint64_t hits = 0;
   for (int first = 0; first < open.count; first += width) {

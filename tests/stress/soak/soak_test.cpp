@@ -5,12 +5,11 @@
 
 #include <algorithm>
 
+#include "experiments/replay/any_bodies.hpp"
+#include "experiments/replay/registry.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
-#include "hierarchies/builds.hpp"
-#include "hierarchies/volumes/sphere.hpp"
 #include "tests/stress/soak/way.hpp"
 #include "tests/types_of.hpp"
-#include "traversal/bodies.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
 #include "traversal/strategies.hpp"
@@ -18,41 +17,64 @@
 namespace bvlab {
 namespace {
 
-using V = Sphere<float>;
-using B = Batch<float, std::max(native_width<float>, 4)>;
+/// The two bodies under one query, with the loops that are compiled into the program.
+template <class Query>
+class Both {
+ public:
+  explicit Both(const AnyHierarchies& hierarchies)
+      : bodies_(loops_of<Query>("sphere").bodies(hierarchies, 2)) {}
+
+  void move(const Pose& first, const Pose& second) {
+    bodies_.move(0, first, Vec3<double>::Zero());
+    bodies_.move(1, second, Vec3<double>::Zero());
+  }
+  template <class Strategy>
+  void run(Strategy& strategy, Query& query) {
+    strategy.run(bodies_.pair(pair_, query, counter_));
+  }
+
+ private:
+  AnyBodies<Query, NotCounting> bodies_;
+  const ObjectPair pair_{0, 1};
+  NotCounting counter_;
+};
 
 template <class Strategy>
 class Soak : public ::testing::Test {
  protected:
-  TriangleMesh star_ = formula_mesh("star", 60), torus_ = formula_mesh("torus", 64);
-  Hierarchy<V> star_tree_{star_, builds::TopDownPrincipal::topology(star_, 1)};
-  Hierarchy<V> torus_tree_{torus_, builds::TopDownPrincipal::topology(torus_, 2)};
-  Body<V> a_{star_, star_tree_}, b_{torus_, torus_tree_};
-  Workspace workspace_;
-  NotCounting counter_;
+  const std::vector<TriangleMesh> meshes_{formula_mesh("star", 60), formula_mesh("torus", 64)};
+  const std::unique_ptr<AnyHierarchies> trees_ = [this] {
+    Variant variant;
+    variant.leaf_size = 2;
+    return volume_entry("sphere").hierarchies(meshes_, variant);
+  }();
+  Both<Contacts> for_contacts_{*trees_};
+  Both<Touching> for_touching_{*trees_};
+  Both<Distance> for_distance_{*trees_};
 
-  template <class Query>
-  BodyPair<B, V, Query, NotCounting> pair(Query& query) {
-    return {a_, b_, query, counter_, workspace_};
+  void move(const Pose& first, const Pose& second) {
+    for_contacts_.move(first, second);
+    for_touching_.move(first, second);
+    for_distance_.move(first, second);
   }
   template <class S>
   std::vector<Contact> contacts(S& strategy) {
     std::vector<Contact> found;
     Contacts query(found);
-    strategy.run(pair(query));
+    for_contacts_.run(strategy, query);
     std::sort(found.begin(), found.end());
     return found;
   }
   template <class S>
   bool touching(S& strategy) {
     Touching query;
-    strategy.run(pair(query));
+    for_touching_.run(strategy, query);
     return query.touching();
   }
   template <class S>
   double distance(S& strategy) {
     Distance query;
-    strategy.run(pair(query));
+    for_distance_.run(strategy, query);
     return query.distance();
   }
 };
@@ -66,8 +88,7 @@ TYPED_TEST(Soak, CoherentEqualsFresh) {
   std::size_t hits = 0, early = 0, late = 0;
   for (std::size_t frame = 0; frame < frames; ++frame) {
     way.step();
-    this->a_.move(way.first(), Vec3<double>::Zero());
-    this->b_.move(way.second(), Vec3<double>::Zero());
+    this->move(way.first(), way.second());
     const auto truth = this->contacts(fresh);
     hits += !truth.empty();
     ASSERT_EQ(this->contacts(for_contacts), truth) << "frame " << frame;
@@ -87,7 +108,7 @@ TYPED_TEST(Soak, CoherentEqualsFresh) {
     }
     // A front is no larger than the pairs of leaves, of which lists keep one each at most.
     const std::size_t front = std::max(for_contacts.front_size(), for_touching.front_size());
-    ASSERT_LE(front, 2 * this->star_tree_.primitives() * this->torus_tree_.primitives());
+    ASSERT_LE(front, 2 * this->meshes_[0].triangles.size() * this->meshes_[1].triangles.size());
     (frame < frames / 2 ? early : late) += front;
   }
   EXPECT_GT(hits, frames / 20);

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What Eigen could say in a line, written out: nearly every unit compiles it, and as expressions
+/// these few take longer than all other inline functions together. Nothing is contracted, so that
+/// every processor finds the same.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hierarchies/geometry/scalar.hpp"
+
+namespace bvlab {
+
+/// Neither over- nor underflows on the way.
+inline double stable_norm(const Vec3<double>& v) {
+  const double x = std::abs(v[0]), y = std::abs(v[1]), z = std::abs(v[2]);
+  if (std::isnan(x) || std::isnan(y) || std::isnan(z))
+    return std::numeric_limits<double>::quiet_NaN();
+  const double largest = std::max({x, y, z});
+  if (!(largest > 0)) return 0;
+  double scale = largest, inverse = 1 / largest;
+  if (largest > std::numeric_limits<double>::max()) {
+    inverse = 1;
+  } else if (inverse > std::numeric_limits<double>::max()) {
+    inverse = std::numeric_limits<double>::max();
+    scale = 1 / inverse;
+  }
+  const double a = v[0] * inverse, b = v[1] * inverse, c = v[2] * inverse;
+  return scale * std::sqrt((a * a + b * b) + c * c);
+}
+
+/// |M'M - I|_F: how far a matrix is from a rotation.
+inline double defect_of(const Mat3<double>& m) {
+  double squares[9];
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) {
+      const double product = (m(0, i) * m(0, j) + m(1, i) * m(1, j)) + m(2, i) * m(2, j);
+      const double off = product - (i == j ? 1 : 0);
+      squares[3 * j + i] = off * off;
+    }
+  const auto& s = squares;
+  return std::sqrt(((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + (s[7] + s[8]))));
+}
+
+/// M (3/2 - M'M / 2): a step of Newton's iteration to the nearest rotation, which squares the
+/// defect.
+inline Mat3<double> towards_orthonormal(const Mat3<double>& m) {
+  Mat3<double> half, result;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i)
+      half(i, j) =
+          (i == j ? 1.5 : 0) - 0.5 * ((m(0, i) * m(0, j) + m(1, i) * m(1, j)) + m(2, i) * m(2, j));
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i)
+      result(i, j) = (m(i, 0) * half(0, j) + m(i, 1) * half(1, j)) + m(i, 2) * half(2, j);
+  return result;
+}
+
+}  // namespace bvlab
