@@ -38,7 +38,13 @@ struct WideWorkspace {
   Frontier triangles;  ///< a's triangles, as leaves number them, with leaves of b
 };
 
-template <BoundingVolume V, int F, class Frame, class Query, class Counter>
+/// How far bodies are apart is not asked: see wide_margins.hpp for what asks it.
+struct NotMeasuring {
+  static constexpr bool measures = false;
+};
+
+template <BoundingVolume V, int F, class Frame, class Query, class Counter,
+          class Measure = NotMeasuring>
 class WideTraversal {
   using T = typename V::scalar;
   using S = Batch<T, F>;
@@ -59,7 +65,19 @@ class WideTraversal {
     frontier_.push({0, 0}, 0);
   }
 
+  /// `touched`, a triangle of a and a leaf of b, is looked at first, then its leaf.
+  void begin(Body& a, Body& b, Query query, Counter& counter,
+             const std::optional<NodePair>& touched) requires(Measure::measures) {
+    begin(a, b, std::move(query), counter);
+    measure_.begin();
+    if (!touched) return;
+    frontier_.push({a.hierarchy().leaf_of(touched->a), touched->b},
+                   -std::numeric_limits<float>::max());
+    triangles_.push(*touched, 0);
+  }
+
   const Query& query() const { return *query_; }
+  const Measure& measure() const { return measure_; }
 
   /// Says whether there is more to do.
   [[gnu::noinline]] bool advance() {
@@ -75,6 +93,8 @@ class WideTraversal {
       }
     } else if constexpr (Query::one_hit_is_enough) {
       float order;
+      if constexpr (Measure::measures)
+        if (!triangles_.empty() && open_triangle(triangles_.take_last())) return false;
       step(frontier_.take_least(order));
       while (!triangles_.empty())
         if (open_triangle(triangles_.take_last())) return false;
@@ -110,6 +130,11 @@ class WideTraversal {
       const S gaps = between_.gaps(side, node[side], one, *counter_);
       const std::uint64_t left = many.lanes & ~bits(query_->excludes(gaps));
       next.template push_lanes<F>(static_cast<int>(side), left, many.first, node[1 - side], gaps);
+    } else if constexpr (Measure::measures) {
+      const auto seen = between_.separated(side, node[side], one, *counter_);
+      const std::uint64_t left = many.lanes & measure_.opened(seen.gap);
+      next.template push_lanes<F>(static_cast<int>(side), left, many.first, node[1 - side],
+                                  seen.order);
     } else {
       const auto seen = between_.compared(side, node[side], one, *counter_);
       const std::uint64_t left = many.lanes & ~bits(seen.apart);
@@ -143,8 +168,12 @@ class WideTraversal {
     std::uint64_t met = bits(verdict.meeting) & leaf.lanes;
     const std::uint32_t triangle = bodies_[0]->hierarchy().triangle(pair.a);
     for (std::uint64_t rest = met; rest; rest &= rest - 1)
-      if (query_->known(triangle, triangle_of_b(leaf.first, rest))) return true;
+      if (query_->known(triangle, triangle_of_b(leaf.first, rest))) {
+        if constexpr (Measure::measures) measure_.triangles(pair, true);
+        return true;
+      }
     std::uint64_t open = leaf.lanes & ~bits(verdict.apart) & ~met;
+    if constexpr (Measure::measures) measure_.triangles(pair, open != 0);
     for (; open; open &= open - 1)
       if (hold(triangle, triangle_of_b(leaf.first, open))) return true;
     return false;
@@ -187,6 +216,7 @@ class WideTraversal {
   std::array<Body*, 2> bodies_;
   typename Frame::template Between<V, F> between_;
   std::optional<Query> query_;
+  [[no_unique_address]] Measure measure_;
   Counter* counter_;
   Frontier& frontier_;
   Frontier& triangles_;
