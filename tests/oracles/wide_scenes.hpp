@@ -128,6 +128,28 @@ inline Scene in_motion(const Scene& scene) {
   return result;
 }
 
+/// Two bodies that come near each other in small steps, through each other and apart: answers
+/// change in the midst of what is remembered.
+inline Scene passing_by(const Scene& scene, int frames) {
+  std::mt19937 random(20260703);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Scene result{scene.name, scene.meshes, {}};
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Frame& start = scene.frames[s];
+    const Vec3<double> middle = start[0].translation;
+    const Vec3<double> from = Vec3<double>(unit(random), unit(random), unit(random)).normalized();
+    Frame frame{start[0], start[1]};
+    for (int k = 0; k < frames; ++k) {
+      const double along = 2.4 * (0.5 - (k + 0.5) / frames);
+      const Pose turn = *pose_from(Vec3<double>::Zero(), 0.002, 0.005 * unit(random), 0, 1);
+      frame[1].rotation = (turn.rotation * frame[1].rotation).eval();
+      frame[1].translation = middle + along * from + 0.3 * from.unitOrthogonal();
+      result.frames.push_back(frame);
+    }
+  }
+  return result;
+}
+
 inline Truth truth_of(const Scene& scene) {
   Truth truth;
   for (const Frame& frame : scene.frames) {
@@ -171,11 +193,11 @@ inline const std::vector<std::pair<Scene, Truth>>& scenes_with_truth() {
 inline const std::vector<std::pair<Scene, Truth>>& motions_with_truth() {
   static const auto all = [] {
     std::vector<std::pair<Scene, Truth>> result;
-    for (const auto& scene : scenes(4)) {
-      Scene moving = in_motion(scene);
-      const Truth truth = truth_of(moving);
-      result.emplace_back(std::move(moving), truth);
-    }
+    for (const auto& scene : scenes(4))
+      for (Scene moving : {in_motion(scene), passing_by(scene, 120)}) {
+        const Truth truth = truth_of(moving);
+        result.emplace_back(std::move(moving), truth);
+      }
     return result;
   }();
   return all;

@@ -2,16 +2,21 @@
 /// What pairs of bodies over wide trees remember from frame to frame: how long nothing can have
 /// changed, and where they touched.
 ///
-/// A traversal that finds two bodies apart, and never had to look at triangles, has compared
-/// volumes that are apart, and the least of their gaps is one of the bodies. Until these can have
-/// come nearer by that much the answer stays, and costs one comparison: of a deadline with the
-/// ways that the bodies have gone since the first frame (MovingBody::displacement_bound). Where
-/// ways are long because bodies jitter or go together, the bound between reference poses is looked
-/// at before the pair is. Bodies that touch are looked at where they did, first.
+/// A traversal that finds two bodies apart has compared volumes that are apart, and the least of
+/// their gaps is one of the bodies unless triangles had to be looked at. Until the bodies can have
+/// come nearer by that much the answer stays, and costs one comparison: of a deadline with the ways
+/// that they have gone since the first frame (MovingBody::displacement_bound). Where ways are long
+/// because bodies jitter or go together, the bound between reference poses is looked at before the
+/// pair is. Bodies that touch are looked at where they did, first.
 ///
-/// It does not pay to open volumes that are hardly apart so that the least gap grows: the triangles
+/// Bodies that were apart twice, but hardly, get a front (WideFront), of which those entries are
+/// looked at again whose deadlines have passed. Where most have, there is none for a while: four
+/// traversals, four times as many whenever that comes again, 256 at most.
+///
+/// Tried and not kept: to open volumes that are hardly apart so that the least gap grows. Triangles
 /// of two surfaces are near each other in many places, and to know the nearest is to know the
-/// distance, at five times the price.
+/// distance, at five times the price. Nor does it pay to measure triangles that are apart by more
+/// than the volumes they have anyway.
 #pragma once
 
 #include <algorithm>
@@ -25,6 +30,7 @@
 
 #include "traversal/body_pair.hpp"
 #include "traversal/relative_motion_bound.hpp"
+#include "traversal/wide/wide_front.hpp"
 #include "traversal/wide/wide_traversal.hpp"
 
 namespace bvlab {
@@ -45,20 +51,65 @@ class MeasuringGap {
  public:
   static constexpr bool measures = true;
 
-  void begin() { least_ = S(std::numeric_limits<float>::infinity()), touched_.reset(); }
+  /// A front that is not complete is written anew.
+  void begin(WideFront* front, double way) {
+    front_ = front, way_ = way;
+    sweeps_ = front && front->is_complete(), swept_ = false, due_ = 0;
+    if (front && !sweeps_) front->clear();
+    least_ = S(std::numeric_limits<float>::infinity()), touched_.reset();
+  }
+
+  /// Whether it starts from a front, and whether that has been looked at.
+  bool sweeps() const { return sweeps_; }
+  bool swept() const { return swept_; }
+  WideFront& sweep() { return swept_ = true, *front_; }
+  double way() const { return way_; }
+  bool front() const { return front_; }
+  std::size_t due() const { return due_; }
 
   /// Which of the volumes so far apart are to be opened. Lanes without a child repeat one.
   [[gnu::always_inline]] std::uint64_t opened(const S& separation) {
     const auto apart = separation > S(0.0f);
-    S gap(std::numeric_limits<float>::infinity());
-    stdx::where(apart, gap) = separation;
-    least_ = stdx::min(least_, gap);
+    last_ = S(std::numeric_limits<float>::infinity());
+    stdx::where(apart, last_) = separation;
+    least_ = stdx::min(least_, last_);
     return ~bits(apart);
   }
-  /// A triangle of a has been tested against a leaf of b; whether it may touch any.
-  void triangles(const NodePair& at, bool touching) {
+  /// The same of a pair of nodes: those which have not been opened before.
+  [[gnu::always_inline]] std::uint64_t left(const NodePair& pair, std::uint64_t lanes,
+                                            std::size_t entry) {
+    if (!front_) return lanes;
+    const double deadline = deadline_of(stdx::hmin(last_));
+    if (entry == WideFront::none) {
+      front_->add({pair, static_cast<std::uint16_t>(lanes), 0, 0}, deadline);
+      return lanes;
+    }
+    ++due_;
+    auto& opened = (*front_)[entry].opened;
+    const std::uint64_t fresh = lanes & ~std::uint64_t{opened};
+    opened = static_cast<std::uint16_t>(opened | fresh);
+    front_->deadline(entry) = deadline;
+    return fresh;
+  }
+  /// A triangle of a has been tested against a leaf of b; whether it may touch any. Says whether
+  /// their gap is to be measured.
+  bool triangles(const NodePair& pair, bool touching, std::size_t entry) {
     least_ = S(0.0f);
-    if (touching) touched_ = at;
+    if (touching) touched_ = pair;
+    if (!front_) return false;
+    if (entry == WideFront::none) {
+      front_->add({pair, 0, 1, 0}, WideFront::passed);
+      return false;
+    }
+    ++due_;
+    auto& rest = (*front_)[entry].rest;
+    if (rest > 0) --rest;
+    return !touching && rest == 0;
+  }
+  void triangles_are(const S& gaps, std::size_t entry) {
+    const float gap = stdx::hmin(select(gaps > S(0.0f), gaps, S(0.0f)));
+    front_->deadline(entry) = deadline_of(gap);
+    if (!(gap > 0)) (*front_)[entry].rest = 8;
   }
 
   /// A triangle of a, as leaves number them, and a leaf of b: where they touched, or may have.
@@ -70,8 +121,18 @@ class MeasuringGap {
   }
 
  private:
-  S least_;
+  /// Sums of ways are rounded here and where they are compared.
+  double deadline_of(float gap) const {
+    if (!(gap > 0)) return WideFront::passed;
+    return (way_ + gap * (1 - 32.0 * unit_roundoff<float>)) * (1 - 8 * unit_roundoff<double>);
+  }
+
+  S least_, last_;
   std::optional<NodePair> touched_;
+  WideFront* front_ = nullptr;
+  double way_ = 0;
+  std::size_t due_ = 0;
+  bool sweeps_ = false, swept_ = false;
 };
 
 /// For every pair of bodies its last answer, until when it stays, and where they touched.
@@ -147,6 +208,14 @@ class WideMargins {
     return kept_[p].touched;
   }
 
+  /// Where it is worth keeping one: it has been apart before, and fronts did not wear out at once.
+  WideFront* front(std::size_t p) {
+    Kept& kept = kept_[p];
+    if (kept.pause > 0) return --kept.pause, nullptr;
+    return kept.was_apart ? &kept.front : nullptr;
+  }
+  double way(const ObjectPair& pair) const { return ways_[pair.i] + ways_[pair.j]; }
+
   /// Gives a query that was not asked the answer of the last one.
   template <class Query>
   void repeat(std::size_t p, Query& query) const {
@@ -170,8 +239,28 @@ class WideMargins {
     answer = {unknown, epochs(pair), found.touched().has_value()};
     if constexpr (says_all<Query>) answer.touching = query.touching();
     kept.deadline = 0;
+    kept.was_apart = !answer.touching;
     if (answer.touching) {
       kept.touched = *found.touched();
+      kept.front.clear();
+      return;
+    }
+    if (found.front()) {
+      WideFront& front = kept.front;
+      // What is looked at again costs as much as in a traversal, and the rest is to pay for making
+      // fronts.
+      const bool worn = found.sweeps() && 4 * found.due() > 3 * front.size();
+      if (!found.sweeps()) {
+        front.complete();
+      } else if (worn) {
+        kept.pause = kept.next_pause;
+        kept.next_pause = std::min(4 * kept.next_pause, longest_pause);
+      } else {
+        kept.next_pause = shortest_pause;
+      }
+      if (worn || front.overgrown()) return front.clear();
+      const double earliest = front.earliest();
+      if (earliest > way(pair)) answer.until = earliest;
       return;
     }
     // Less would hardly last until the next frame.
@@ -189,6 +278,8 @@ class WideMargins {
     bool place(const Pose& pose) { return MovingBody::place(pose, Vec3<double>::Zero()); }
   };
 
+  static constexpr int shortest_pause = 4, longest_pause = 256;  // traversals without a front
+
   struct Answer {
     double until = unknown;  ///< as a sum of ways; negative where only rest keeps it
     std::uint32_t epochs = 0;
@@ -199,6 +290,9 @@ class WideMargins {
     double deadline = 0;  ///< by the clock; 0: none
     double distance = 0;
     NodePair touched{};
+    WideFront front;
+    int pause = 0, next_pause = shortest_pause;
+    bool was_apart = false;
   };
 
   static constexpr double unknown = -1;

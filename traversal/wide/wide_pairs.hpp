@@ -148,7 +148,8 @@ class WidePairs {
         place(bodies_[i], poses_[i], origin_), place(bodies_[j], poses_[j], origin_);
       if constexpr (Measure::measures)
         turn[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter,
-                          memory_.template touched<Query>(pair[slot]));
+                          memory_.template touched<Query>(pair[slot]), memory_.front(pair[slot]),
+                          memory_.way(pairs_[pair[slot]]));
       else
         turn[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter);
     };
