@@ -45,7 +45,7 @@ concept FittedToTriangles = requires(std::span<const Vec3<double>> points,
   { V::enclosing(points, triangles) } -> std::same_as<V>;
 };
 
-/// A volume with a second construction, dearer and tighter.
+/// A volume with a second construction, more expensive and tighter.
 template <class V>
 concept FittedTightly = requires(std::span<const Vec3<double>> points,
                                  std::span<const Triangle> triangles) {

@@ -26,7 +26,7 @@ def read(folders):
     wrong = records.wrong_answers(rows)
     records.say_left_out(rows[wrong].method + " on " + rows[wrong].set, "where their pairs differ")
     rows = rows[~wrong]
-    records.say_left_out(set(rows.threads) - {1}, "runs on so many threads")
+    records.say_left_out(set(rows.threads) - {1}, "runs on other numbers of threads")
     return rows[rows.threads == 1]
 
 
@@ -44,7 +44,8 @@ def table(rows):
             peers = here[here.theirs].copy()
             if work == SCRATCH:
                 # What a peer that keeps something needs for a first frame, too, is from scratch.
-                peers["time"] = np.minimum(peers["time"].where(peers.method == "cgal-1000", np.inf), peers["first"])
+                static = peers.method.str.startswith("cgal")
+                peers["time"] = np.minimum(peers["time"].where(static, np.inf), peers["first"])
             if peers.empty:
                 continue
             best = peers.loc[peers.time.idxmin()]

@@ -96,7 +96,7 @@ def draw(figure, points):
 
 
 def wrapped(label, most):
-    """In lines of at most so many letters."""
+    """In lines of at most `most` letters."""
     return "\n".join(textwrap.fill(line, int(most)) for line in label.split("\n"))
 
 

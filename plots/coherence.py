@@ -132,7 +132,7 @@ def draw_curve(axis, kappa):
     """What the law says of a pair with 100 ends, of which a run opens more and more."""
     opened = np.concatenate([[0], np.geomspace(1e-3, 0.3, 60)])
     ends, frames = 100, 1000
-    model = pd.DataFrame({"near_runs": 1, "tests": 2 * ends - 1, "ends": ends, "grown": opened * ends,
+    model = pd.DataFrame({"near_runs": 1, "tests": 2 * ends - 1, "entries": ends, "grown": opened * ends,
                           "stillness": np.exp(-opened * ends), "frames": frames, "growth": opened, "persistence": 0.0,
                           "again": ends * (1 + 2 * opened)})
     for name, defer in law.LISTS.items():

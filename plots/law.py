@@ -23,7 +23,7 @@ import records
 LISTS = {"separation-list": 0, "deferred": 1}
 # The fit sees the bunny and the knot, when all bodies move or one does. Everything else is left out of it.
 FITTED_MESHES = ["bunny", "knot"]
-FITTED_MANNERS = ["all bodies, all freedoms", "one body, one freedom"]
+FITTED_MOTION_MODELS = ["all bodies, all freedoms", "one body, one freedom"]
 
 
 def read(record):
@@ -32,16 +32,21 @@ def read(record):
     records.wrong_answers(rows)
     records.say_left_out(rows[rows.peer != ""].peer, "which keep no front")
     rows = rows[rows.peer == ""]
-    unknown = rows.ends.isna()
+    unknown = rows.entries.isna()
     records.say_left_out(rows[unknown].variant, "whose coherence was not measured")
     cell = [c for c in rows.attrs["settings"] if c not in ("strategy", "variant")]
     rows = rows[~unknown].groupby(cell + ["strategy"], sort=False, as_index=False, dropna=False)
     rows = rows.median(numeric_only=True)
     recursive = rows[rows.strategy == "recursive"][cell + ["time_ns", "n_v", "n_p"]]
-    rows = rows.merge(recursive, on=cell, suffixes=("", "_recursive"))
-    rows["survival"] = rows.kept / rows.ends
-    rows["stillness"] = rows.still_ends / rows.ends
-    rows["growth"] = rows.grown / rows.ends
+    return with_measures(rows.merge(recursive, on=cell, suffixes=("", "_recursive")))
+
+
+def with_measures(rows):
+    """What is made of sums: measures of coherence, and how many times as little a strategy does."""
+    rows = rows.copy()
+    rows["survival"] = rows.kept / rows.entries
+    rows["stillness"] = rows.still_entries / rows.entries
+    rows["growth"] = rows.grown / rows.entries
     rows["leaves"] = rows.motion_leaf / rows.near_runs
     rows["gaps"] = rows.motion_gap / rows.near_runs
     rows["tests_saved"] = rows.n_v_recursive / rows.n_v
@@ -58,21 +63,22 @@ def strategies_of(rows):
 def fitted(rows):
     """Which rows the fit may see."""
     seen = rows.mesh.isin(FITTED_MESHES)
-    if "manner" in rows:
-        seen &= rows.manner.isin(FITTED_MANNERS)
+    if "motion_model" in rows:
+        seen &= rows.motion_model.isin(FITTED_MOTION_MODELS)
     if "motion" in rows:  # motions of one kind only are left out
         seen &= ~rows.motion.str.match(r"^0 /|.*/ 0$")
     return seen
 
 
 def way_out(persistence, steps):
-    """How far a walk gets in so many steps, in steps."""
+    """How far a walk gets in `steps` steps, in lengths of a step."""
     p = np.minimum(persistence, 1 - 1e-4)
     return np.sqrt(np.maximum(steps * (1 + p) / (1 - p) - 2 * p * (1 - p**steps) / (1 - p) ** 2, 0))
 
 
-def list_over_recursion(rows, defer, kappa):
-    """Tests of a list over those of the recursion, near pairs only, by the law."""
+def by_age(rows, defer, kappa):
+    """Of each run since a list was rebuilt, shape (frames, rows): how likely the list still stands in it, and its tests
+    over those of the recursion, near pairs only, by the law."""
     near = rows.near_runs.to_numpy(float)
     full = rows.tests.to_numpy() / near
     once = rows.again.to_numpy() / near
@@ -80,26 +86,51 @@ def list_over_recursion(rows, defer, kappa):
     rate = -np.log(np.clip(rows.stillness.to_numpy(), 1e-12, 1))
     persistence = rows.persistence.to_numpy(float)
     states = [np.ones(len(rows))] + [np.zeros(len(rows)) for _ in range(defer)]
-    cost, runs, length = full.copy(), np.ones(len(rows)), np.ones(len(rows))
+    stands, cost, length = [np.ones(len(rows))], [np.ones(len(rows))], np.ones(len(rows))
     for age in range(1, int(rows.frames.max())):
         alive = sum(states) * (age < rows.frames.to_numpy())
         fresh = (way_out(persistence, age) - way_out(persistence, age - 1)) ** kappa
-        cost += alive * once * length
-        runs += alive
+        stands.append(alive)
+        cost.append(once * length / full)
         length = length + gain * fresh
         still = np.exp(-rate * fresh)
         states = [alive * (1 - still)] + [state * still for state in states[:-1]]
-    return cost / runs / full
+    return np.array(stands), np.array(cost)
 
 
-def predicted(rows, kappa):
-    """The speedup in tests by the law; pairs that are not near take one test either way."""
+def list_over_recursion(rows, defer, kappa):
+    """Tests of a list over those of the recursion, near pairs only: the mean from one rebuild to the next."""
+    stands, cost = by_age(rows, defer, kappa)
+    return (stands * cost).sum(axis=0) / stands.sum(axis=0)
+
+
+def window_over_recursion(rows, defer, kappa, first):
+    """The same from frame `first` on, of lists that are built in frame 0: a list that stands is as old as its last
+    rebuild, and is rebuilt where it stands no more."""
+    stands, cost = by_age(rows, defer, kappa)
+    falls = np.concatenate([np.zeros_like(stands[:1]), stands[:-1] - stands[1:]])
+    rebuilt = np.zeros_like(stands)
+    rebuilt[0] = 1
+    total = np.zeros(stands.shape[1])
+    for frame in range(len(stands)):
+        ages = slice(frame, None, -1)  # the oldest list of a frame was built in frame 0
+        if frame:
+            rebuilt[frame] = (rebuilt[:frame] * falls[frame:0:-1]).sum(axis=0)
+        if frame >= first:
+            total += (rebuilt[:frame + 1] * stands[ages] * cost[ages]).sum(axis=0)
+    return total / (len(stands) - first)
+
+
+def predicted(rows, kappa, first=None):
+    """The speedup in tests by the law, of a whole run or of its frames from `first` on; pairs that are not near take one
+    test either way."""
     result = np.full(len(rows), np.nan)
     for name, defer in LISTS.items():
         of_list = (rows.strategy == name).to_numpy()
         part = rows[of_list]
         far = part.pair_runs - part.near_runs
-        ratio = list_over_recursion(part, defer, kappa)
+        ratio = (list_over_recursion(part, defer, kappa) if first is None else
+                 window_over_recursion(part, defer, kappa, first))
         result[of_list] = (far + part.tests) / (far + part.tests * ratio)
     return result
 

@@ -2,7 +2,6 @@
 """The report as HTML: a section for each record, and the page around them."""
 
 import html
-import json
 import re
 import shutil
 import subprocess
@@ -13,9 +12,9 @@ from pathlib import Path
 import pandas as pd
 
 import findings
+import provenance
 import records
 import words
-from refused import Refused
 
 PLOTS = Path(__file__).resolve().parent
 MOST_ROWS = 1000  # of a table; the record has them all
@@ -33,25 +32,31 @@ class Section:
     machine: dict
     command: str
     definition: str
+    results: list  # what results.md says of it
 
 
 def section_of(record, out):
     """Reads a record, and puts its figures beside the page."""
     rows = records.read(record)
     definition = rows.attrs["definition"]
-    machine = read_text(record / "machine.json")
-    try:
-        machine = json.loads(machine) if machine else {}
-    except ValueError as fault:
-        raise Refused(f"{record}/machine.json: {fault}") from None
+    machine = provenance.machine_of(record)
     return Section(rows.attrs["name"], record.resolve().name, definition.get("description", ""),
                    figures_of(record, rows.attrs["name"], out), rows, medians(rows), machine,
                    read_text(record / "command.txt").strip(),
-                   read_text(record / "definition.toml").strip())
+                   read_text(record / "definition.toml").strip(), paragraphs_on(record))
 
 
 def read_text(path):
     return path.read_text() if path.is_file() else ""
+
+
+def paragraphs_on(record):
+    """Those of results.md that link to this record; its numbers are held against the records by a test."""
+    results = PLOTS.parent / "experiments" / "results.md"
+    if record.resolve().parent != results.parent / "record":
+        return []
+    return [part for part in read_text(results).split("\n\n")
+            if f"](record/{record.resolve().name})" in part and not part.startswith("|")]
 
 
 def figures_of(record, name, out):
@@ -113,6 +118,14 @@ def table_of(section):
             "</div></details>")
 
 
+def from_markdown(part):
+    """A paragraph of results.md as HTML: links without addresses, bold, code; HTML that stands in it stays."""
+    part = re.sub(r"\(\[record\]\([^)]*\)(?:[:,] )?", "(", part).replace(" ()", "")
+    part = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", part).replace("N<sub>", "<i>N</i><sub>")
+    part = re.sub(r"\*\*(.*?)\*\*", r"<b>\1</b>", part)
+    return re.sub(r"`([^`]*)`", r"<code>\1</code>", part)
+
+
 def head(column, unit, kind):
     title = words.called(column, kind) + (f", {unit}" if unit else "")
     return f'<th scope="col" title="{text(title)}"><button type="button">{text(column)}</button></th>'
@@ -120,10 +133,12 @@ def head(column, unit, kind):
 
 def facts_of(section):
     machine = dict(section.machine)
-    version, _, commit = str(machine.pop("bvlab", "")).partition(" ")
+    by = provenance.made(machine)
     if str(machine.get("memory", "")).endswith(" kB"):
         machine["memory"] = f"{int(machine['memory'].split()[0]) / 1e6:.0f} GB"
-    facts = [("Command", f"<code>{text(section.command)}</code>"), ("Commit", f"<code>{text(commit)}</code> (bvlab {text(version)})"),
+    facts = [("Command", f"<code>{text(section.command)}</code>"),
+             ("Commit", f"<code>{text(by.commit)}</code>{' with changes' if by.changes else ''} (bvlab {text(by.version)})"
+              if by.commit else ""), ("Date", text(by.date)),
              ("Machine", text(", ".join(f"{machine[k]}{' cores' if k == 'cores' else ''}" for k in
                                         ("processor", "cores", "memory", "system") if k in machine))),
              ("Compiler", text(f"{machine.get('compiler', '')} {machine.get('flags', '')}")),
@@ -140,6 +155,7 @@ def html_of(section, anchor):
     return (f'<section id="{anchor}" class="experiment"><h2><a href="#{anchor}">{text(section.name)}</a></h2>'
             f'<p class="asks">{text(section.description)}</p>'
             + (f'<p class="says">{text(said)}</p>' if said else "")
+            + "".join(f'<p class="results">{from_markdown(part)}</p>' for part in section.results)
             + f'<div class="figures">{figures}</div>{table_of(section)}{facts_of(section)}</section>')
 
 

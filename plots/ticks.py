@@ -10,7 +10,7 @@ from words import number
 
 
 def spreads(values, least=25):
-    """Whether the data asks for a logarithmic axis: the most is so many times the least."""
+    """Whether the data asks for a logarithmic axis: the largest is at least `least` times the smallest."""
     values = np.asarray(values, float)
     positive = values[values > 0]
     if len(positive) < 2 or (values < 0).any():

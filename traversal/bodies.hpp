@@ -92,8 +92,8 @@ class Bodies {
         const ObjectPair& pair = pairs[fresh[std::min(first + k, fresh.size() - 1)]];
         a[k] = pair.i, b[k] = pair.j;
       }
-      const std::uint64_t culled = bits(
-          query.excludes(gather<B>(roots_.data(), a.data()), gather<B>(roots_.data(), b.data())));
+      const std::uint64_t culled =
+          bits(query.culls(gather<B>(roots_.data(), a.data()), gather<B>(roots_.data(), b.data())));
       for (std::size_t k = 0; k < W && first + k < fresh.size(); ++k)
         apart[fresh[first + k]] = culled >> k & 1;
     }

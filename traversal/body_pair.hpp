@@ -37,11 +37,11 @@ class BodyPair {
   Query& query() const { return query_; }
 
   template <class Roots = NoFront>
-  Walked from_roots(Start start = Start::roots) const {
+  TraversalStatistics from_roots(Start start = Start::roots) const {
     return traverse_from_roots<B, Roots>(a_, b_, query_, counter_, workspace_, start);
   }
   template <class Front>
-  Walked from_front(Front&& front) const {
+  TraversalStatistics from_front(Front&& front) const {
     return traverse<B>(a_, b_, query_, counter_, workspace_, front);
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Time-critical collision detection as hubbard1996approximating meant his spheres: so many tests
-/// of volumes and no more, the most promising first, and an answer at any time: touching, apart, or
-/// not known yet, with a bound on how deep one surface can have gone into the other.
+/// Time-critical collision detection as hubbard1996approximating meant his spheres: at most a
+/// given number of volume tests, the most promising first, and an answer at any time: touching,
+/// apart, or not known yet, with a bound on how deep one surface can have gone into the other.
 ///
 /// The bound. A pair of nodes in question stands for two patches of surface. Let D be the smaller
 /// patch's diameter, as it stands in the world. If the patches share a point, no point of that

@@ -13,7 +13,7 @@
 namespace bvlab {
 
 /// What a traversal had to do.
-struct Walked {
+struct TraversalStatistics {
   bool everything = true;     ///< false where the query stopped it
   std::size_t volumes = 0;    ///< pairs of volumes tested
   std::size_t triangles = 0;  ///< pairs of primitives tested

@@ -7,9 +7,9 @@
 /// larger than its parent right after it; so the parent that was descended last is that of the two
 /// with the smaller `least_above`. The sibling is the pair with the other child, found by a table.
 ///
-/// Two siblings in the front (a family) are tried in the run after the second one came into it,
-/// and after j times in vain in the next run whose number 2^j divides, j up to `most_failures`. A
-/// pair just raised is tried with its sibling in the same run, so that a front can rise all the
+/// Two siblings in the front (a sibling pair) are tried in the run after the second one came into
+/// it, and after j times in vain in the next run whose number 2^j divides, j up to `most_failures`.
+/// A pair just raised is tried with its sibling in the same run, so that a front can rise all the
 /// way at once. An entry whose sibling is not there costs nothing: it is idle until that comes.
 #pragma once
 
@@ -24,7 +24,7 @@
 namespace bvlab {
 
 /// Two siblings in a front, by their slots.
-struct Family {
+struct SiblingPair {
   NodePair parent;
   std::uint32_t first, second;
   bool raised = false;
@@ -123,67 +123,69 @@ class RisingFront : public Front {
     if (slot != 0) table_.set(slot, entries_), table_.set(0, entries_);
   }
 
-  /// The families that are due. Each run asks once, when its witness did not settle the matter.
+  /// The sibling pairs that are due. Each run asks once, when its witness did not settle the
+  /// matter.
   template <class H>
-  void propose(const H& a, const H& b, std::vector<Family>& families) {
-    families.clear();
+  void propose(const H& a, const H& b, std::vector<SiblingPair>& sibling_pairs) {
+    sibling_pairs.clear();
     const auto due = static_cast<unsigned>(std::countr_zero(++run_));
     for (std::size_t slot = 0; slot < size(); ++slot)
       if (failures_[slot] <= due) {
-        const Family family = family_of(slot, a, b);
-        if (family.second == SlotTable::nowhere) {
+        const SiblingPair siblings = sibling_pair_of(slot, a, b);
+        if (siblings.second == SlotTable::nowhere) {
           failures_[slot] = idle;
         } else {
-          failures_[family.second] = idle;  // the first one speaks for both
-          families.push_back(family);
+          failures_[siblings.second] = idle;  // the first one speaks for both
+          sibling_pairs.push_back(siblings);
         }
       }
   }
 
-  /// The parent of families[i] is apart: replaces its children, and proposes it with its sibling.
+  /// The parent of sibling_pairs[i] is apart: replaces its children, and proposes it with its
+  /// sibling.
   template <class H>
-  void raise(const H& a, const H& b, std::vector<Family>& families, std::size_t i) {
-    families[i].raised = true;
+  void raise(const H& a, const H& b, std::vector<SiblingPair>& sibling_pairs, std::size_t i) {
+    sibling_pairs[i].raised = true;
     const auto [parent, first, second] =
-        std::tuple(families[i].parent, families[i].first, families[i].second);
+        std::tuple(sibling_pairs[i].parent, sibling_pairs[i].first, sibling_pairs[i].second);
     table_.erase(entries_[first], entries_);
     table_.erase(entries_[second], entries_);
     entries_[first] = parent;
     table_.set(first, entries_);
     failures_[first] = fresh;
     failures_[second] = gone;
-    const Family next = family_of(first, a, b);
-    if (next.second != SlotTable::nowhere) families.push_back(next);
+    const SiblingPair next = sibling_pair_of(first, a, b);
+    if (next.second != SlotTable::nowhere) sibling_pairs.push_back(next);
   }
 
   /// It is not.
-  void refuse(const Family& family) {
-    auto& failures = failures_[family.first];
+  void refuse(const SiblingPair& siblings) {
+    auto& failures = failures_[siblings.first];
     if (failures < most_failures) ++failures;
   }
 
   /// Puts what was raised behind all other entries, and says how many that is.
-  std::size_t settle(std::vector<Family>& families) {
+  std::size_t settle(std::vector<SiblingPair>& sibling_pairs) {
     std::size_t raised = 0;
-    for (Family& family : families) {
-      family.stays = family.raised && failures_[family.first] == fresh &&
-                     entries_[family.first] == family.parent;
-      if (!family.stays) continue;
-      table_.erase(family.parent, entries_);
-      failures_[family.first] = gone;
+    for (SiblingPair& siblings : sibling_pairs) {
+      siblings.stays = siblings.raised && failures_[siblings.first] == fresh &&
+                       entries_[siblings.first] == siblings.parent;
+      if (!siblings.stays) continue;
+      table_.erase(siblings.parent, entries_);
+      failures_[siblings.first] = gone;
       ++raised;
     }
-    for (const Family& family : families)
-      if (family.raised) fill(family.first), fill(family.second);
-    for (const Family& family : families)
-      if (family.stays) add(family.parent);
+    for (const SiblingPair& siblings : sibling_pairs)
+      if (siblings.raised) fill(siblings.first), fill(siblings.second);
+    for (const SiblingPair& siblings : sibling_pairs)
+      if (siblings.stays) add(siblings.parent);
     return raised;
   }
 
  private:
-  /// The longest wait is 2^most_failures runs: for bodies at rest, whose families are at most half
-  /// their entries, 1/32 of a test for each entry and run. Of 1 to 1024 runs, on random walks, 8
-  /// and 16 are within 7 % of the best at every motion.
+  /// The longest wait is 2^most_failures runs: for bodies at rest, whose sibling pairs are at most
+  /// half their entries, 1/32 of a test for each entry and run. Of 1 to 1024 runs, on random walks,
+  /// 8 and 16 are within 7 % of the best at every motion.
   static constexpr std::uint8_t most_failures = 4;
   /// Not failures: due in no run; raised in this one; not an entry any more.
   static constexpr std::uint8_t idle = 253, fresh = 254, gone = 255;
@@ -192,7 +194,7 @@ class RisingFront : public Front {
 
   /// Of an entry, without a second one where that is not in the front; the roots never have one.
   template <class H>
-  Family family_of(std::size_t slot, const H& a, const H& b) const {
+  SiblingPair sibling_pair_of(std::size_t slot, const H& a, const H& b) const {
     const NodePair pair = entries_[slot];
     NodePair parent = pair, other = pair;
     const bool by_b =

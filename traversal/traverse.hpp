@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The loop: pairs of nodes are tested W at a time; a pair that the query excludes is an end, a
+/// The loop: pairs of nodes are tested W at a time; a pair that the query culls is an end, a
 /// pair of leaves hands its primitives to the query, any other is replaced by two pairs, the larger
 /// node being descended, or by the four pairs of all children.
 ///
@@ -28,12 +28,12 @@
 namespace bvlab {
 
 /// A query says which pairs of volumes need no further look, and takes the primitives of the rest.
-///   excludes(p, q)        a mask over posed volumes p of body a and q of body b; where no bound is
+///   culls(p, q)           a mask over posed volumes p of body a and q of body b; where no bound is
 ///                         wanted, a matter of the volumes alone
 ///   primitives(pending)   takes one candidate or more; says whether the traversal can end
-///   patience              so many candidates may be held back before `primitives` must be called
+///   buffer_size           the most candidates that are held back before `primitives` is called
 ///   wants_bound           if there and true: one pair of near leaves is handed over first, near
-///                         pairs are looked at before far ones, and `excludes(gap)` says the same
+///                         pairs are looked at before far ones, and `culls(gap)` says the same
 /// The bvlab program makes it by `asked(options)` and takes `answer()`, true or false or a number;
 /// or makes it by `asked(options, found)`, and it appends pairs of primitives to `found`. And for
 /// strategies that keep margins:
@@ -44,9 +44,9 @@ template <class Q, class P>
 concept Query = requires(Q query, const P& p, std::span<const Candidate> pending) {
   { Q::name } -> std::convertible_to<std::string_view>;
   { Q::description } -> std::convertible_to<std::string_view>;
-  query.excludes(p, p);
+  query.culls(p, p);
   { query.primitives(pending) } -> std::same_as<Outcome>;
-  { Q::patience } -> std::convertible_to<std::size_t>;
+  { Q::buffer_size } -> std::convertible_to<std::size_t>;
 };
 
 template <class Q>
@@ -61,7 +61,7 @@ class OpenPairs {
   void clear() { size_ = 0; }
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
-  /// Makes room for so many more.
+  /// Makes room for this number of further entries.
   void reserve(std::size_t more) {
     if (pairs_.size() < size_ + more) pairs_.resize(2 * (size_ + more));
   }
@@ -86,12 +86,12 @@ struct Workspace {
   std::vector<Candidate> pending;
   std::vector<Verdict> verdicts;
   std::vector<std::uint32_t> due;
-  std::vector<Family> families;
+  std::vector<SiblingPair> sibling_pairs;
 };
 
 namespace detail {
 
-/// Which pairs of volumes the query excludes, as bits; the gaps to `gaps` where they are wanted.
+/// Which pairs of volumes the query culls, as bits; the gaps to `gaps` where they are wanted.
 template <bool kGaps, class P, class Query, class T>
 [[gnu::always_inline]] inline std::uint64_t excluded(const P& p, const P& q, Query& query,
                                                      [[maybe_unused]] T* gaps) {
@@ -101,9 +101,9 @@ template <bool kGaps, class P, class Query, class T>
       apart.copy_to(gaps, stdx::element_aligned);
     else
       gaps[0] = apart;
-    if constexpr (wants_bound<Query>()) return bits(query.excludes(apart));
+    if constexpr (wants_bound<Query>()) return bits(query.culls(apart));
   }
-  return bits(query.excludes(p, q));
+  return bits(query.culls(p, q));
 }
 
 /// The same by itself, so that it is compiled once for all strategies and counters.
@@ -123,35 +123,35 @@ template <class Some, bool kGaps, class P, class Query, class T>
   return excluded<kGaps>(gather<Some>(a, nodes_a), gather<Some>(b, nodes_b), query, gaps);
 }
 
-template <class B, class V, class Query, class Counter, class Keeping>
+template <class B, class V, class Query, class Counter, class FrontPolicy>
 class Traversal {
   static constexpr int W = width<B>();
   using Node = typename Hierarchy<V>::Node;
 
  public:
-  Traversal(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Keeping keeping,
+  Traversal(Body<V>& a, Body<V>& b, Query& query, Counter& counter, FrontPolicy front_policy,
             Workspace& workspace)
       : a_(a),
         b_(b),
         query_(query),
         counter_(counter),
-        keeping_(keeping),
+        front_policy_(front_policy),
         workspace_(workspace),
         open_(workspace.open),
         pending_(workspace.pending),
         verdicts_(workspace.verdicts),
         due_(workspace.due),
-        families_(workspace.families) {}
+        sibling_pairs_(workspace.sibling_pairs) {}
 
   /// From the roots where no front is kept, or from what is below them.
-  Walked run(Start start = Start::roots) {
+  TraversalStatistics run(Start start = Start::roots) {
     open_.clear();
     pending_.clear();
     bool stopped = false;
     if constexpr (wants_bound()) stopped = find_bound();
-    if constexpr (Keeping::margins) {
+    if constexpr (FrontPolicy::margins) {
       stopped = stopped || sweep_due();
-    } else if constexpr (Keeping::kept) {
+    } else if constexpr (FrontPolicy::kept) {
       stopped = stopped || sweep();
     } else if (start == Start::below_roots) {
       open_.reserve(4);
@@ -164,35 +164,36 @@ class Traversal {
     }
     while (!open_.empty() && !stopped) stopped = look_at<false>(take_open(), 0);
     stopped = stopped || flush_unless_enough();
-    if constexpr (Keeping::kept) {
+    if constexpr (FrontPolicy::kept) {
       // What was pushed but not reached stays to be looked at next time.
-      while (!open_.empty()) keeping_.front.add(open_.pop());
-      if (witness_ != Outcome::none) keeping_.front.bring_forward(witness_);
-      if constexpr (Keeping::margins)
-        if (stopped) keeping_.front.leave_rest();
+      while (!open_.empty()) front_policy_.front.add(open_.pop());
+      if (witness_ != Outcome::none) front_policy_.front.bring_forward(witness_);
+      if constexpr (FrontPolicy::margins)
+        if (stopped) front_policy_.front.leave_rest();
     }
-    walked_.everything = !stopped;
-    return walked_;
+    statistics_.everything = !stopped;
+    return statistics_;
   }
 
  private:
   static constexpr bool wants_bound() { return bvlab::wants_bound<Query>(); }
 
-  static constexpr bool keeps_gaps() { return Keeping::margins || wants_bound(); }
+  static constexpr bool keeps_gaps() { return FrontPolicy::margins || wants_bound(); }
 
   /// All entries of the front, the witness by itself.
-  bool sweep() requires Keeping::kept {
+  bool sweep() requires FrontPolicy::kept {
     bool stopped = false;
-    std::size_t next = 0, end = keeping_.front.size();
-    if constexpr (Keeping::rises) {
-      if (keeping_.front.witnessed() && (look_at<true>(take_front(0, 1), 0) || flush()))
+    std::size_t next = 0, end = front_policy_.front.size();
+    if constexpr (FrontPolicy::rises) {
+      if (front_policy_.front.witnessed() && (look_at<true>(take_front(0, 1), 0) || flush()))
         return true;
       end = raise();
-      next = keeping_.front.witnessed();
+      next = front_policy_.front.witnessed();
     }
     while (next < end && !stopped) {
       const int count = take_front(next, end);
-      stopped = look_at<true>(count, next) || (next == 0 && keeping_.front.witnessed() && flush());
+      stopped =
+          look_at<true>(count, next) || (next == 0 && front_policy_.front.witnessed() && flush());
       next += static_cast<std::size_t>(count);
       while (open_.size() >= W && !stopped) stopped = look_at<false>(take_open(), 0);
     }
@@ -201,12 +202,12 @@ class Traversal {
 
   /// Tries the parents that the front proposes and, where one is apart, its parent after it. Says
   /// how many entries are still to be looked at: they come first, those just raised last.
-  std::size_t raise() requires Keeping::rises {
-    keeping_.front.propose(a_.hierarchy(), b_.hierarchy(), families_);
-    for (std::size_t next = 0; next < families_.size();) {
-      const int count = static_cast<int>(std::min<std::size_t>(W, families_.size() - next));
+  std::size_t raise() requires FrontPolicy::rises {
+    front_policy_.front.propose(a_.hierarchy(), b_.hierarchy(), sibling_pairs_);
+    for (std::size_t next = 0; next < sibling_pairs_.size();) {
+      const int count = static_cast<int>(std::min<std::size_t>(W, sibling_pairs_.size() - next));
       for (int i = 0; i < count; ++i) {
-        const NodePair& pair = families_[next + static_cast<std::size_t>(i)].parent;
+        const NodePair& pair = sibling_pairs_[next + static_cast<std::size_t>(i)].parent;
         nodes_a_[i] = pair.a, nodes_b_[i] = pair.b;
         a_.require(pair.a, counter_);
         b_.require(pair.b, counter_);
@@ -215,31 +216,31 @@ class Traversal {
       std::uint64_t apart = test(count);
       for (int i = 0; i < count; ++i, ++next, apart >>= 1)
         if (apart & 1)
-          keeping_.front.raise(a_.hierarchy(), b_.hierarchy(), families_, next);
+          front_policy_.front.raise(a_.hierarchy(), b_.hierarchy(), sibling_pairs_, next);
         else
-          keeping_.front.refuse(families_[next]);
+          front_policy_.front.refuse(sibling_pairs_[next]);
     }
-    const std::size_t raised = keeping_.front.settle(families_);
-    if (!keeping_.front.witnessed()) witness_ = Outcome::none;
-    return keeping_.front.size() - raised;
+    const std::size_t raised = front_policy_.front.settle(sibling_pairs_);
+    if (!front_policy_.front.witnessed()) witness_ = Outcome::none;
+    return front_policy_.front.size() - raised;
   }
 
   /// The entries whose deadlines have passed, the witness first where it is one of them or a bound
   /// is wanted.
-  bool sweep_due() requires Keeping::margins {
-    const double now = keeping_.clock.now();
-    const std::uint32_t witness = keeping_.front.witness();
-    const bool first =
-        keeping_.front.witnessed() && (wants_bound() || !(keeping_.front.deadline(witness) > now));
+  bool sweep_due() requires FrontPolicy::margins {
+    const double now = front_policy_.clock.now();
+    const std::uint32_t witness = front_policy_.front.witness();
+    const bool first = front_policy_.front.witnessed() &&
+                       (wants_bound() || !(front_policy_.front.deadline(witness) > now));
     if (first) {
-      const NodePair& pair = keeping_.front[witness];
+      const NodePair& pair = front_policy_.front[witness];
       const Node &a = a_.hierarchy().node(pair.a), &b = b_.hierarchy().node(pair.b);
-      if (keeping_.front.take_brief_look() && hits_still(a, b, witness)) return true;
+      if (front_policy_.front.take_brief_look() && hits_still(a, b, witness)) return true;
       hold(a, b, witness);
       if (flush_unless_enough()) return true;
     }
     auto& due = due_;
-    keeping_.front.collect(now + query_.limit(), due);
+    front_policy_.front.collect(now + query_.limit(), due);
     // It has its new deadline; where that has passed already, the front must go on to say so.
     const bool still_due = first && std::erase(due, witness) > 0;
     bool stopped = false;
@@ -249,13 +250,14 @@ class Traversal {
       next += static_cast<std::size_t>(count);
       while (open_.size() >= W && !stopped) stopped = look_at<false>(take_open(), 0);
     }
-    if (still_due) keeping_.front.leave_rest();
+    if (still_due) front_policy_.front.leave_rest();
     return stopped;
   }
 
   /// Whether a witness that never lasts long is one still, found without its margin, which is as
-  /// dear as ten such looks.
-  bool hits_still(const Node& a, const Node& b, std::uint32_t witness) requires Keeping::margins {
+  /// expensive as ten such looks.
+  bool hits_still(const Node& a, const Node& b,
+                  std::uint32_t witness) requires FrontPolicy::margins {
     if constexpr (Query::one_hit_is_enough && !wants_bound()) {
       if (std::size_t{a.count} * b.count > portion) return false;
       hold(a, b, witness);
@@ -263,7 +265,7 @@ class Traversal {
       if (outcome.enough) {
         // Known to bodies that stay where they are; when they have moved it is looked at again.
         const Candidate& hit = pending_[outcome.witness];
-        keeping_.front.add_hit(witness, MarginFront::passed, hit.a, hit.b);
+        front_policy_.front.add_hit(witness, MarginFront::passed, hit.a, hit.b);
         witness_ = witness;
       }
       count_primitives(outcome);
@@ -274,7 +276,7 @@ class Traversal {
 
   /// The slot of the i-th entry of this sweep.
   std::size_t slot_of(std::size_t i) const {
-    if constexpr (Keeping::margins)
+    if constexpr (FrontPolicy::margins)
       return due_[i];
     else
       return i;
@@ -283,8 +285,8 @@ class Traversal {
   /// Goes down to one pair of leaves, always to the nearer child, and hands their primitives over.
   /// Not where a witness of the last run does that better.
   bool find_bound() {
-    if constexpr (Keeping::kept)
-      if (keeping_.front.witnessed()) return false;
+    if constexpr (FrontPolicy::kept)
+      if (front_policy_.front.witnessed()) return false;
     a_.require(0, counter_);
     b_.require(0, counter_);
     NodePair pair{0, 0};
@@ -319,13 +321,13 @@ class Traversal {
     return count;
   }
 
-  int take_front(std::size_t next, std::size_t end) requires Keeping::kept {
+  int take_front(std::size_t next, std::size_t end) requires FrontPolicy::kept {
     // A witness is tested by itself: most often it settles the matter, or most of it.
-    const bool alone = !Keeping::margins && next == 0 && keeping_.front.witnessed();
+    const bool alone = !FrontPolicy::margins && next == 0 && front_policy_.front.witnessed();
     const std::size_t most = alone ? 1 : W;
     const int count = static_cast<int>(std::min(most, end - next));
     for (int i = 0; i < count; ++i) {
-      const NodePair pair = keeping_.front[slot_of(next + static_cast<std::size_t>(i))];
+      const NodePair pair = front_policy_.front[slot_of(next + static_cast<std::size_t>(i))];
       nodes_a_[i] = pair.a, nodes_b_[i] = pair.b;
       a_.require(pair.a, counter_);
       b_.require(pair.b, counter_);
@@ -339,18 +341,18 @@ class Traversal {
     count_tests(static_cast<std::size_t>(count));
     open_.reserve(4 * W);
     std::uint64_t excluded = test(count);
-    if constexpr (Keeping::margins) excluded &= ~worth_opening(excluded);
-    if constexpr (Keeping::kept && (Keeping::margins || !kFromFront))
+    if constexpr (FrontPolicy::margins) excluded &= ~worth_opening(excluded);
+    if constexpr (FrontPolicy::kept && (FrontPolicy::margins || !kFromFront))
       for (std::uint64_t rest = excluded; rest; rest &= rest - 1) {
         const int i = std::countr_zero(rest);
-        if constexpr (!Keeping::margins) {
-          keeping_.front.add({nodes_a_[i], nodes_b_[i]});
+        if constexpr (!FrontPolicy::margins) {
+          front_policy_.front.add({nodes_a_[i], nodes_b_[i]});
         } else {
-          const double deadline = keeping_.clock.deadline(static_cast<double>(gaps_[i]));
+          const double deadline = front_policy_.clock.deadline(static_cast<double>(gaps_[i]));
           if constexpr (kFromFront)
-            keeping_.front.expire_at(slot_of(first + static_cast<std::size_t>(i)), deadline);
+            front_policy_.front.expire_at(slot_of(first + static_cast<std::size_t>(i)), deadline);
           else
-            keeping_.front.add({nodes_a_[i], nodes_b_[i]}, deadline);
+            front_policy_.front.add({nodes_a_[i], nodes_b_[i]}, deadline);
         }
       }
     for_each_near(~excluded & all(count), [&](std::size_t i) {
@@ -360,9 +362,9 @@ class Traversal {
       enter<kFromFront>(pair, slot);
     });
     // Margins are found for a batch at once.
-    constexpr std::size_t patience =
-        std::max<std::size_t>(Query::patience, Keeping::margins ? 7 : 0);
-    return (enough_ || pending_.size() > patience) && flush_unless_enough();
+    constexpr std::size_t buffer_size =
+        std::max<std::size_t>(Query::buffer_size, FrontPolicy::margins ? 7 : 0);
+    return (enough_ || pending_.size() > buffer_size) && flush_unless_enough();
   }
 
   /// A pair that is not excluded: its triangles are held, or it is descended.
@@ -371,10 +373,10 @@ class Traversal {
     const Node& a = a_.hierarchy().node(pair.a);
     const Node& b = b_.hierarchy().node(pair.b);
     if (a.count && b.count) {
-      if constexpr (Keeping::kept && !kFromFront) slot = add_leaves(pair);
+      if constexpr (FrontPolicy::kept && !kFromFront) slot = add_leaves(pair);
       hold(a, b, slot);
     } else {
-      if constexpr (kFromFront) keeping_.front.open(slot);
+      if constexpr (kFromFront) front_policy_.front.open(slot);
       descend(pair, a, b);
     }
   }
@@ -423,12 +425,12 @@ class Traversal {
   ///
   /// An entry that has a gap of g to spare costs a test in g / step runs, or in every run. One of
   /// two inner nodes that is opened costs two such entries, whose gaps are wider by about a quarter
-  /// of the size of the node opened; one of two leaves, whose triangles are as dear as
+  /// of the size of the node opened; one of two leaves, whose triangles are as expensive as
   /// `triangle_cost` volumes, is farther from them by about half of both sizes. And all this does
   /// not pay for itself where gaps last for many runs anyway.
-  std::uint64_t worth_opening(std::uint64_t excluded) const requires Keeping::margins {
+  std::uint64_t worth_opening(std::uint64_t excluded) const requires FrontPolicy::margins {
     constexpr double triangle_cost = 3, leaf_gain = 0.5, inner_gain = 0.25, long_enough = 4;
-    const double step = keeping_.step, limit = query_.limit();
+    const double step = front_policy_.step, limit = query_.limit();
     std::uint64_t opened = 0;
     for (std::uint64_t rest = excluded; rest; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
@@ -446,7 +448,7 @@ class Traversal {
   }
 
   void count_tests(std::size_t tests) {
-    walked_.volumes += tests;
+    statistics_.volumes += tests;
     counter_.tested(tests);
   }
 
@@ -454,16 +456,16 @@ class Traversal {
     return a.count || (!b.count && b.size > a.size);
   }
 
-  std::size_t add_leaves(const NodePair& pair) requires Keeping::kept {
+  std::size_t add_leaves(const NodePair& pair) requires FrontPolicy::kept {
     // With margins, the deadline is set when the triangles have been tested.
-    if constexpr (Keeping::margins)
-      return keeping_.front.add(pair, std::numeric_limits<double>::infinity());
+    if constexpr (FrontPolicy::margins)
+      return front_policy_.front.add(pair, std::numeric_limits<double>::infinity());
     else
-      return keeping_.front.add(pair);
+      return front_policy_.front.add(pair);
   }
 
   void descend(const NodePair& pair, const Node& a, const Node& b) {
-    if (Keeping::descends_both && !a.count && !b.count) {
+    if (FrontPolicy::descends_both && !a.count && !b.count) {
       a_.require(a.first, counter_);
       b_.require(b.first, counter_);
       open_.push({a.first + 1, b.first + 1});
@@ -479,14 +481,14 @@ class Traversal {
     }
   }
 
-  /// The triangles of two leaves, to be tested with others; by themselves, so many at a time, where
-  /// they are too many to be held at once.
+  /// The triangles of two leaves, to be tested with others; by themselves, `portion` at a time,
+  /// where they are too many to be held at once.
   void hold(const Node& a, const Node& b, std::size_t slot) {
     if (std::size_t{a.count} * b.count > portion) [[unlikely]] {
       const Portions done =
-          in_portions(a_, b_, query_, counter_, keeping_, workspace_, a, b, slot, enough_);
+          in_portions(a_, b_, query_, counter_, front_policy_, workspace_, a, b, slot, enough_);
       enough_ = done.enough;
-      walked_.triangles += done.triangles;
+      statistics_.triangles += done.triangles;
       if (done.witness != Outcome::none) witness_ = done.witness;
       return;
     }
@@ -507,17 +509,17 @@ class Traversal {
   /// Tests all that is held, then the triangles of two leaves until the query has had enough. By
   /// a traversal of its own, so that no other one has to stay in memory for what is so rare.
   [[gnu::noinline]] static Portions in_portions(Body<V>& body_a, Body<V>& body_b, Query& query,
-                                                Counter& counter, Keeping keeping,
+                                                Counter& counter, FrontPolicy front_policy,
                                                 Workspace& workspace, const Node& a, const Node& b,
                                                 std::size_t slot, bool enough) {
-    Traversal own(body_a, body_b, query, counter, keeping, workspace);
+    Traversal own(body_a, body_b, query, counter, front_policy, workspace);
     enough = enough || own.flush();
     float deadline = std::numeric_limits<float>::infinity();
     const auto test = [&] {
       enough = own.flush();
       // Each portion gives the entry a deadline of its own; the first of them counts.
-      if constexpr (Keeping::margins)
-        if (slot != Outcome::none) deadline = std::min(deadline, keeping.front.deadline(slot));
+      if constexpr (FrontPolicy::margins)
+        if (slot != Outcome::none) deadline = std::min(deadline, front_policy.front.deadline(slot));
     };
     for (std::uint32_t i = a.first; i < a.first + a.count && !enough; ++i)
       for (std::uint32_t j = b.first; j < b.first + b.count && !enough; ++j) {
@@ -525,20 +527,20 @@ class Traversal {
         if (own.pending_.size() == portion) test();
       }
     if (!enough && !own.pending_.empty()) test();
-    if constexpr (Keeping::margins)
+    if constexpr (FrontPolicy::margins)
       if (slot != Outcome::none)
-        keeping.front.expire_at(slot, enough ? MarginFront::passed : deadline);
-    return {enough, own.walked_.triangles, own.witness_};
+        front_policy.front.expire_at(slot, enough ? MarginFront::passed : deadline);
+    return {enough, own.statistics_.triangles, own.witness_};
   }
 
   /// Tests what is held; nothing where the query has had enough of two leaves by themselves: what
   /// came after them is to be looked at next time.
   bool flush_unless_enough() {
     if (!enough_) return flush();
-    if constexpr (Keeping::margins)
+    if constexpr (FrontPolicy::margins)
       for (const Candidate& candidate : pending_)
         if (candidate.slot != Outcome::none)
-          keeping_.front.expire_at(candidate.slot, MarginFront::passed);
+          front_policy_.front.expire_at(candidate.slot, MarginFront::passed);
     pending_.clear();
     return true;
   }
@@ -546,7 +548,7 @@ class Traversal {
   // Small without margins, and the whole traversal stays in registers if it is inlined.
   [[gnu::always_inline]] bool flush() {
     if (pending_.empty()) return false;
-    if constexpr (Keeping::margins) {
+    if constexpr (FrontPolicy::margins) {
       return flush_with_margins();
     } else {
       const Outcome outcome = query_.primitives(pending_);
@@ -556,13 +558,13 @@ class Traversal {
     }
   }
 
-  bool flush_with_margins() requires Keeping::margins {
+  bool flush_with_margins() requires FrontPolicy::margins {
     verdicts_.assign(pending_.size(), {});
     const Outcome outcome = query_.primitives(pending_, verdicts_);
     settle();
     if (outcome.witness != Outcome::none) {
       witness_ = pending_[outcome.witness].slot;
-      keeping_.front.expect(verdicts_[outcome.witness].margin < lasting * keeping_.step);
+      front_policy_.front.expect(verdicts_[outcome.witness].margin < lasting * front_policy_.step);
     }
     count_primitives(outcome);
     return outcome.enough;
@@ -570,13 +572,13 @@ class Traversal {
 
   void count_primitives(const Outcome& outcome) {
     const std::size_t tested = outcome.enough ? outcome.witness + 1 : pending_.size();
-    walked_.triangles += tested;
+    statistics_.triangles += tested;
     counter_.primitives(tested);
     pending_.clear();
   }
 
   /// A pair of leaves is next looked at when the first of its verdicts can change.
-  void settle() requires Keeping::margins {
+  void settle() requires FrontPolicy::margins {
     for (std::size_t first = 0; first < pending_.size();) {
       const std::size_t slot = pending_[first].slot;
       double least = std::numeric_limits<double>::infinity();
@@ -585,17 +587,17 @@ class Traversal {
         const Verdict& verdict = verdicts_[i];
         least = std::min(least, verdict.margin);
         if (verdict.hit && slot != Outcome::none)
-          keeping_.front.add_hit(slot, keeping_.clock.deadline(verdict.margin), pending_[i].a,
-                                 pending_[i].b);
+          front_policy_.front.add_hit(slot, front_policy_.clock.deadline(verdict.margin),
+                                      pending_[i].a, pending_[i].b);
       }
       if (slot != Outcome::none)
-        keeping_.front.expire_at(slot,
-                                 least < 0 ? MarginFront::passed : keeping_.clock.deadline(least));
+        front_policy_.front.expire_at(
+            slot, least < 0 ? MarginFront::passed : front_policy_.clock.deadline(least));
       first = i;
     }
   }
 
-  /// Two leaves with more candidates are tested by themselves, so many at a time.
+  /// Two leaves with more candidates are tested by themselves, `portion` at a time.
   static constexpr std::size_t portion = 512;
   bool enough_ = false;  // the query has had enough of two such leaves
 
@@ -605,16 +607,16 @@ class Traversal {
   Body<V>& b_;
   Query& query_;
   Counter& counter_;
-  Keeping keeping_;
+  FrontPolicy front_policy_;
   Workspace& workspace_;
   OpenPairs& open_;
   std::vector<Candidate>& pending_;
   std::vector<Verdict>& verdicts_;
-  std::vector<std::uint32_t>& due_;  // slots to be looked at, where margins are kept
-  std::vector<Family>& families_;    // siblings tried, where the front rises
+  std::vector<std::uint32_t>& due_;          // slots to be looked at, where margins are kept
+  std::vector<SiblingPair>& sibling_pairs_;  // siblings tried, where the front rises
   std::array<std::uint32_t, W> nodes_a_, nodes_b_;
   std::array<Element<B>, keeps_gaps() ? W : 0> gaps_;
-  Walked walked_;
+  TraversalStatistics statistics_;
   std::size_t witness_ = Outcome::none;
 };
 
@@ -623,8 +625,8 @@ class Traversal {
 /// Runs the query over two bodies from their roots. B is the scalar or batch that volumes are
 /// tested in. Says whether everything was seen: false where the query stopped it.
 template <class B, class Roots = NoFront, class V, class Query, class Counter>
-Walked traverse_from_roots(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
-                           Workspace& workspace, Start start = Start::roots) {
+TraversalStatistics traverse_from_roots(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
+                                        Workspace& workspace, Start start = Start::roots) {
   return detail::Traversal<B, V, Query, Counter, Roots>(a, b, query, counter, {}, workspace)
       .run(start);
 }
@@ -632,8 +634,8 @@ Walked traverse_from_roots(Body<V>& a, Body<V>& b, Query& query, Counter& counte
 /// The same from a front, which is kept up to date: it never shrinks, and stays a partition also
 /// when the query stops the traversal. The entry at which it stopped is the first one then.
 template <class B, class V, class Query, class Counter>
-Walked traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace,
-                Front& front) {
+TraversalStatistics traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
+                             Workspace& workspace, Front& front) {
   return detail::Traversal<B, V, Query, Counter, KeptFront>(a, b, query, counter, {{}, front},
                                                             workspace)
       .run();
@@ -642,8 +644,8 @@ Walked traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspac
 /// The same from a front that rises where it can, which the strategy decides: parents are tried
 /// when the witness has been looked at and did not settle the matter, before all other entries.
 template <class B, class V, class Query, class Counter>
-Walked traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace,
-                RisingFront& front) {
+TraversalStatistics traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
+                             Workspace& workspace, RisingFront& front) {
   return detail::Traversal<B, V, Query, Counter, KeptRising>(a, b, query, counter, {{}, front},
                                                              workspace)
       .run();
@@ -652,8 +654,8 @@ Walked traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspac
 /// The same from a front with margins: looks at the entries whose deadlines have passed, and gives
 /// them new ones.
 template <class B, class V, class Query, class Counter>
-Walked traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace,
-                const KeptMargins& margins) {
+TraversalStatistics traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
+                             Workspace& workspace, const KeptMargins& margins) {
   return detail::Traversal<B, V, Query, Counter, KeptMargins>(a, b, query, counter, margins,
                                                               workspace)
       .run();

@@ -22,7 +22,7 @@
 #include "broadphase/settings.hpp"
 #include "hierarchies/geometry/morton.hpp"
 #include "traversal/bodies.hpp"
-#include "traversal/turned_box.hpp"
+#include "traversal/rotated_mesh_box.hpp"
 
 namespace bvlab {
 
@@ -44,7 +44,7 @@ class WorldOf {
     std::unordered_map<const TriangleMesh*, std::uint32_t> known;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       const auto [at, fresh] = known.try_emplace(&bodies_.mesh(i), known.size());
-      if (fresh) turned_boxes_.emplace_back(bodies_.mesh(i));
+      if (fresh) mesh_boxes_.emplace_back(bodies_.mesh(i));
       box_of_.push_back(at->second);
     }
   }
@@ -65,7 +65,7 @@ class WorldOf {
   void update(Counter& counter, Ask&& ask, Take&& take, Leave&& leave) {
     if (!placed_) origin_ = middle_of(poses_);
     placed_ = true;
-    for (const auto i : movers_) boxes_[i] = turned_boxes_[box_of_[i]](poses_[i], origin_);
+    for (const auto i : movers_) boxes_[i] = mesh_boxes_[box_of_[i]](poses_[i], origin_);
     if (!movers_.empty()) find_near(leave);
     order_movers();
     asked_ = 0;
@@ -181,8 +181,8 @@ class WorldOf {
   BodySet bodies_;
   Strategy prototype_;
   Method method_;
-  std::vector<TurnedBox> turned_boxes_;  // one for each mesh
-  std::vector<std::uint32_t> box_of_;    // which of them is a body's
+  std::vector<RotatedMeshBox> mesh_boxes_;  // one for each mesh
+  std::vector<std::uint32_t> box_of_;       // which of them is a body's
   std::vector<Pose> poses_;
   std::vector<Box<float>> boxes_;
   std::vector<std::vector<Neighbour>> neighbours_;

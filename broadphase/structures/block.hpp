@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Sixteen boxes side by side, one array per coordinate, compared with one box at once: six vector
 /// comparisons in AVX-512, and the same code for narrower registers. Empty lanes hold a sentinel
-/// that reaches nothing. Found pairs are packed to the left as they are written (the means of
+/// that overlaps nothing. Found pairs are packed to the left as they are written (the means of
 /// published box pruning, BibTeX: terdiman2018boxpruning).
 #pragma once
 

@@ -51,11 +51,24 @@ class BlockTree {
     return ids_.data() + std::size_t{leaf} * block_width;
   }
 
-  /// What the tree believes leaf k to lie in: as wide as its boxes or wider.
-  Box<T> reach(std::uint32_t k) const { return levels_[1][k / block_width].box(k % block_width); }
+  /// What the tree takes leaf k to lie in: as wide as its boxes or wider.
+  Box<T> leaf_bounds(std::uint32_t k) const {
+    return levels_[1][k / block_width].box(k % block_width);
+  }
   std::uint32_t slots() const { return static_cast<std::uint32_t>(ids_.size()); }
-  void set_reach(std::uint32_t k, const Box<T>& box) {
+  void set_leaf_bounds(std::uint32_t k, const Box<T>& box) {
     levels_[1][k / block_width].put(k % block_width, box);
+  }
+
+  /// Mean extent of a leaf along an axis.
+  double mean_leaf_extent() const {
+    double sum = 0;
+    for (std::uint32_t k = 0; k < leaves(); ++k) {
+      const Box<T> box = leaf_bounds(k);
+      for (int axis = 0; axis < 3; ++axis)
+        sum += static_cast<double>(box.hi[axis]) - static_cast<double>(box.lo[axis]);
+    }
+    return leaves() ? sum / (3.0 * leaves()) : 0;
   }
 
   /// Makes the box in this slot, sixteen to a leaf, and every level above as wide as `box`, which
@@ -76,7 +89,7 @@ class BlockTree {
     std::fill(ids_.begin() + static_cast<std::ptrdiff_t>(order.size()), ids_.end(), no_box);
     for (std::uint32_t k = 0; k < leaves(); ++k) {
       gather(leaf(k), ids(k), boxes);
-      set_reach(k, bounds(leaf(k)));
+      set_leaf_bounds(k, bounds(leaf(k)));
     }
     refit_above();
   }
@@ -93,7 +106,7 @@ class BlockTree {
     for (std::size_t level = 0; level < depth; ++level, nodes = blocks_over(nodes)) {
       const std::size_t had = levels_[level].size();
       levels_[level].resize(nodes, empty);
-      // Lanes past the last child must reach nothing, whatever stood there.
+      // Lanes past the last child must overlap nothing, whatever stood there.
       if (level > 0 && nodes > 0 && nodes <= had)
         for (std::size_t lane = children_of_last(level); lane < block_width; ++lane)
           levels_[level].back().put(static_cast<int>(lane), nowhere<T>());
@@ -101,7 +114,7 @@ class BlockTree {
     ids_.resize(std::size_t{count} * block_width, no_box);
   }
 
-  /// Recomputes every level above the leaves' reaches.
+  /// Recomputes every level above the leaves' bounds.
   void refit_above() {
     for (std::size_t level = 2; level < depth_; ++level)
       for (std::size_t k = 0; k < levels_[level - 1].size(); ++k)
@@ -109,14 +122,14 @@ class BlockTree {
                                             bounds(levels_[level - 1][k]));
   }
 
-  /// Calls visit(a, b) for a < b, two leaves whose reaches overlap, and visit(a, a) for every leaf,
+  /// Calls visit(a, b) for a < b, two leaves whose bounds overlap, and visit(a, a) for every leaf,
   /// from those under the blocks [first, last) of the top level's children on.
   template <class Visit>
   void join(Visit&& visit) const {
     if (leaves() > 0) join_self(depth_ - 1, 0, visit);
   }
 
-  /// Calls visit(k) for every leaf whose reach overlaps `box`.
+  /// Calls visit(k) for every leaf whose bounds overlap `box`.
   template <class Visit>
   void find(const Box<T>& box, Visit&& visit) const {
     if (leaves() > 0) find_below(depth_ - 1, 0, box, visit);

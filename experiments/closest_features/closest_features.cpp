@@ -28,12 +28,12 @@ class ConvexWorld {
   bool touching(std::size_t i, std::size_t j) { return distance(i, j) == 0; }
 
   double distance(std::size_t i, std::size_t j) {
-    const closest_features::Standing standing(polytopes_[i % polytopes_.size()], poses_[i],
-                                              polytopes_[j % polytopes_.size()], poses_[j]);
+    const closest_features::PosedPair posed(polytopes_[i % polytopes_.size()], poses_[i],
+                                            polytopes_[j % polytopes_.size()], poses_[j]);
     Effort effort;
-    const auto witness = methods_[i * poses_.size() + j].nearest(standing, effort);
+    const auto witness = methods_[i * poses_.size() + j].nearest(posed, effort);
     counter_.tested(effort.vertices), counter_.primitives(effort.steps);
-    return witness.distance(standing);
+    return witness.distance(posed);
   }
 
   const Counting& counter() const { return counter_; }

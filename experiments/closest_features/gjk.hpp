@@ -18,7 +18,7 @@ enum class Support { scan, climb };
 template <Support how>
 class Gjk {
  public:
-  Witness nearest(const Standing& standing, Effort& effort);
+  Witness nearest(const PosedPair& posed, Effort& effort);
 
  private:
   /// A vertex of the difference a - b, in a's frame.
@@ -33,8 +33,8 @@ class Gjk {
     void add(const Corner& corner) { corners[size++] = corner; }
   };
 
-  Corner corner(const Standing& standing, std::uint32_t a, std::uint32_t b) const {
-    return {a, b, standing.a->vertices()[a] - standing.b_in_a(standing.b->vertices()[b])};
+  Corner corner(const PosedPair& posed, std::uint32_t a, std::uint32_t b) const {
+    return {a, b, posed.a->vertices()[a] - posed.b_in_a(posed.b->vertices()[b])};
   }
   static std::uint32_t farthest(const Polytope& polytope, const Vec3<double>& direction,
                                 std::uint32_t start, Effort& effort);
@@ -144,15 +144,15 @@ Witness Gjk<how>::witness(bool apart) const {
 }
 
 template <Support how>
-Witness Gjk<how>::nearest(const Standing& standing, Effort& effort) {
+Witness Gjk<how>::nearest(const PosedPair& posed, Effort& effort) {
   Simplex start;
   if (how == Support::climb && simplex_.size > 0)
     for (std::size_t k = 0; k < simplex_.size; ++k)
-      start.add(corner(standing, simplex_.corners[k].a, simplex_.corners[k].b));
+      start.add(corner(posed, simplex_.corners[k].a, simplex_.corners[k].b));
   else
-    start.add(corner(standing, 0, 0));
+    start.add(corner(posed, 0, 0));
   simplex_ = reduced(start);
-  const double size = start.corners[0].at.norm() + standing.translation.norm();
+  const double size = start.corners[0].at.norm() + posed.translation.norm();
   // Every step brings the simplex nearer, or is the last: there is a next one only as long as
   // rounding does not hide it.
   for (double before = std::numeric_limits<double>::infinity();;) {
@@ -165,9 +165,8 @@ Witness Gjk<how>::nearest(const Standing& standing, Effort& effort) {
     if (!(squared < before)) return witness(true);
     before = squared;
     const auto& last = simplex_.corners[simplex_.size - 1];
-    const Corner next =
-        corner(standing, farthest(*standing.a, -v, last.a, effort),
-               farthest(*standing.b, standing.rotation.transpose() * v, last.b, effort));
+    const Corner next = corner(posed, farthest(*posed.a, -v, last.a, effort),
+                               farthest(*posed.b, posed.rotation.transpose() * v, last.b, effort));
     // v is nearest unless the support plane leaves room: 1e-14 of what is squared here is far
     // below 1e-12 of the distance.
     if (squared - v.dot(next.at) <= 1e-14 * squared) return witness(true);

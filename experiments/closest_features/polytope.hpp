@@ -62,13 +62,13 @@ class Polytope {
 };
 
 /// Two polytopes as they stand: the second one's points in the first one's frame, and back.
-struct Standing {
+struct PosedPair {
   const Polytope *a, *b;
   Pose pose_a, pose_b;
   Mat3<double> rotation;     ///< b to a
   Vec3<double> translation;  ///< b to a
 
-  Standing(const Polytope& a, const Pose& pose_a, const Polytope& b, const Pose& pose_b)
+  PosedPair(const Polytope& a, const Pose& pose_a, const Polytope& b, const Pose& pose_b)
       : a(&a),
         b(&b),
         pose_a(pose_a),

@@ -23,8 +23,8 @@ void VClip::Clipped::cut(double at_from, double at_to, Feature neighbour) {
 VClip::Clipped VClip::edge_across(int side) const {
   const auto& edge = of(side).edges()[features_[side].index];
   Clipped clipped;
-  clipped.from = standing_->across(side, edge.tail);
-  clipped.to = standing_->across(side, edge.head);
+  clipped.from = posed_->across(side, edge.tail);
+  clipped.to = posed_->across(side, edge.head);
   return clipped;
 }
 
@@ -50,8 +50,7 @@ bool VClip::follow(int side, const Clipped& clipped, const Slope& slope) {
 bool VClip::leaves_vertex(int side) {
   const Polytope& p = of(side);
   const std::uint32_t v = features_[side].index;
-  const Vec3<double> away =
-      standing_->across(1 - side, features_[1 - side].index) - p.vertices()[v];
+  const Vec3<double> away = posed_->across(1 - side, features_[1 - side].index) - p.vertices()[v];
   for (const auto e : p.edges_at(v)) {
     ++effort_->vertices;
     if (away.dot(p.vertices()[p.other_end(e, v)] - p.vertices()[v]) <= 0) continue;
@@ -88,7 +87,7 @@ bool VClip::leaves_edge(int side, const Vec3<double>& x) {
 VClip::Step VClip::vertex_edge(int side) {
   const Polytope& p = of(side);
   const std::uint32_t v = features_[side].index;
-  if (leaves_edge(1 - side, standing_->across(side, v))) return Step::moved;
+  if (leaves_edge(1 - side, posed_->across(side, v))) return Step::moved;
   Clipped edge = edge_across(1 - side);
   const Vec3<double>& at = p.vertices()[v];
   for (const auto e : p.edges_at(v)) {
@@ -131,7 +130,7 @@ VClip::Step VClip::vertex_face(int side) {
   const Polytope& p = of(1 - side);
   const auto& face = p.faces()[features_[1 - side].index];
   const std::uint32_t v = features_[side].index;
-  const Vec3<double> x = standing_->across(side, v);
+  const Vec3<double> x = posed_->across(side, v);
   double worst = 0;
   std::uint32_t beyond = 0;
   for (std::size_t k = 0; k < 3; ++k)
@@ -145,7 +144,7 @@ VClip::Step VClip::vertex_face(int side) {
   const double height = p.above(face, x);
   if (height == 0) return Step::touching;
   for (const auto e : of(side).edges_at(v)) {
-    const double end = p.above(face, standing_->across(side, of(side).other_end(e, v)));
+    const double end = p.above(face, posed_->across(side, of(side).other_end(e, v)));
     ++effort_->vertices;
     if (height > 0 ? end >= height : end <= height) continue;
     features_[side] = {Kind::edge, e};
@@ -229,7 +228,7 @@ Witness VClip::witness(Step last) const {
 
 bool VClip::certain(const Witness& witness) const {
   if (!witness.apart) return true;
-  const auto [distance, on_a, on_b] = witness.nearest_points(*standing_);
+  const auto [distance, on_a, on_b] = witness.nearest_points(*posed_);
   for (const int side : {0, 1}) {
     const Vec3<double> on = side == 0 ? on_a : on_b,
                        towards = side == 0 ? on_b - on_a : on_a - on_b;
@@ -239,8 +238,7 @@ bool VClip::certain(const Witness& witness) const {
       // that: the other point must be on the outer one.
       if (!any_face_sees(side, corners.vertices[k], towards)) return false;
       for (const auto e : of(side).edges_at(corners.vertices[k])) {
-        const Vec3<double> x =
-            standing_->in_world(side, of(side).other_end(e, corners.vertices[k]));
+        const Vec3<double> x = posed_->in_world(side, of(side).other_end(e, corners.vertices[k]));
         // A vertex that is nearer by this leaves the distance right to 1e-12; the second term is
         // what rounding makes of the product.
         const double room = 1e-12 * distance * distance +
@@ -254,7 +252,7 @@ bool VClip::certain(const Witness& witness) const {
 
 bool VClip::any_face_sees(int side, std::uint32_t vertex, const Vec3<double>& towards) const {
   const Polytope& p = of(side);
-  const Pose& pose = side == 0 ? standing_->pose_a : standing_->pose_b;
+  const Pose& pose = side == 0 ? posed_->pose_a : posed_->pose_b;
   const Vec3<double> there = pose.rotation.transpose() * towards;
   const auto edges = p.edges_at(vertex);
   return std::any_of(edges.begin(), edges.end(), [&](std::uint32_t e) {
@@ -263,8 +261,8 @@ bool VClip::any_face_sees(int side, std::uint32_t vertex, const Vec3<double>& to
   });
 }
 
-Witness VClip::nearest(const Standing& standing, Effort& effort) {
-  standing_ = &standing, effort_ = &effort;
+Witness VClip::nearest(const PosedPair& posed, Effort& effort) {
+  posed_ = &posed, effort_ = &effort;
   const std::size_t most = of(0).edges().size() + of(1).edges().size();
   for (std::size_t steps = 0; steps < most; ++steps) {
     ++effort.steps;
@@ -276,7 +274,7 @@ Witness VClip::nearest(const Standing& standing, Effort& effort) {
   }
   ++gave_up_;
   features_ = {};
-  return Gjk<Support::scan>().nearest(standing, effort);
+  return Gjk<Support::scan>().nearest(posed, effort);
 }
 
 }  // namespace bvlab::closest_features

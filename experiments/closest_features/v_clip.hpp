@@ -19,7 +19,7 @@ namespace bvlab::closest_features {
 
 class VClip {
  public:
-  Witness nearest(const Standing& standing, Effort& effort);
+  Witness nearest(const PosedPair& posed, Effort& effort);
   std::uint64_t gave_up() const { return gave_up_; }
 
  private:
@@ -45,7 +45,7 @@ class VClip {
     void cut(double at_from, double at_to, Feature neighbour);
   };
 
-  const Polytope& of(int side) const { return standing_->polytope(side); }
+  const Polytope& of(int side) const { return posed_->polytope(side); }
   Clipped edge_across(int side) const;
   Step step();
   Step vertex_vertex();
@@ -63,7 +63,7 @@ class VClip {
   bool any_face_sees(int side, std::uint32_t vertex, const Vec3<double>& towards) const;
   bool certain(const Witness& witness) const;
 
-  const Standing* standing_ = nullptr;
+  const PosedPair* posed_ = nullptr;
   Effort* effort_ = nullptr;
   std::array<Feature, 2> features_;
   std::uint64_t gave_up_ = 0;

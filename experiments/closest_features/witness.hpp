@@ -23,15 +23,15 @@ struct Witness {
   std::array<Corners, 2> corners;
   bool apart = true;  ///< false: the polytopes share a point
 
-  double distance(const Standing& standing) const {
-    return apart ? nearest_points(standing).distance : 0;
+  double distance(const PosedPair& posed) const {
+    return apart ? nearest_points(posed).distance : 0;
   }
 
-  TriangleDistance nearest_points(const Standing& standing) const {
+  TriangleDistance nearest_points(const PosedPair& posed) const {
     std::array<Triangle, 2> hulls;
     for (std::size_t side = 0; side < 2; ++side)
       for (std::size_t k = 0; k < 3; ++k)
-        hulls[side][k] = standing.in_world(
+        hulls[side][k] = posed.in_world(
             static_cast<int>(side), corners[side].vertices[std::min(k, corners[side].count - 1)]);
     return bvlab::distance(hulls[0], hulls[1]);
   }

@@ -16,13 +16,14 @@
 #include "experiments/replay/scene_page.hpp"
 #include "experiments/replay/topology_of.hpp"
 #include "experiments/scenes/read_mesh.hpp"
+#include "experiments/scenes/scene_x3d.hpp"
 
 namespace bvlab {
 namespace {
 
 struct Arguments {
   std::vector<std::string> meshes;
-  std::string trace, out, json, page, count = "off";
+  std::string trace, out, json, page, x3d, count = "off";
   std::optional<std::string> configuration;
   Variant variant;
   unsigned threads = 1;
@@ -142,12 +143,13 @@ void write_answers(const Arguments& arguments, const Trace& trace, const ReplayR
   }
 }
 
+std::string name(const std::string& file) {
+  return std::filesystem::path(file).filename().string();
+}
+
 /// Plays the trace again, so that what was timed was not watched.
 void write_page(const Arguments& arguments, std::span<const TriangleMesh> meshes,
                 const Trace& trace) {
-  const auto name = [](const std::string& file) {
-    return std::filesystem::path(file).filename().string();
-  };
   std::vector<std::string> names;
   for (const auto& file : arguments.meshes) names.push_back(name(file));
   write_whole(arguments.page,
@@ -159,8 +161,10 @@ void check(const Arguments& arguments) {
   require_place("--out", arguments.out);
   require_place("--json", arguments.json);
   require_place("--page", arguments.page);
+  require_place("--x3d", arguments.x3d);
   if (!arguments.budget) return;
-  if (!arguments.page.empty()) throw Unusable("--page", "shows whole answers; not with --budget");
+  for (const auto& [option, file] : {std::pair("--page", arguments.page), {"--x3d", arguments.x3d}})
+    if (!file.empty()) throw Unusable(option, "shows whole answers; not with --budget");
   if (arguments.variant.query != "touching")
     throw Unusable("--budget",
                    "answers whether surfaces touch; not with --query " + arguments.variant.query);
@@ -194,11 +198,13 @@ void run(Arguments arguments) {
   ReplayOptions options;
   options.count = count;
   options.threads = arguments.threads;
-  options.keep_answers = !arguments.out.empty();
+  options.keep_answers = !arguments.out.empty() || !arguments.x3d.empty();
   const ReplayResult result = replay(meshes, trace, arguments.variant, options);
   const Totals totals = totals_of(arguments, meshes, trace, result);
   if (!arguments.out.empty()) write_answers(arguments, trace, result);
   if (!arguments.page.empty()) write_page(arguments, meshes, trace);
+  if (!arguments.x3d.empty())
+    write_whole(arguments.x3d, scene_x3d(meshes, trace, result.touching, name(arguments.trace)));
   write_totals(totals, arguments.json);
 }
 
@@ -244,14 +250,15 @@ void add_replay(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--relative-error", arguments->variant.relative_error,
-                   "distances may be so much above the truth, never below")
+                   "distances may be at most this part above the exact one, never below")
       ->capture_default_str();
   command->add_option("--precision", arguments->variant.precision, "see `bvlab list precisions`")
       ->capture_default_str();
   command
-      ->add_option("--budget", arguments->budget,
-                   "so many tests of volumes for each pair and frame: 0 apart, 1 touching, 2 not "
-                   "known yet, with a bound on how deep")
+      ->add_option(
+          "--budget", arguments->budget,
+          "at most this many volume tests for each pair and frame: 0 apart, 1 touching, 2 not "
+          "known yet, with a bound on how deep")
       ->check(whole_number(0, 1u << 30));
   command->add_option("--threads", arguments->threads)
       ->check(whole_number(1, 1024))
@@ -261,6 +268,8 @@ void add_replay(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--out", arguments->out, "result array");
   command->add_option("--page", arguments->page, "the scene in 3D: one HTML file, needs no other");
+  command->add_option("--x3d", arguments->x3d,
+                      "the scene for other viewers, in X3D; red what touches (--query touching)");
   command->add_option("--json", arguments->json, "totals; to standard output where not given");
   command->callback([arguments] { run(*arguments); });
 }

@@ -117,9 +117,9 @@ void add_run(CLI::App& app) {
     const std::string text = read_whole(arguments->definition);
     const auto study = study_from(text, arguments->definition);
     if (!study) return run_definition(*arguments, text);
+    check(*study);
     if (arguments->lists_parts || arguments->only_counts || !arguments->part.empty())
       throw Unusable(arguments->definition, "a study has no parts: it is run as a whole");
-    check(*study);
     const auto folder = opened(*arguments, text);
     run_study(*study, folder, ProgressBar{});
     std::puts(folder.c_str());

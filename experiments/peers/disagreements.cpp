@@ -22,7 +22,7 @@ bool exactly_touching(const Triangle& a, const Triangle& b) {
 #endif
 }
 
-std::vector<Triangle> standing(const TriangleMesh& mesh, const Pose& pose) {
+std::vector<Triangle> posed_triangles(const TriangleMesh& mesh, const Pose& pose) {
   std::vector<Triangle> triangles;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     triangles.push_back(mesh.corners(t));
@@ -71,7 +71,7 @@ class Judge {
 
  private:
   std::vector<Triangle> of(std::uint32_t i) const {
-    return standing(meshes_[i % meshes_.size()], poses_[i]);
+    return posed_triangles(meshes_[i % meshes_.size()], poses_[i]);
   }
 
   std::span<const TriangleMesh> meshes_;

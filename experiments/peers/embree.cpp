@@ -12,9 +12,9 @@ namespace bvlab {
 namespace {
 
 /// One body: its triangles as they stand in the world, and Embree's tree over their boxes.
-class Standing {
+class PosedMesh {
  public:
-  Standing(RTCDevice device, const TriangleMesh& mesh)
+  PosedMesh(RTCDevice device, const TriangleMesh& mesh)
       : mesh_(mesh), triangles_(mesh.triangles.size()), scene_(rtcNewScene(device)) {
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_DYNAMIC);
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_LOW);
@@ -29,9 +29,9 @@ class Standing {
     rtcReleaseGeometry(geometry);
     rtcCommitScene(scene_);
   }
-  Standing(const Standing&) = delete;
-  Standing& operator=(const Standing&) = delete;
-  ~Standing() { rtcReleaseScene(scene_); }
+  PosedMesh(const PosedMesh&) = delete;
+  PosedMesh& operator=(const PosedMesh&) = delete;
+  ~PosedMesh() { rtcReleaseScene(scene_); }
 
   void place(const Pose& pose) {
     if (pose_ == pose) return;
@@ -76,7 +76,7 @@ class EmbreeWorld {
   EmbreeWorld(std::span<const TriangleMesh> meshes, std::size_t objects)
       : device_(rtcNewDevice("threads=1,user_threads=0")) {
     for (std::size_t i = 0; i < objects; ++i)
-      bodies_.push_back(std::make_unique<Standing>(device_, meshes[i % meshes.size()]));
+      bodies_.push_back(std::make_unique<PosedMesh>(device_, meshes[i % meshes.size()]));
   }
   EmbreeWorld(const EmbreeWorld&) = delete;
   EmbreeWorld& operator=(const EmbreeWorld&) = delete;
@@ -117,13 +117,13 @@ class EmbreeWorld {
 
  private:
   struct Pair {
-    const Standing &a, &b;
+    const PosedMesh &a, &b;
     std::vector<Contact>* found = nullptr;
     bool touching = false;
   };
 
   RTCDevice device_;
-  std::vector<std::unique_ptr<Standing>> bodies_;
+  std::vector<std::unique_ptr<PosedMesh>> bodies_;
 };
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "build_facts.hpp"
+#include "commit.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
 #include "experiments/records/node.hpp"
@@ -82,6 +83,39 @@ std::string system_name() {
   return "unknown";
 }
 
+std::string now(const char* format) {
+  const auto time = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm date{};
+  gmtime_r(&time, &date);
+  char text[32];
+  std::strftime(text, sizeof text, format, &date);
+  return text;
+}
+
+/// null where it is unknown, as in a folder without its history.
+nlohmann::ordered_json known(const std::string& commit) {
+  return commit.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(commit);
+}
+
+nlohmann::ordered_json changes() {
+  const std::string_view text = build_facts::changes;
+  return text == "unknown" ? nlohmann::ordered_json() : nlohmann::ordered_json(text == "yes");
+}
+
+/// A record that stands in the repository can be made again: its commit names the program.
+void refuse_with_changes(const std::filesystem::path& record) {
+  if (std::string_view(build_facts::changes) != "yes") return;
+  std::error_code error;
+  const auto records = std::filesystem::weakly_canonical(build_facts::records, error);
+  const auto folder = std::filesystem::weakly_canonical(record, error);
+  const auto [end, within] =
+      std::mismatch(records.begin(), records.end(), folder.begin(), folder.end());
+  if (end == records.end())
+    throw Unusable(record.string(),
+                   "the program was built from a tree with changes: commit them and build, or give "
+                   "--record a folder elsewhere");
+}
+
 std::string machine() {
   utsname kernel{};
   uname(&kernel);
@@ -94,7 +128,10 @@ std::string machine() {
                                        {"compiler", build_facts::compiler},
                                        {"flags", build_facts::flags},
                                        {"libraries", build_facts::libraries},
-                                       {"bvlab", build_facts::commit}};
+                                       {"bvlab", build_facts::version},
+                                       {"date", now("%Y-%m-%dT%H:%M:%SZ")},
+                                       {"commit", known(build_facts::commit)},
+                                       {"changes", changes()}};
   return json.dump(2) + "\n";
 }
 
@@ -142,19 +179,15 @@ void Table::save() const {
 }
 
 std::filesystem::path fresh_record(const std::filesystem::path& parent) {
-  const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm date{};
-  gmtime_r(&now, &date);
-  char day[16];
-  std::strftime(day, sizeof day, "%Y-%m-%d", &date);
+  const std::string day = now("%Y-%m-%d");
   for (int n = 1;; ++n)
-    if (const auto path = parent / (std::string(day) + "." + std::to_string(n));
-        !std::filesystem::exists(path))
+    if (const auto path = parent / (day + "." + std::to_string(n)); !std::filesystem::exists(path))
       return path;
 }
 
 void open_record(const std::filesystem::path& record, const std::string& definition,
                  const std::string& command) {
+  refuse_with_changes(record);
   std::error_code error;
   std::filesystem::create_directories(record, error);
   if (error) throw Unusable(record.string(), "cannot be made: " + error.message());

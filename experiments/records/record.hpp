@@ -36,7 +36,8 @@ class Table {
 std::filesystem::path fresh_record(const std::filesystem::path& parent);
 
 /// Writes definition.toml, machine.json and command.txt unless they are there. A record of another
-/// definition is refused with Unusable. Waits while another process has it open.
+/// definition is refused with Unusable, and so is one in the repository's experiments/record while
+/// the program was built from a tree with changes. Waits while another process has it open.
 void open_record(const std::filesystem::path& record, const std::string& definition,
                  const std::string& command);
 

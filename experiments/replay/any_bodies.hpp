@@ -34,11 +34,11 @@ class BodyLoops {
   virtual std::size_t newly_posed() = 0;
 
   /// One traversal of a pair, by what is kept of it.
-  virtual Walked traverse(const ObjectPair&, Query&, NoFront, Start) = 0;
-  virtual Walked traverse(const ObjectPair&, Query&, NoFrontBoth, Start) = 0;
-  virtual Walked traverse(const ObjectPair&, Query&, Front&) = 0;
-  virtual Walked traverse(const ObjectPair&, Query&, RisingFront&) = 0;
-  virtual Walked traverse(const ObjectPair&, Query&, const KeptMargins&) = 0;
+  virtual TraversalStatistics traverse(const ObjectPair&, Query&, NoFront, Start) = 0;
+  virtual TraversalStatistics traverse(const ObjectPair&, Query&, NoFrontBoth, Start) = 0;
+  virtual TraversalStatistics traverse(const ObjectPair&, Query&, Front&) = 0;
+  virtual TraversalStatistics traverse(const ObjectPair&, Query&, RisingFront&) = 0;
+  virtual TraversalStatistics traverse(const ObjectPair&, Query&, const KeptMargins&) = 0;
 };
 
 /// See BodyPair.
@@ -56,19 +56,19 @@ class AnyPair {
   Query& query() const { return query_; }
 
   template <class Roots = NoFront>
-  Walked from_roots(Start start = Start::roots) const {
+  TraversalStatistics from_roots(Start start = Start::roots) const {
     return counted(bodies_.traverse(pair_, query_, Roots{}, start));
   }
   template <class Front>
-  Walked from_front(Front&& front) const {
+  TraversalStatistics from_front(Front&& front) const {
     return counted(bodies_.traverse(pair_, query_, front));
   }
 
  private:
-  Walked counted(const Walked& walked) const {
-    counter_.tested(walked.volumes);
-    counter_.primitives(walked.triangles);
-    return walked;
+  TraversalStatistics counted(const TraversalStatistics& statistics) const {
+    counter_.tested(statistics.volumes);
+    counter_.primitives(statistics.triangles);
+    return statistics;
   }
 
   BodyLoops<Query>& bodies_;

@@ -81,19 +81,19 @@ class CoherenceMeter {
  private:
   void look_at(std::size_t p, std::span<const Pose> poses) {
     ++sums_.pair_runs;
-    const std::size_t ends = fronts_[p].size();
+    const std::size_t entries = fronts_[p].size();
     Front last = fronts_[p];
     const std::uint64_t tests = fresh_front(p, fronts_[p]);
-    if (ends == 1 && fronts_[p].size() == 1) return;
+    if (entries == 1 && fronts_[p].size() == 1) return;
     ++sums_.near_runs;
     sums_.tests += tests;
-    sums_.ends += ends;
+    sums_.entries += entries;
     sums_.kept += shared(last, fronts_[p]);
     Counting again;
     ask(p, last, again);
     sums_.again += again.n_v;
-    sums_.grown += last.size() - ends;
-    if (last.size() == ends) ++sums_.still_runs, sums_.still_ends += ends;
+    sums_.grown += last.size() - entries;
+    if (last.size() == entries) ++sums_.still_runs, sums_.still_entries += entries;
     measure_motion(pairs_[p], poses);
   }
 

@@ -4,8 +4,9 @@
 /// Three measures, all of pairs that are near (whose roots could not be told apart in this frame or
 /// the one before):
 ///
-///   survival   kept / ends: the share of the recursive front that is still there in the next frame
-///   stillness  still_runs / near_runs: how often nothing of it had to be descended, which is what
+///   survival   kept / entries: the share of the recursive front that is still there in the next
+///   frame stillness  still_runs / near_runs: how often nothing of it had to be descended, which is
+///   what
 ///              the talk's lists predict from
 ///   motion     how far the two bodies can have moved relative to each other since the frame before
 ///              (translations plus 2 sin(angle / 2) radius), in units of a leaf's size, and as a
@@ -22,18 +23,18 @@
 namespace bvlab {
 
 struct CoherenceSums {
-  std::uint64_t pair_runs = 0;   ///< pairs times frames, without the first
-  std::uint64_t near_runs = 0;   ///< of these, near; all that follows is of them
-  std::uint64_t moved_runs = 0;  ///< in which a body of the pair had moved
-  std::uint64_t still_runs = 0;  ///< in which the last front, run through again, did not grow
-  std::uint64_t tests = 0;       ///< of pairs of volumes, from the roots
-  std::uint64_t ends = 0;        ///< entries of the last frame's front
-  std::uint64_t kept = 0;        ///< of these, entries of this frame's front
-  std::uint64_t grown = 0;       ///< entries more, after running through the last frame's
-  std::uint64_t again = 0;       ///< tests of pairs of volumes that this running through took
-  std::uint64_t still_ends = 0;  ///< entries of those last fronts that did not grow
-  double motion_leaf = 0;        ///< sum of motions, in leaf sizes
-  double motion_gap = 0;         ///< sum of motions as shares of the gap
+  std::uint64_t pair_runs = 0;      ///< pairs times frames, without the first
+  std::uint64_t near_runs = 0;      ///< of these, near; all that follows is of them
+  std::uint64_t moved_runs = 0;     ///< in which a body of the pair had moved
+  std::uint64_t still_runs = 0;     ///< in which the last front, run through again, did not grow
+  std::uint64_t tests = 0;          ///< of pairs of volumes, from the roots
+  std::uint64_t entries = 0;        ///< entries of the last frame's front
+  std::uint64_t kept = 0;           ///< of these, entries of this frame's front
+  std::uint64_t grown = 0;          ///< entries more, after running through the last frame's
+  std::uint64_t again = 0;          ///< tests of pairs of volumes that this running through took
+  std::uint64_t still_entries = 0;  ///< entries of those last fronts that did not grow
+  double motion_leaf = 0;           ///< sum of motions, in leaf sizes
+  double motion_gap = 0;            ///< sum of motions as shares of the gap
 };
 
 /// For the variant's volume, query, build and leaf size; its strategy does not matter. The size of

@@ -28,7 +28,8 @@ std::vector<float> numbers_of(const Part&... parts) {
 
 }  // namespace detail
 
-/// Whether V holds so many scalars and nothing else: a capsule has a centre and a radius, too.
+/// Whether V holds this number of scalars and nothing else: a capsule has a centre and a radius,
+/// too.
 template <class V>
 constexpr bool holds(std::size_t scalars) {
   return sizeof(V) == scalars * sizeof(typename V::scalar);

@@ -46,19 +46,22 @@ class LoopsOver final : public BodyLoops<Query> {
     return sum;
   }
 
-  Walked traverse(const ObjectPair& pair, Query& query, NoFront, Start start) override {
+  TraversalStatistics traverse(const ObjectPair& pair, Query& query, NoFront,
+                               Start start) override {
     return bodies_.pair(pair, query, counter_).template from_roots<NoFront>(start);
   }
-  Walked traverse(const ObjectPair& pair, Query& query, NoFrontBoth, Start start) override {
+  TraversalStatistics traverse(const ObjectPair& pair, Query& query, NoFrontBoth,
+                               Start start) override {
     return bodies_.pair(pair, query, counter_).template from_roots<NoFrontBoth>(start);
   }
-  Walked traverse(const ObjectPair& pair, Query& query, Front& front) override {
+  TraversalStatistics traverse(const ObjectPair& pair, Query& query, Front& front) override {
     return bodies_.pair(pair, query, counter_).from_front(front);
   }
-  Walked traverse(const ObjectPair& pair, Query& query, RisingFront& front) override {
+  TraversalStatistics traverse(const ObjectPair& pair, Query& query, RisingFront& front) override {
     return bodies_.pair(pair, query, counter_).from_front(front);
   }
-  Walked traverse(const ObjectPair& pair, Query& query, const KeptMargins& margins) override {
+  TraversalStatistics traverse(const ObjectPair& pair, Query& query,
+                               const KeptMargins& margins) override {
     return bodies_.pair(pair, query, counter_).from_front(margins);
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A trace played through the engine with so many tests of volumes for each pair and frame, and no
+/// A trace played through the engine with a budget of volume tests for each pair and frame, and no
 /// more: see traversal/budgeted.hpp.
 #pragma once
 

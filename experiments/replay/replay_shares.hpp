@@ -31,7 +31,7 @@ class Share {
 using MakeShare =
     std::function<std::unique_ptr<Share>(std::size_t first, std::size_t stride, ReplayResult&)>;
 
-/// Every `stride`-th pair of so many objects from the `first` on.
+/// Every `stride`-th pair of `objects` objects from the `first` on.
 std::vector<ObjectPair> share_of_pairs(std::size_t objects, std::size_t first, std::size_t stride);
 
 /// Plays all shares, one a thread, and puts together what they found.

@@ -46,8 +46,8 @@ Row front_key(const Cell& cell) {
 }
 
 Row coherence_row(Row row, const CoherenceSums& c, const std::optional<BestRebuilds>& best) {
-  for (const auto n : {c.pair_runs, c.near_runs, c.moved_runs, c.still_runs, c.tests, c.ends,
-                       c.kept, c.grown, c.again, c.still_ends})
+  for (const auto n : {c.pair_runs, c.near_runs, c.moved_runs, c.still_runs, c.tests, c.entries,
+                       c.kept, c.grown, c.again, c.still_entries})
     row.push_back(std::to_string(n));
   row.push_back(std::to_string(c.motion_leaf));
   row.push_back(std::to_string(c.motion_gap));
@@ -145,8 +145,8 @@ class Experiment {
     for (const auto& [name, value] : cells_.at(0).parameters)
       if (matters_to_front(name)) row.push_back(name);
     for (const char* name :
-         {"pair_runs", "near_runs", "moved_runs", "still_runs", "tests", "ends", "kept", "grown",
-          "again", "still_ends", "motion_leaf", "motion_gap", "best_tests", "best_rebuilds"})
+         {"pair_runs", "near_runs", "moved_runs", "still_runs", "tests", "entries", "kept", "grown",
+          "again", "still_entries", "motion_leaf", "motion_gap", "best_tests", "best_rebuilds"})
       row.push_back(name);
     return row;
   }

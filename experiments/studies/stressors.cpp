@@ -240,11 +240,12 @@ constexpr Stressor list[] = {
     {"slivers", "touching bodies flattened to that", flatness, slivers},
     {"needles", "touching bodies thinned to that", flatness, needles},
     {"stacks", "cubes on each other, faces in one plane; 1: turned", turned, stacks},
-    {"neighbours", "two halves of one mesh, so many last digits apart", digits, neighbours},
+    {"neighbours", "two halves of one mesh, some units in the last place apart", digits,
+     neighbours},
     {"exact contact", "cubes that touch in a point (0), along an edge (1), in a face (2)", contacts,
      exactly},
     {"grazing", "a ball slides over a cube at the right height; 1: turned", turned, grazing},
-    {"rotations", "touching after so many multiplied rotations", chains, composed},
+    {"rotations", "touching after a chain of multiplied rotations", chains, composed},
     {"tiny", "touching bodies of that size, down to denormal numbers", least, denormal},
     {"mixed", "touching bodies, one so much larger, one so much smaller than 1", ratios, mixed},
 };
@@ -258,7 +259,7 @@ struct Box {
   }
 };
 
-std::vector<Triangle> standing(const TriangleMesh& mesh, const Pose& pose) {
+std::vector<Triangle> posed_triangles(const TriangleMesh& mesh, const Pose& pose) {
   std::vector<Triangle> triangles;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     triangles.push_back(mesh.corners(t));
@@ -286,8 +287,8 @@ std::vector<std::uint8_t> truth_of(const StressCase& stress) {
   std::vector<Pose> poses(2);
   for (std::size_t frame = 0; frame < stress.trace.frames; ++frame) {
     stress.trace.poses(frame, poses);
-    truth.push_back(
-        share_a_point(standing(stress.meshes[0], poses[0]), standing(stress.meshes[1], poses[1])));
+    truth.push_back(share_a_point(posed_triangles(stress.meshes[0], poses[0]),
+                                  posed_triangles(stress.meshes[1], poses[1])));
   }
   return truth;
 }

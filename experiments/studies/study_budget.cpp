@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Time-critical answers: what is known after so many tests of volumes for each pair and frame, how
-/// deep the rest can be at most, and what it cost; every volume on the same traces. Beside it the
-/// volume's own full answer, from which those given early must not differ.
+/// Time-critical answers: what is known after a given number of volume tests for each pair and
+/// frame, how deep the rest can be at most, and what it cost; every volume on the same traces.
+/// Beside it the volume's own full answer, from which those given early must not differ.
 #include <algorithm>
 #include <random>
 
@@ -90,7 +90,7 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
 }  // namespace
 
 const StudyKind studies::budget = {
-    "budget", "what is known after so many tests, and how deep the rest can be", check_settings,
-    run};
+    "budget", "what is known after a given number of tests, and how deep the rest can be",
+    check_settings, run};
 
 }  // namespace bvlab

@@ -60,7 +60,7 @@ struct Cell {
   ReplayResult counted;
 };
 
-/// Nanoseconds for each of so many things that `work` does; the least of a few times.
+/// Nanoseconds for each of the `things` items that `work` handles; the least of a few runs.
 double nanoseconds_each(std::size_t things, const std::function<void()>& work) {
   double least = std::numeric_limits<double>::infinity();
   for (int round = 0; round < 5; ++round) {

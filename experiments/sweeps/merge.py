@@ -6,7 +6,7 @@ import os
 import tempfile
 
 TABLES = ["frames", "coherence", "disagreements", ""]  # the one that says that all is there is the last
-PROGRAM = ["bvlab", "compiler", "flags", "libraries"]  # what the counts may depend on
+PROGRAM = ["bvlab", "commit", "changes", "compiler", "flags", "libraries"]  # what the counts may depend on
 NODE = ["processor", "cores", "memory", "system", "kernel"]
 
 
@@ -94,7 +94,7 @@ def merged_machine(parts):
 
 
 def merge(record, name, count, rows, command):
-    """Makes the record of <record>/parts/1 ... count, which hold so many rows; the table with them appears last."""
+    """Makes the record of <record>/parts/1 ... count, which hold that number of rows; the table with them appears last."""
     parts = [record / "parts" / str(i) for i in range(1, count + 1)]
     machine = json.dumps(merged_machine(parts), indent=2) + "\n"
     definition = (record / "parts" / "definition.toml").read_bytes()

@@ -20,7 +20,7 @@
 namespace bvlab {
 
 struct BottomUp {
-  std::uint32_t leaf_size = 1;  ///< a leaf holds at most so many triangles
+  std::uint32_t leaf_size = 1;  ///< the most triangles in a leaf
   std::uint32_t radius = 16;    ///< neighbours looked at on either side
 
   Topology operator()(const TriangleMesh& mesh) const;

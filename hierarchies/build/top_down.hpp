@@ -28,7 +28,7 @@ enum class SplitAt { median, mean, middle, surface_area };
 struct TopDown {
   SplitAxis axis = SplitAxis::longest;
   SplitAt at = SplitAt::mean;
-  std::uint32_t leaf_size = 1;  ///< a leaf holds at most so many triangles
+  std::uint32_t leaf_size = 1;  ///< the most triangles in a leaf
 
   Topology operator()(const TriangleMesh& mesh) const;
 };

@@ -121,8 +121,8 @@ struct FixedNormal {
   }
 };
 
-/// Calls `f` with the number of limbs that coordinates of so many binary digits need. Float64
-/// spans 2^-1074 to 2^1024, so 33 limbs hold anything.
+/// Calls `f` with the number of limbs that coordinates of that number of binary digits need.
+/// Float64 spans 2^-1074 to 2^1024, so 33 limbs hold anything.
 template <class F>
 int with_limbs(int bits, const F& f) {
   if (bits <= 2 * 64 - 3) return f(std::integral_constant<int, 2>{});

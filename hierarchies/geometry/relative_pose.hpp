@@ -30,14 +30,14 @@
 namespace bvlab {
 
 /// What there is to know of one body, once whenever it moves.
-struct Standing {
+struct OrthonormalPose {
   Mat3<double> rotation = Mat3<double>::Identity();  ///< Q, orthonormal to 32u
   Vec3<double> translation = Vec3<double>::Zero();
   double reach = 0;  ///< of the mesh, from its own origin
   double noise = 0;  ///< 8u (r + |t|) + |R - Q| r; infinite where R is off by more than 0.01
 
-  Standing() = default;
-  Standing(const Pose& pose, double reach_of_mesh)
+  OrthonormalPose() = default;
+  OrthonormalPose(const Pose& pose, double reach_of_mesh)
       : rotation(pose.rotation), translation(pose.translation), reach(reach_of_mesh) {
     constexpr double u = unit_roundoff<double>;
     noise = 8 * u * (reach + translation.lpNorm<1>());
@@ -79,7 +79,7 @@ struct RelativePose {
   Vec3<double> translation;
   double noise;
 
-  RelativePose(const Standing& a, const Standing& b) {
+  RelativePose(const OrthonormalPose& a, const OrthonormalPose& b) {
     const Vec3<double> between = a.translation - b.translation;
     rotation = b.rotation.transpose().lazyProduct(a.rotation);
     translation = b.rotation.transpose().lazyProduct(between);

@@ -29,7 +29,7 @@ namespace bvlab {
 ///   2.1e (reach + |t - o| + this) |d|  for the grain and the offset that are added
 /// is less than 2 |d| slack, with `slack` that of Placement.
 template <class T, int K>
-struct TurnedDirections {
+struct RotatedDirections {
   static constexpr int lanes =
       std::min(native_width<T>, static_cast<int>(std::bit_ceil(unsigned{K / 2})));
   static constexpr int padded = (K / 2 + lanes - 1) / lanes * lanes;
@@ -37,12 +37,12 @@ struct TurnedDirections {
   std::array<std::array<T, padded>, 3> normal{};  ///< component by component
   std::array<T, padded> offset{}, opposite_offset{};
 
-  TurnedDirections() {
+  RotatedDirections() {
     for (int k = 0; k < K / 2; ++k)
       for (int i = 0; i < 3; ++i) normal[i][k] = Directions::direction(k)[i];
   }
 
-  TurnedDirections(const Pose& pose, const Vec3<double>& origin, double reach) {
+  RotatedDirections(const Pose& pose, const Vec3<double>& origin, double reach) {
     const KdopOffsets<T, K> offsets(pose, origin, reach);
     for (int k = 0; k < K / 2; ++k) {
       const auto* d = Directions::direction(k);
@@ -60,7 +60,7 @@ struct TurnedDirections {
 /// The policy of a K-DOP that is bounded again by its vertices.
 struct ByCorners {
   template <class T, int K>
-  using placement = TurnedDirections<T, K>;
+  using placement = RotatedDirections<T, K>;
 };
 
 /// What is posed is the hull of the corners, `grain` wider in every direction: that holds all that
@@ -76,7 +76,7 @@ struct Kdop<S, K, ByCorners> {
   using scalar = S;
   template <class Other>
   using over = Kdop<Other, K, ByCorners>;
-  using placement = TurnedDirections<Element<S>, K>;
+  using placement = RotatedDirections<Element<S>, K>;
   static constexpr int room = detail::KdopVertices<K>::room;
 
   // Nothing but scalars S: a batch of them has the same members over batches.
@@ -121,8 +121,8 @@ Kdop<S, K, ByCorners> merge(const Kdop<S, K, ByCorners>& a, const Kdop<S, K, ByC
 /// One N_u: a batch holds directions.
 template <class S, int K>
 requires(!Batched<S>) Kdop<S, K> posed(const Kdop<S, K, ByCorners>& volume,
-                                       const TurnedDirections<S, K>& pose) {
-  using Turned = TurnedDirections<S, K>;
+                                       const RotatedDirections<S, K>& pose) {
+  using Turned = RotatedDirections<S, K>;
   using B = Batch<S, Turned::lanes>;
   constexpr auto anywhere = stdx::element_aligned;
   std::array<S, Turned::padded> above, below;
@@ -151,7 +151,8 @@ requires(!Batched<S>) Kdop<S, K> posed(const Kdop<S, K, ByCorners>& volume,
 
 /// A batch holds volumes: lane by lane the same.
 template <Batched S, int K>
-Kdop<S, K> posed(const Kdop<S, K, ByCorners>& volume, const TurnedDirections<Element<S>, K>& pose) {
+Kdop<S, K> posed(const Kdop<S, K, ByCorners>& volume,
+                 const RotatedDirections<Element<S>, K>& pose) {
   Kdop<S, K> result;
   const int count = static_cast<int>(stdx::hmax(volume.count));
   for (int k = 0; k < K / 2; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A box turned any way: three axes, three half lengths, a centre (gottschalk1996obbtree). Close to
-/// flat and elongated surface, dearer to pose and to test than a ball.
+/// flat and elongated surface, more expensive to pose and to test than a ball.
 ///
 /// The box is the set of points centre + sum s_i a_i with |s_i| <= half_i, for the axes just as
 /// they are stored. They are orthonormal but for rounding: with A the matrix of rows a_i,

@@ -42,7 +42,7 @@ struct Rss {
                        std::span<const Triangle> triangles) requires(!Batched<S>) {
     return along(principal_axes(points, triangles), points);
   }
-  /// Of the least surface that is found from these axes on: four to five times as dear to fit.
+  /// Of the least surface that is found from these axes on: four to five times as expensive to fit.
   static Rss tight(std::span<const Vec3<double>> points,
                    std::span<const Triangle> triangles) requires(!Batched<S>) {
     return of(tight_swept_rectangle(principal_axes(points, triangles), points), points);

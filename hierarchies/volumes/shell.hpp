@@ -52,7 +52,8 @@ struct Shell {
   }
 
   /// Of the least surface that is found: starting from that one and others about the same centres,
-  /// each with the narrowest cone, the best one's centre is moved. Five to seven times as dear.
+  /// each with the narrowest cone, the best one's centre is moved. Five to seven times as
+  /// expensive.
   static Shell tight(std::span<const Vec3<double>> points,
                      std::span<const Triangle> triangles) requires(!Batched<S>) {
     const auto inner = to_nearest(triangles);

@@ -110,10 +110,10 @@ struct SlabBox {
 
 /// What it is in the world.
 template <Scalar S>
-struct TurnedSlabBox {
+struct PosedSlabBox {
   using scalar = S;
   template <class Other>
-  using over = TurnedSlabBox<Other>;
+  using over = PosedSlabBox<Other>;
   Obb<S> box;
   Vec3<S> normal;
   S middle, width;
@@ -139,7 +139,7 @@ SlabBox<S> merge(const SlabBox<S>& a, const SlabBox<S>& b) {
 /// within tilt of Qn (see Placement): |n'.(x' - centre') - middle| is wider than it was by at most
 /// tilt |y| + slack |n'|. Five roundings are made here.
 template <class S>
-TurnedSlabBox<S> posed(const SlabBox<S>& volume, const Placement<Element<S>>& placement) {
+PosedSlabBox<S> posed(const SlabBox<S>& volume, const Placement<Element<S>>& placement) {
   const S one(1), zero(0);
   const Obb<S> box{
       volume.centre, {{{one, zero, zero}, {zero, one, zero}, {zero, zero, one}}}, volume.half};
@@ -158,7 +158,7 @@ namespace detail {
 /// itself. The margin of ObbPair is more than that: 256e of |t| and all half lengths, and `middle`
 /// is not farther out than the box.
 template <class S>
-Mask<S> apart_by_slab(const TurnedSlabBox<S>& a, const TurnedSlabBox<S>& b, const S& margin) {
+Mask<S> apart_by_slab(const PosedSlabBox<S>& a, const PosedSlabBox<S>& b, const S& margin) {
   using std::abs;
   const Vec3<S> t = b.box.centre - a.box.centre;
   S reached = a.width + margin;
@@ -171,19 +171,19 @@ Mask<S> apart_by_slab(const TurnedSlabBox<S>& a, const TurnedSlabBox<S>& b, cons
 
 /// A NaN (from an overflow) compares as not disjoint.
 template <class S>
-Mask<S> disjoint(const TurnedSlabBox<S>& a, const TurnedSlabBox<S>& b) {
+Mask<S> disjoint(const PosedSlabBox<S>& a, const PosedSlabBox<S>& b) {
   const S margin = detail::ObbPair<S>(a.box, b.box).margin;
   return disjoint(a.box, b.box) || detail::apart_by_slab<S>(a, b, margin) ||
          detail::apart_by_slab<S>(b, a, margin);
 }
 
 template <class S>
-S gap(const TurnedSlabBox<S>& a, const TurnedSlabBox<S>& b) {
+S gap(const PosedSlabBox<S>& a, const PosedSlabBox<S>& b) {
   return gap(a.box, b.box);
 }
 
 template <class S>
-bool contains(const TurnedSlabBox<S>& volume, const Vec3<long double>& point) {
+bool contains(const PosedSlabBox<S>& volume, const Vec3<long double>& point) {
   using Wide = Vec3<long double>;
   const Wide x = point - volume.box.centre.template cast<long double>();
   const long double at = volume.normal.template cast<long double>().dot(x);

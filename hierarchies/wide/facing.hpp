@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// How one volume of a body is compared with siblings of another, which lie as their mesh does.
 ///
-///   Turn                   what takes one body's frame to the other's: once a pair of bodies
-///   One                    one volume seen from there: one N_u
-///   compared(one, ...)     which lanes it is apart from, and in which order the rest are worth
+///   FrameChange                   what takes one body's frame to the other's: once a pair of
+///   bodies One                    one volume seen from there: one N_u compared(one, ...)     which
+///   lanes it is apart from, and in which order the rest are worth
 ///                          looking at, the likeliest to touch first
 ///   gaps(one, ...)         how far it is from each lane, at least
 ///
@@ -64,27 +64,33 @@ struct PosedFacing {
   using T = typename V::scalar;
   static_assert(std::is_same_v<Posed<V>, V>, "this volume needs a facing of its own");
 
-  using Turn = PlacementOf<V>;
+  using FrameChange = PlacementOf<V>;
   struct One {
     V volume;
     T size;
   };
 
-  static Turn turn(const RelativePose& pose, double reach, double /*reach_of_lanes*/) {
-    if constexpr (std::is_same_v<Turn, Placement<T>>)
-      return Turn(typename Turn::Orthonormal{}, pose.rotation, pose.translation, reach, pose.noise);
+  static FrameChange frame_change(const RelativePose& pose, double reach,
+                                  double /*reach_of_lanes*/) {
+    if constexpr (std::is_same_v<FrameChange, Placement<T>>)
+      return FrameChange(typename FrameChange::Orthonormal{}, pose.rotation, pose.translation,
+                         reach, pose.noise);
     else
-      return Turn(Pose{pose.rotation, pose.translation}, Vec3<double>::Zero(), reach, pose.noise);
+      return FrameChange(Pose{pose.rotation, pose.translation}, Vec3<double>::Zero(), reach,
+                         pose.noise);
   }
-  static One one(const V& volume, T size, const Turn& turn) { return {posed(volume, turn), size}; }
+  static One one(const V& volume, T size, const FrameChange& frame_change) {
+    return {posed(volume, frame_change), size};
+  }
 
   template <Batched S>
-  [[gnu::always_inline]] static Compared<S> compared(const One& one, const Turn&,
+  [[gnu::always_inline]] static Compared<S> compared(const One& one, const FrameChange&,
                                                      const Over<V, S>& lanes, const S& sizes) {
     return detail::compared_posed<S>(in_all_lanes<S>(one.volume), lanes, S(one.size), sizes);
   }
   template <Batched S>
-  [[gnu::always_inline]] static S gaps(const One& one, const Turn&, const Over<V, S>& lanes) {
+  [[gnu::always_inline]] static S gaps(const One& one, const FrameChange&,
+                                       const Over<V, S>& lanes) {
     return gap(in_all_lanes<S>(one.volume), lanes);
   }
 };

@@ -2,8 +2,9 @@
 /// One box with its slab against siblings as they lie: eight directions, six of faces and two of
 /// slabs; one N_v is about 70 operations, all of them for all lanes at once.
 ///
-/// The box a is turned by Q and moved by t (Turn); its axes are Q's columns q_i. With T the vector
-/// from its centre to a lane's, h halves, n normals, m middles and w widths, they are apart where
+/// The box a is turned by Q and moved by t (FrameChange); its axes are Q's columns q_i. With T the
+/// vector from its centre to a lane's, h halves, n normals, m middles and w widths, they are apart
+/// where
 ///   |T_j|                > h_b,j + sum_i |q_ij| h_a,i             (faces of b)
 ///   |q_i.T|              > h_a,i + sum_j |q_ij| h_b,j             (faces of a)
 ///   |n_b.T + m_b|        > w_b   + sum_i |n_b.q_i| h_a,i          (slab of b)
@@ -27,7 +28,7 @@ namespace bvlab {
 
 template <>
 struct SlabBoxFacing<float> {
-  struct Turn {
+  struct FrameChange {
     alignas(16) float column[3][4], absolute[3][4], translation[4];
     float margin;
   };
@@ -38,32 +39,33 @@ struct SlabBoxFacing<float> {
     float half[3], grown[3], middle, width, size;
   };
 
-  static Turn turn(const RelativePose& pose, double reach, double reach_of_lanes) {
+  static FrameChange frame_change(const RelativePose& pose, double reach, double reach_of_lanes) {
     constexpr double e = unit_roundoff<float>;
     const double length = pose.translation.lpNorm<1>();
-    Turn turn;
+    FrameChange frame_change;
     using Four = Batch<float, 4>;
     for (int i = 0; i < 3; ++i) {
       const Four column = rounded_to_four(pose.rotation.col(i));
-      column.copy_to(turn.column[i], stdx::vector_aligned);
-      abs(column).copy_to(turn.absolute[i], stdx::vector_aligned);
+      column.copy_to(frame_change.column[i], stdx::vector_aligned);
+      abs(column).copy_to(frame_change.absolute[i], stdx::vector_aligned);
     }
-    rounded_to_four(pose.translation).copy_to(turn.translation, stdx::vector_aligned);
+    rounded_to_four(pose.translation).copy_to(frame_change.translation, stdx::vector_aligned);
     // `slack` of Placement, and the rest.
-    turn.margin =
+    frame_change.margin =
         static_cast<float>((74 * e * (length + reach + reach_of_lanes) + pose.noise) * (1 + 8 * e) +
                            std::ldexp(1.0, std::numeric_limits<float>::min_exponent / 2 + 2));
-    return turn;
+    return frame_change;
   }
 
-  [[gnu::always_inline]] static One one(const SlabBox<float>& box, float size, const Turn& turn) {
+  [[gnu::always_inline]] static One one(const SlabBox<float>& box, float size,
+                                        const FrameChange& frame_change) {
     using Four = Batch<float, 4>;
     const auto from = [](const float* p) { return Four(p, stdx::vector_aligned); };
-    Four centre = from(turn.translation), reached(turn.margin), normal(0.0f);
+    Four centre = from(frame_change.translation), reached(frame_change.margin), normal(0.0f);
     for (int i = 0; i < 3; ++i) {
-      centre = fused<Four>(from(turn.column[i]), Four(box.centre[i]), centre);
-      reached = fused<Four>(from(turn.absolute[i]), Four(box.half[i]), reached);
-      normal = fused<Four>(from(turn.column[i]), Four(box.normal[i]), normal);
+      centre = fused<Four>(from(frame_change.column[i]), Four(box.centre[i]), centre);
+      reached = fused<Four>(from(frame_change.absolute[i]), Four(box.half[i]), reached);
+      normal = fused<Four>(from(frame_change.column[i]), Four(box.normal[i]), normal);
     }
     One one;
     centre.copy_to(one.centre, stdx::vector_aligned);
@@ -72,9 +74,9 @@ struct SlabBoxFacing<float> {
     abs(normal).copy_to(one.absolute, stdx::vector_aligned);
     for (int i = 0; i < 3; ++i) {
       one.half[i] = box.half[i];
-      one.grown[i] = box.half[i] + turn.margin;
+      one.grown[i] = box.half[i] + frame_change.margin;
     }
-    one.middle = box.middle, one.width = box.width + turn.margin, one.size = size;
+    one.middle = box.middle, one.width = box.width + frame_change.margin, one.size = size;
 #if defined(__GNUC__)
     // To be read from memory, not shuffled out of registers one by one.
     asm("" : "+m"(one));
@@ -85,7 +87,7 @@ struct SlabBoxFacing<float> {
   /// How far they are apart along the direction in which that is most; negative where they may
   /// meet: how deep.
   template <Batched S>
-  [[gnu::always_inline]] static S separation(const One& one, const Turn& turn,
+  [[gnu::always_inline]] static S separation(const One& one, const FrameChange& frame_change,
                                              const SlabBox<S>& lanes) {
     using stdx::abs, stdx::max;
     const S x = lanes.centre[0] - S(one.centre[0]), y = lanes.centre[1] - S(one.centre[1]),
@@ -96,16 +98,17 @@ struct SlabBoxFacing<float> {
 
     S slab_b = fused<S>(lanes.normal[2], z,
                         fused<S>(lanes.normal[1], y, fused<S>(lanes.normal[0], x, lanes.middle)));
-    slab_b = (abs(slab_b) - lanes.width) - S(turn.margin);
+    slab_b = (abs(slab_b) - lanes.width) - S(frame_change.margin);
     const auto along = [&](int i) {
-      const S p(turn.column[i][0]), q(turn.column[i][1]), r(turn.column[i][2]);
+      const S p(frame_change.column[i][0]), q(frame_change.column[i][1]),
+          r(frame_change.column[i][2]);
       const S normal =
           fused<S>(lanes.normal[2], r, fused<S>(lanes.normal[1], q, lanes.normal[0] * p));
       slab_b = less_fused<S>(abs(normal), S(one.half[i]), slab_b);
       S face = abs(fused<S>(z, r, fused<S>(y, q, x * p))) - S(one.grown[i]);
-      face = less_fused<S>(lanes.half[0], S(turn.absolute[i][0]), face);
-      face = less_fused<S>(lanes.half[1], S(turn.absolute[i][1]), face);
-      return less_fused<S>(lanes.half[2], S(turn.absolute[i][2]), face);
+      face = less_fused<S>(lanes.half[0], S(frame_change.absolute[i][0]), face);
+      face = less_fused<S>(lanes.half[1], S(frame_change.absolute[i][1]), face);
+      return less_fused<S>(lanes.half[2], S(frame_change.absolute[i][2]), face);
     };
     const S face_0 = along(0), face_1 = along(1), face_2 = along(2);
 
@@ -119,16 +122,18 @@ struct SlabBoxFacing<float> {
 
   /// The deepest first, in terms of their sizes.
   template <Batched S>
-  [[gnu::always_inline]] static Compared<S> compared(const One& one, const Turn& turn,
+  [[gnu::always_inline]] static Compared<S> compared(const One& one,
+                                                     const FrameChange& frame_change,
                                                      const SlabBox<S>& lanes, const S& sizes) {
-    const S apart = separation<S>(one, turn, lanes);
+    const S apart = separation<S>(one, frame_change, lanes);
     return {apart > S(0.0f), apart * roughly_one_over<S>(sizes + S(one.size))};
   }
 
   /// The distance of the boxes around one of them along the other's axes, or of a slab. Axes and
   /// normals are 1 + 4e long at most, and fewer than ten roundings are made.
   template <Batched S>
-  [[gnu::always_inline]] static S gaps(const One& one, const Turn& turn, const SlabBox<S>& lanes) {
+  [[gnu::always_inline]] static S gaps(const One& one, const FrameChange& frame_change,
+                                       const SlabBox<S>& lanes) {
     using stdx::abs, stdx::max, stdx::min, stdx::sqrt;
     const S zero(0.0f);
     S squared_b = zero, squared_a = zero;
@@ -137,17 +142,18 @@ struct SlabBoxFacing<float> {
     for (int i = 0; i < 3; ++i) {
       const S face_b = (abs(between[i]) - S(one.reached[i])) - lanes.half[i];
       S face_a = zero;
-      for (int j = 0; j < 3; ++j) face_a = fused<S>(between[j], S(turn.column[i][j]), face_a);
+      for (int j = 0; j < 3; ++j)
+        face_a = fused<S>(between[j], S(frame_change.column[i][j]), face_a);
       face_a = abs(face_a) - S(one.grown[i]);
       for (int j = 0; j < 3; ++j)
-        face_a = less_fused<S>(lanes.half[j], S(turn.absolute[i][j]), face_a);
+        face_a = less_fused<S>(lanes.half[j], S(frame_change.absolute[i][j]), face_a);
       // Written so that what is no number counts as nothing.
       const S b = select(face_b > zero, face_b, zero), a = select(face_a > zero, face_a, zero);
       squared_b = fused<S>(b, b, squared_b), squared_a = fused<S>(a, a, squared_a);
     }
     const S largest(std::numeric_limits<float>::max());
     const S boxes = sqrt(min(largest, max(squared_a, squared_b)));
-    const S apart = separation<S>(one, turn, lanes);
+    const S apart = separation<S>(one, frame_change, lanes);
     return max(boxes, select(apart > zero, apart, zero)) * S(1 - 32 * unit_roundoff<float>);
   }
 };

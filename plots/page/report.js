@@ -8,7 +8,7 @@
 
   // All words must stand in what an experiment is called, asks, says, or how it is defined.
   const texts = sections.map(section =>
-    [...section.querySelectorAll('h2, .asks, .says, dl, pre')].map(part => part.textContent).join(' ').toLowerCase());
+    [...section.querySelectorAll('h2, .asks, .says, .results, dl, pre')].map(part => part.textContent).join(' ').toLowerCase());
   const found = document.getElementById('found');
   document.getElementById('search').addEventListener('input', event => {
     const words = event.target.value.toLowerCase().split(/\s+/).filter(Boolean);

@@ -230,14 +230,14 @@ TEST(RisingFronts, WitnessesComeAndGo) {
   const std::size_t n = front.size();
   std::mt19937_64 random(3);
   for (int i = 0; i < 20000; ++i) front.bring_forward(random() % n);
-  std::vector<Family> families;
-  front.propose(hierarchy, hierarchy, families);
+  std::vector<SiblingPair> sibling_pairs;
+  front.propose(hierarchy, hierarchy, sibling_pairs);
   std::size_t siblings = 0;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i + 1; j < n; ++j)
       siblings += (front[i].b + 1) / 2 == (front[j].b + 1) / 2;
   EXPECT_GT(siblings, 50u);
-  EXPECT_EQ(families.size(), siblings);
+  EXPECT_EQ(sibling_pairs.size(), siblings);
 }
 
 /// Every slot once and no other, however full the last register is: also where all are due for

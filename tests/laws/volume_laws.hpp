@@ -82,11 +82,11 @@ Vec3<long double> wide(const Vec3<double>& p) { return p.cast<long double>(); }
 
 /// A cloud as it stands in the world, and its volume posed.
 template <class V>
-struct Standing {
+struct PosedPoints {
   Points world;
   Posed<V> volume;
 
-  Standing(const Points& points, const Pose& pose, const Vec3<double>& origin) {
+  PosedPoints(const Points& points, const Pose& pose, const Vec3<double>& origin) {
     const V local = V::enclosing(points);
     const double reach =
         std::max<double>(reach_of(points), static_cast<double>(bvlab::reach(local)));
@@ -155,9 +155,9 @@ TYPED_TEST_P(VolumeLaws, PosingKeepsVerticesInside) {
     const Vec3<double> origin = hostile.below(2)
                                     ? Vec3<double>(pose.translation + hostile.direction() * scale)
                                     : Vec3<double>(Vec3<double>::Zero());
-    const Standing<TypeParam> standing(points, pose, origin);
-    for (const auto& w : standing.world)
-      ASSERT_TRUE(contains(standing.volume, wide(w) - wide(origin))) << "round " << round;
+    const PosedPoints<TypeParam> posed_points(points, pose, origin);
+    for (const auto& w : posed_points.world)
+      ASSERT_TRUE(contains(posed_points.volume, wide(w) - wide(origin))) << "round " << round;
   }
 }
 
@@ -168,12 +168,12 @@ TYPED_TEST_P(VolumeLaws, VolumesThatShareAPointAreNotDisjoint) {
     const double scale = reach_of(a);
     const Pose pose = hostile.pose(scale);
     const Vec3<double> origin = pose.translation;
-    const Standing<TypeParam> first(a, pose, origin);
+    const PosedPoints<TypeParam> first(a, pose, origin);
     // The other body stands at the identity, so that it can hold a vertex of the first to the bit.
     Points b{first.world[static_cast<std::size_t>(hostile.below(static_cast<int>(a.size())))]};
     for (int i = hostile.below(10); i > 0; --i)
       b.push_back(b[0] + hostile.direction() * scale * hostile.uniform(0, 2));
-    const Standing<TypeParam> second(b, Pose{}, origin);
+    const PosedPoints<TypeParam> second(b, Pose{}, origin);
     ASSERT_FALSE(disjoint(first.volume, second.volume)) << "round " << round;
     ASSERT_EQ(gap(first.volume, second.volume), 0) << "round " << round;
   }
@@ -187,13 +187,13 @@ TYPED_TEST_P(VolumeLaws, TheGapIsAtMostTheDistance) {
     const double scale = reach_of(a);
     const Pose pose = hostile.pose(scale);
     const Vec3<double> origin = pose.translation;
-    const Standing<TypeParam> first(a, pose, origin);
+    const PosedPoints<TypeParam> first(a, pose, origin);
     Points b;
     const Vec3<double> offset =
         first.world[0] + hostile.direction() * scale * hostile.uniform(0, 5);
     for (int i = 1 + hostile.below(5); i > 0; --i)
       b.push_back(offset + hostile.direction() * scale * hostile.uniform(0, 1));
-    const Standing<TypeParam> second(b, Pose{}, origin);
+    const PosedPoints<TypeParam> second(b, Pose{}, origin);
     long double distance = std::numeric_limits<long double>::infinity();
     for (const auto& p : first.world)
       for (const auto& q : second.world) distance = std::min(distance, (wide(p) - wide(q)).norm());
@@ -209,7 +209,7 @@ TYPED_TEST_P(VolumeLaws, TheGapIsAtMostTheDistance) {
 TYPED_TEST_P(VolumeLaws, OverflowIsNotDisjoint) {
   for (const double huge : {1e30, 1e39, 1e160, 1e300}) {
     const Points a{{huge, 0, 0}, {0, huge, 0}, {0, 0, -huge}}, b{{huge, 0, 0}};
-    const Standing<TypeParam> first(a, Pose{}, Vec3<double>::Zero()),
+    const PosedPoints<TypeParam> first(a, Pose{}, Vec3<double>::Zero()),
         second(b, Pose{}, Vec3<double>::Zero());
     EXPECT_FALSE(disjoint(first.volume, second.volume)) << huge;
     EXPECT_EQ(gap(first.volume, second.volume), 0) << huge;

@@ -114,17 +114,17 @@ ReplayResult brute_force(const TriangleMesh& mesh, const Trace& trace) {
   std::vector<Pose> poses(2);
   for (std::size_t frame = 0; frame < trace.frames; ++frame) {
     trace.poses(frame, poses);
-    std::array<std::vector<Triangle>, 2> standing;
+    std::array<std::vector<Triangle>, 2> triangles_of_body;
     for (std::size_t i = 0; i < 2; ++i)
       for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        standing[i].push_back(mesh.corners(t));
-        for (auto& corner : standing[i].back()) corner = poses[i](corner);
+        triangles_of_body[i].push_back(mesh.corners(t));
+        for (auto& corner : triangles_of_body[i].back()) corner = poses[i](corner);
       }
     double least = std::numeric_limits<double>::infinity();
     const std::size_t before = truth.contacts.size();
-    for (std::uint32_t s = 0; s < standing[0].size(); ++s)
-      for (std::uint32_t t = 0; t < standing[1].size(); ++t) {
-        const Triangle &a = standing[0][s], &b = standing[1][t];
+    for (std::uint32_t s = 0; s < triangles_of_body[0].size(); ++s)
+      for (std::uint32_t t = 0; t < triangles_of_body[1].size(); ++t) {
+        const Triangle &a = triangles_of_body[0][s], &b = triangles_of_body[1][t];
         if (boxes_overlap(a, b) && oracle::intersect(a, b))
           truth.contacts.push_back({static_cast<std::uint32_t>(frame), 0, 1, s, t});
         least = std::min(least, distance(a, b).distance);

@@ -70,8 +70,8 @@ Seen expect_brute_force(const std::vector<TriangleMesh>& meshes, const Trace& tr
     for (const auto& [i, j] : all_object_pairs(static_cast<std::uint32_t>(poses.size()))) {
       const std::size_t m_i = i % meshes.size(), m_j = j % meshes.size();
       const auto &a = polytopes[m_i], &b = polytopes[m_j];
-      const closest_features::Standing standing(a, poses[i], b, poses[j]);
-      const bool inside = holds(b, standing.across(0, 0)) || holds(a, standing.across(1, 0));
+      const closest_features::PosedPair posed(a, poses[i], b, poses[j]);
+      const bool inside = holds(b, posed.across(0, 0)) || holds(a, posed.across(1, 0));
       const double least = inside ? 0 : brute_force(meshes[m_i], poses[i], meshes[m_j], poses[j]);
       for (std::size_t m = 0; m < answers.size(); ++m)
         EXPECT_NEAR(answers[m][cell], least, 1e-11 * least + 1e-14)

@@ -55,7 +55,7 @@ TEST(World, GivesTheAnswersOfAllPairs) {
   }
 }
 
-Played standing(Played scene, std::size_t frames) {
+Played at_rest(Played scene, std::size_t frames) {
   auto& values = scene.trace.values;
   values.resize(scene.trace.objects * 7);
   const auto first = values;
@@ -65,8 +65,8 @@ Played standing(Played scene, std::size_t frames) {
 }
 
 TEST(World, WhatStandsIsNotAskedAgain) {
-  const Played scene = standing(played(more_settings()[1]), 5);
-  expect_all_pairs_answers(scene, "standing", "sphere", "recursive");
+  const Played scene = at_rest(played(more_settings()[1]), 5);
+  expect_all_pairs_answers(scene, "at rest", "sphere", "recursive");
   const auto world = make_world(scene.meshes, scene.trace.objects, {});
   const WorldRun run = play_frames(*world, scene.trace, Answers::counted);
   EXPECT_GT(run.near, 0u);
@@ -93,7 +93,7 @@ TEST(World, LargerThanFloatsReach) {
 }
 
 /// The box holds every vertex as Pose moves it.
-TEST(TurnedBox, HoldsEveryVertex) {
+TEST(RotatedMeshBox, HoldsEveryVertex) {
   for (const auto& setting : settings(100)) {
     const Played scene = played(setting);
     std::vector<Pose> poses(scene.trace.objects);
@@ -102,7 +102,7 @@ TEST(TurnedBox, HoldsEveryVertex) {
       for (std::size_t i = 0; i < poses.size(); ++i) {
         const auto& mesh = scene.meshes[i % scene.meshes.size()];
         const Vec3<double> origin(0.1, -3, 1e3);
-        const Box<float> box = TurnedBox(mesh)(poses[i], origin);
+        const Box<float> box = RotatedMeshBox(mesh)(poses[i], origin);
         for (const auto& vertex : mesh.vertices) {
           const Vec3<long double> at =
               poses[i](vertex).cast<long double>() - origin.cast<long double>();

@@ -18,12 +18,12 @@ namespace {
 const Extent meshes[] = {{{1, 2, 3}, 1, 0.1}, {{-4, 0.5, 0}, 1.25, 0.125}};
 constexpr double pi = 3.141592653589793;
 
-struct Standing {
+struct BodyState {
   Vec3<double> centre;
   Eigen::Quaterniond attitude;
 };
 
-Standing standing(const Array<double>& trace, std::size_t frame, std::size_t object) {
+BodyState state_of(const Array<double>& trace, std::size_t frame, std::size_t object) {
   const double* row = trace.data.data() + (frame * trace.shape[1] + object) * 7;
   const Eigen::Quaterniond q(row[3], row[4], row[5], row[6]);
   return {q * meshes[object % 2].centre + Vec3<double>(row[0], row[1], row[2]), q};
@@ -65,7 +65,7 @@ TEST(RandomWalk, StepsHaveTheSizesAskedAndStayInside) {
   std::size_t reflected = 0;
   for (std::size_t frame = 1; frame < walk.frames; ++frame)
     for (std::size_t object = 0; object < walk.objects; ++object) {
-      const auto before = standing(trace, frame - 1, object), now = standing(trace, frame, object);
+      const auto before = state_of(trace, frame - 1, object), now = state_of(trace, frame, object);
       EXPECT_LE(now.centre.cwiseAbs().maxCoeff(), 5 + 1e-12);
       EXPECT_NEAR(now.attitude.norm(), 1, 1e-14);
       EXPECT_NEAR(angle_between(before.attitude, now.attitude), 5, 1e-9);
@@ -85,8 +85,8 @@ TEST(RandomWalk, LengthsInRadii) {
   const auto trace = walk.generate(meshes, {});
   double longest = 0, farthest = 0;
   for (std::size_t frame = 1; frame < walk.frames; ++frame) {
-    const auto now = standing(trace, frame, 0);
-    longest = std::max(longest, (now.centre - standing(trace, frame - 1, 0).centre).norm());
+    const auto now = state_of(trace, frame, 0);
+    longest = std::max(longest, (now.centre - state_of(trace, frame - 1, 0).centre).norm());
     farthest = std::max(farthest, now.centre.cwiseAbs().maxCoeff());
   }
   EXPECT_NEAR(longest, 0.2, 1e-12);
@@ -101,7 +101,7 @@ TEST(RandomWalk, OneFreedomChangesOneThing) {
   std::set<int> seen;
   for (std::size_t frame = 1; frame < walk.frames; ++frame)
     for (std::size_t object = 0; object < walk.objects; ++object) {
-      const auto before = standing(trace, frame - 1, object), now = standing(trace, frame, object);
+      const auto before = state_of(trace, frame - 1, object), now = state_of(trace, frame, object);
       const Vec3<double> shift = now.centre - before.centre;
       const Eigen::Quaterniond turn = now.attitude * before.attitude.conjugate();
       int changed = 0;
@@ -143,9 +143,9 @@ TEST(RandomWalk, PersistenceKeepsTheDirection) {
   std::size_t same = 0;
   for (std::size_t frame = 2; frame < walk.frames; ++frame) {
     const Vec3<double> last =
-        standing(trace, frame - 1, 0).centre - standing(trace, frame - 2, 0).centre;
+        state_of(trace, frame - 1, 0).centre - state_of(trace, frame - 2, 0).centre;
     const Vec3<double> now =
-        standing(trace, frame, 0).centre - standing(trace, frame - 1, 0).centre;
+        state_of(trace, frame, 0).centre - state_of(trace, frame - 1, 0).centre;
     if ((now - last).norm() < 1e-9)
       ++same;
     else
@@ -162,7 +162,7 @@ TEST(RandomWalk, TeleportsAreAsOftenAsAsked) {
   int jumps = 0;
   for (std::size_t frame = 1; frame < walk.frames; ++frame)
     for (std::size_t object = 0; object < walk.objects; ++object)
-      if ((standing(trace, frame, object).centre - standing(trace, frame - 1, object).centre)
+      if ((state_of(trace, frame, object).centre - state_of(trace, frame - 1, object).centre)
               .norm() > 0.6)
         ++jumps;
   EXPECT_NEAR(jumps, 200, 50);
@@ -195,7 +195,7 @@ TEST(RandomWalk, RejectionLeavesNothingTouching) {
   for (std::size_t frame = 0; frame < walk.frames; ++frame)
     for (std::size_t i = 0; i < walk.objects; ++i)
       for (std::size_t j = 0; j < i; ++j)
-        ASSERT_GT((standing(trace, frame, i).centre - standing(trace, frame, j).centre).norm(),
+        ASSERT_GT((state_of(trace, frame, i).centre - state_of(trace, frame, j).centre).norm(),
                   2 - 1e-12);
 }
 

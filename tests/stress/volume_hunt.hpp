@@ -118,7 +118,7 @@ class Hunter {
   std::mt19937_64 random_;
 };
 
-inline Patch standing(const Patch& patch, const Pose& pose) {
+inline Patch posed_patch(const Patch& patch, const Pose& pose) {
   Patch moved = patch;
   for (auto& t : moved)
     for (auto& p : t) p = pose(p);
@@ -173,8 +173,8 @@ void hunt() {
     if (hunter.below(2))
       pose_a.translation = hunter.point() * scale * std::pow(10, hunter.uniform(-3, 9));
     // b's foremost corner against a's foremost face, corner or edge, or a last digit off.
-    const Patch world_a = standing(a, pose_a);
-    const Patch turned_b = standing(b, pose_b);
+    const Patch world_a = posed_patch(a, pose_a);
+    const Patch turned_b = posed_patch(b, pose_b);
     const Vec3<double> way = hunter.point().normalized();
     Vec3<double> foremost = world_a[0][0], hindmost = turned_b[0][0];
     for (const auto& t : world_a)
@@ -191,7 +191,7 @@ void hunt() {
     }
     const double hairs[] = {0, 1e-16, -1e-16, 1e-12, -1e-12, 1e-7, 1e-5, 1e-3};
     pose_b.translation = foremost - hindmost + way * scale * hairs[hunter.below(8)];
-    const Patch world_b = standing(b, pose_b);
+    const Patch world_b = posed_patch(b, pose_b);
     bool share = false;
     double distance_ab = std::numeric_limits<double>::infinity();
     for (const auto& s : world_a)

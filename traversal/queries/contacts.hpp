@@ -21,7 +21,7 @@ class Contacts {
  public:
   static constexpr std::string_view name = "contacts";
   static constexpr std::string_view description = "all pairs of triangles that share a point";
-  static constexpr std::size_t patience = 15;
+  static constexpr std::size_t buffer_size = 15;
   static constexpr bool one_hit_is_enough = false;
 
   /// Contacts are appended to `found`.
@@ -33,7 +33,7 @@ class Contacts {
   }
 
   template <class P>
-  auto excludes(const P& a, const P& b) const {
+  auto culls(const P& a, const P& b) const {
     return disjoint(a, b);
   }
 

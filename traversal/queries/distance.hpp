@@ -27,7 +27,7 @@ class Distance {
   static constexpr std::string_view name = "distance";
   static constexpr std::string_view description =
       "how far apart the two surfaces are; within --relative-error above the truth";
-  static constexpr std::size_t patience = 7;
+  static constexpr std::size_t buffer_size = 7;
   static constexpr bool one_hit_is_enough = true;
   /// The traversal looks for a small upper bound before it starts.
   static constexpr bool wants_bound = true;
@@ -37,12 +37,12 @@ class Distance {
   static Distance asked(const QueryOptions& options) { return Distance(options.relative_error); }
 
   template <class P>
-  auto excludes(const P& a, const P& b) const {
-    return excludes(gap(a, b));
+  auto culls(const P& a, const P& b) const {
+    return culls(gap(a, b));
   }
   /// By the gap of two volumes.
   template <Scalar S>
-  auto excludes(const S& gap) const {
+  auto culls(const S& gap) const {
     return gap >= S(rounded_up<Element<S>>(limit_));
   }
 

@@ -16,7 +16,7 @@ class Touching {
  public:
   static constexpr std::string_view name = "touching";
   static constexpr std::string_view description = "do the two surfaces share a point, yes or no";
-  static constexpr std::size_t patience = 3;
+  static constexpr std::size_t buffer_size = 3;
   static constexpr bool one_hit_is_enough = true;
 
   explicit Touching(TriangleTest test = intersect_batch<Exact>) : test_(test) {}
@@ -24,7 +24,7 @@ class Touching {
   static Touching asked(const QueryOptions& options) { return Touching(options.test); }
 
   template <class P>
-  auto excludes(const P& a, const P& b) const {
+  auto culls(const P& a, const P& b) const {
     return disjoint(a, b);
   }
 

@@ -8,10 +8,10 @@
 /// runs: it is given up as soon as one run after its first costs twice what recursion does, or all
 /// together, its building included, more than eight runs of that; else it is taken over. Each
 /// failure doubles the time until the next trial, from 16 runs for a list and from 128 for margins,
-/// which are dear to build and not tried after large steps; but when the motion has fallen to half
-/// of what it was at the failure, margins are tried at once. While a list or margins are in use,
-/// recursion is asked for a run when they have become dearer than it was, and takes over if it is
-/// still cheaper. Both stay valid meanwhile.
+/// which are expensive to build and not tried after large steps; but when the motion has fallen to
+/// half of what it was at the failure, margins are tried at once. While a list or margins are in
+/// use, recursion is asked for a run when they have become more expensive than it was, and takes
+/// over if it is still cheaper. Both stay valid meanwhile.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,7 @@ class Adaptive {
   bool starts_at_roots() const { return used_ == Used::recursion; }
   void roots_are_apart() {
     // Nothing is cheaper, and how far the bodies have come is not worth finding out.
-    way_ = -1;
+    displacement_ = -1;
     if (probing_) drop();
     probing_ = false;
     settle(apart);
@@ -53,9 +53,9 @@ class Adaptive {
   template <class Pair>
   void run_below_roots(const Pair& pair) {
     const double radius = follow(pair.a(), pair.b());
-    Walked walked = pair.template from_roots<NoFrontBoth>(Start::below_roots);
-    ++walked.volumes;
-    after_recursion(price(walked, broad), radius);
+    TraversalStatistics statistics = pair.template from_roots<NoFrontBoth>(Start::below_roots);
+    ++statistics.volumes;
+    after_recursion(price(statistics, broad), radius);
   }
 
   std::size_t front_size() const { return list_.front_size() + margins_.front_size(); }
@@ -75,17 +75,17 @@ class Adaptive {
 
   /// Finds the last step; gives the mean radius of the bodies.
   double follow(MovingBody& a, MovingBody& b) {
-    const double way = a.displacement_bound() + b.displacement_bound();
+    const double displacement = a.displacement_bound() + b.displacement_bound();
     const double radius = (a.extent().radius + b.extent().radius) / 2;
     // Before the first motion all that is known is that it may be large.
-    step_ = way_ < 0 ? radius : way - way_;
-    way_ = way;
+    step_ = displacement_ < 0 ? radius : displacement - displacement_;
+    displacement_ = displacement;
     return radius;
   }
 
-  static double price(const Walked& walked, const Prices& prices) {
-    return prices.run + prices.volumes * static_cast<double>(walked.volumes) +
-           prices.triangles * static_cast<double>(walked.triangles);
+  static double price(const TraversalStatistics& statistics, const Prices& prices) {
+    return prices.run + prices.volumes * static_cast<double>(statistics.volumes) +
+           prices.triangles * static_cast<double>(statistics.triangles);
   }
 
   void after_recursion(double cost, double radius) {
@@ -167,7 +167,7 @@ class Adaptive {
   double recursion_ = 0, other_ = 0;  // mean cost of a run
   int runs_ = 0;                      // of the other
   int until_list_ = 2, until_margins_ = 1, list_wait_ = 8, margins_wait_ = 64;
-  double way_ = -1, step_ = 0, failed_step_ = 0;
+  double displacement_ = -1, step_ = 0, failed_step_ = 0;
 };
 
 }  // namespace bvlab

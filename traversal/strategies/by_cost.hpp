@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A separation list that is rebuilt when its upkeep has become dearer than a rebuild pays for.
+/// A separation list that is rebuilt when its upkeep has become more expensive than a rebuild pays
+/// for.
 ///
-/// A rebuild that finds n ends takes 2n - 1 tests, runs after it n and, as the list grows and gets
-/// out of date, more. As with any machine that wears out, the mean cost of a run, the rebuild
-/// included, is least if the list is replaced when one more run costs more than the mean so far.
-/// That needs no parameter: at rest the mean falls from 2n towards n and the list is kept for ever;
-/// where growth costs more than a rebuild saves, it is kept for one run.
+/// A rebuild that finds n leaves of the test tree takes 2n - 1 tests, runs after it n and, as the
+/// list grows and gets out of date, more. As with any machine that wears out, the mean cost of a
+/// run, the rebuild included, is least if the list is replaced when one more run costs more than
+/// the mean so far. That needs no parameter: at rest the mean falls from 2n towards n and the list
+/// is kept for ever; where growth costs more than a rebuild saves, it is kept for one run.
 #pragma once
 
 #include <string_view>
@@ -21,18 +22,18 @@ class ByCost {
       "separation list, rebuilt once a run costs more than the mean since the last rebuild";
 
   template <class Pair>
-  Walked run(const Pair& pair) {
+  TraversalStatistics run(const Pair& pair) {
     const std::size_t longest = room * (pair.a().extent().nodes + pair.b().extent().nodes);
     if (front_.empty() || worn_out_ || front_.size() > longest) {
       front_.restart();
       cost_ = runs_ = 0;
     }
-    const Walked walked = pair.from_front(front_);
-    const auto tests = static_cast<double>(walked.volumes);
+    const TraversalStatistics statistics = pair.from_front(front_);
+    const auto tests = static_cast<double>(statistics.volumes);
     cost_ += tests;
     runs_ += 1;
     worn_out_ = tests * runs_ > cost_;
-    return walked;
+    return statistics;
   }
 
   /// Starts again from the roots next time.
@@ -42,8 +43,8 @@ class ByCost {
   std::size_t front_size() const { return front_.size(); }
 
  private:
-  /// Runs that a hit cuts short cost little and can let the list grow: so many entries for each
-  /// node are the most.
+  /// Runs that a hit cuts short cost little and can let the list grow: the most entries, for each
+  /// node.
   static constexpr std::size_t room = 16;
 
   Front front_;

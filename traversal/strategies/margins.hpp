@@ -37,7 +37,7 @@ class Margins {
       "a front whose entries are not looked at before the bodies can have closed their gaps";
 
   template <class Pair>
-  Walked run(const Pair& pair) {
+  TraversalStatistics run(const Pair& pair) {
     MovingBody &a = pair.a(), &b = pair.b();
     auto& query = pair.query();
     using Query = typename Pair::Query;
@@ -50,10 +50,10 @@ class Margins {
       quiet_until_ = front_.hits().front().deadline;
       return {};
     }
-    const Walked walked = pair.from_front(KeptMargins{{}, front_, clock_, step_});
-    account(walked);
+    const TraversalStatistics statistics = pair.from_front(KeptMargins{{}, front_, clock_, step_});
+    account(statistics);
     remember(query);
-    return walked;
+    return statistics;
   }
 
   /// Starts again from the roots next time.
@@ -63,21 +63,22 @@ class Margins {
   const MarginFront& front() const { return front_; }
 
  private:
-  static constexpr double stretch = 4;    // motion is measured over so many steps
+  static constexpr double stretch = 4;    // steps over which motion is measured
   static constexpr double triangles = 4;  // one pair of triangles costs as much as pairs of volumes
-  static constexpr double farthest = 1024;  // the clock is set back after so many radii
+  static constexpr double farthest = 1024;  // radii after which the clock is set back
 
   /// Follows the bodies. Says whether nothing can have changed, and answers the query then.
   template <class Query>
   bool unchanged(MovingBody& a, MovingBody& b, Query& query) {
-    const double way = a.displacement_bound() + b.displacement_bound();
-    // By epochs: a short step can be lost in the sum of two long ways.
+    const double displacement = a.displacement_bound() + b.displacement_bound();
+    // By epochs: a short step can be lost in the sum of two long displacement bounds.
     const bool moved = a.epoch() != epoch_a_ || b.epoch() != epoch_b_;
     epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
     if (moved) {
-      // The ways are sums of many steps, rounded up; what is wrong with their own sum is added.
-      step_ = way - way_ + 4 * unit_roundoff<double> * way;
-      way_ = way;
+      // Displacement bounds are sums of many steps, rounded up; what is wrong with their own sum is
+      // added.
+      step_ = displacement - displacement_ + 4 * unit_roundoff<double> * displacement;
+      displacement_ = displacement;
       shown_ = (shown_ + step_) * (1 + 4 * unit_roundoff<double>);
     }
     if constexpr (requires { query.distance(); }) {
@@ -129,7 +130,7 @@ class Margins {
 
   void rebuild(MovingBody& a, MovingBody& b) {
     if (front_.empty()) {
-      way_ = a.displacement_bound() + b.displacement_bound();
+      displacement_ = a.displacement_bound() + b.displacement_bound();
       epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
     }
     front_.restart();
@@ -140,9 +141,9 @@ class Margins {
     worn_out_ = false;
   }
 
-  void account(const Walked& walked) {
-    const double cost =
-        static_cast<double>(walked.volumes) + triangles * static_cast<double>(walked.triangles);
+  void account(const TraversalStatistics& statistics) {
+    const double cost = static_cast<double>(statistics.volumes) +
+                        triangles * static_cast<double>(statistics.triangles);
     cost_ += cost;
     if (++runs_ == 1) return;
     upkeep_ = 0.75 * upkeep_ + 0.25 * cost;
@@ -161,7 +162,7 @@ class Margins {
   MarginFront front_;
   RelativeMotionBound clock_;
   std::uint32_t epoch_a_ = 0, epoch_b_ = 0;  // when they were last looked at
-  double way_ = 0;                           // of both bodies, when they were last looked at
+  double displacement_ = 0;                  // of both bodies, when they were last looked at
   double step_ = 0;                          // how far they have moved since the time before
   double shown_ = 0;                         // at least what the clock shows
   double quiet_until_ = 0;                   // the answer is what it was while the clock shows less

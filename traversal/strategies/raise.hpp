@@ -11,11 +11,12 @@
 /// ten in violent motion, and either way what is wasted is little beside what descending had cost.
 /// Bodies at rest, with n entries, take n tests a run and at most n / 32 for parents.
 ///
-/// A rebuild that finds n ends takes 2n - 1 tests. Where bodies jump, sinking and rising takes more
-/// than that: then the list is dropped and built again in the next run; if no run of the new one is
-/// any cheaper, only after twice as many runs from the roots, up to 16. As the list has more
-/// entries than recursion would find ends, a run is too dear from (2n - 1) / 1.2 tests on, n being
-/// the entries it leaves (with 1 or 1.5 in place of 1.2 more tests were made on the whole).
+/// A rebuild that finds n leaves of the test tree takes 2n - 1 tests. Where bodies jump, sinking
+/// and rising takes more than that: then the list is dropped and built again in the next run; if no
+/// run of the new one is any cheaper, only after twice as many runs from the roots, up to 16. As
+/// the list has more entries than the test tree would have leaves, a run is too expensive from (2n
+/// - 1) / 1.2 tests on, n being the entries it leaves (with 1 or 1.5 in place of 1.2 more tests
+/// were made on the whole).
 ///
 /// Runs cut short: the pair that was hit is tested first in the next run, before any parent, and
 /// a hit there ends that run at once. Else parents come next, so that what was raised stays raised
@@ -38,7 +39,7 @@ class Raise {
       "separation list that is raised where the parent of two entries is apart again";
 
   template <class Pair>
-  Walked run(const Pair& pair) {
+  TraversalStatistics run(const Pair& pair) {
     if (recursions_ > 0) {
       --recursions_;
       return pair.from_roots();
@@ -49,16 +50,16 @@ class Raise {
       front_.restart();
       paid_ = false;
     }
-    const Walked walked = pair.from_front(front_);
-    if (!rebuild && walked.everything) judge(static_cast<double>(walked.volumes));
-    return walked;
+    const TraversalStatistics statistics = pair.from_front(front_);
+    if (!rebuild && statistics.everything) judge(static_cast<double>(statistics.volumes));
+    return statistics;
   }
 
   const Front& front() const { return front_; }
   std::size_t front_size() const { return front_.size(); }
 
  private:
-  /// So many entries for each node are the most: runs that hits cut short can let the list grow.
+  /// The most entries for each node: runs that hits cut short can let the list grow.
   static constexpr std::size_t room = 16;
   static constexpr unsigned longest_pause = 16;
   static constexpr double surplus = 1.2;

@@ -4,8 +4,9 @@
 /// A run starts from the pairs at which the last one stopped, and the list never shrinks. When it
 /// has stopped growing the objects are predicted to move apart, and the list is rebuilt from the
 /// roots in the next run: after one run without growth (`SeparationList`), or only after `1 + k`
-/// such runs in a row (`Deferred`, k = 1 as published). For objects that stay, with n ends, a
-/// rebuild makes 2n - 1 tests and each other run n: over a period (2n - 1 + (1 + k) n) / (2 + k).
+/// such runs in a row (`Deferred`, k = 1 as published). For objects that stay, whose test tree has
+/// n leaves, a rebuild makes 2n - 1 tests and each other run n: over a period (2n - 1 + (1 + k) n)
+/// / (2 + k).
 ///
 /// What the talk leaves open is decided so:
 /// - a rebuild is not itself a run without growth, so the run after it always uses the list;

@@ -34,14 +34,14 @@ class WideBody {
       : mesh_(&mesh), hierarchy_(&hierarchy) {}
 
   const WideHierarchy<V, F>& hierarchy() const { return *hierarchy_; }
-  const Standing& standing() const { return standing_; }
+  const OrthonormalPose& orthonormal_pose() const { return orthonormal_pose_; }
   const Pose& pose() const { return pose_; }
 
   /// Says whether it has moved.
   bool stand(const Pose& pose) {
     if (placed_ && pose == pose_) return false;
     pose_ = pose, placed_ = true;
-    standing_ = Standing(pose, hierarchy_->reach());
+    orthonormal_pose_ = OrthonormalPose(pose, hierarchy_->reach());
     return true;
   }
 
@@ -56,7 +56,7 @@ class WideBody {
   const TriangleMesh* mesh_;
   const WideHierarchy<V, F>* hierarchy_;
   Pose pose_;
-  Standing standing_;
+  OrthonormalPose orthonormal_pose_;
   bool placed_ = false;
 };
 
@@ -114,10 +114,10 @@ struct RelativeFrame {
 
     void begin(Body<V, F>& a, Body<V, F>& b) {
       hierarchies_ = {&a.hierarchy(), &b.hierarchy()};
-      const RelativePose a_from_b(a.standing(), b.standing());
+      const RelativePose a_from_b(a.orthonormal_pose(), b.orthonormal_pose());
       const double reach_a = a.hierarchy().reach(), reach_b = b.hierarchy().reach();
-      turn_[1] = Facing::turn(a_from_b, reach_a, reach_b);
-      turn_[0] = Facing::turn(a_from_b.reversed(), reach_b, reach_a);
+      frame_change_[1] = Facing::frame_change(a_from_b, reach_a, reach_b);
+      frame_change_[0] = Facing::frame_change(a_from_b.reversed(), reach_b, reach_a);
       corners_.begin(a_from_b, reach_a, reach_b);
     }
 
@@ -126,7 +126,7 @@ struct RelativeFrame {
     [[gnu::always_inline]] One one(std::size_t side, std::uint32_t node, Counter& counter) const {
       counter.posed(1);
       const auto& of = hierarchies_[side]->node(node);
-      return Facing::one(of.volume, of.size, turn_[1 - side]);
+      return Facing::one(of.volume, of.size, frame_change_[1 - side]);
     }
     /// One child of a node.
     template <class Counter>
@@ -134,18 +134,19 @@ struct RelativeFrame {
       counter.posed(1);
       const auto& of = hierarchies_[side]->children(node);
       return Facing::one(lane_of<V>(of.volumes, lane), T(of.size[static_cast<std::size_t>(lane)]),
-                         turn_[1 - side]);
+                         frame_change_[1 - side]);
     }
     template <class Counter>
     [[gnu::always_inline]] Compared<S> compared(std::size_t side, std::uint32_t node,
                                                 const One& one, Counter&) const {
       const auto& lanes = hierarchies_[side]->children(node);
-      return Facing::template compared<S>(one, turn_[side], lanes.volumes, lanes.size);
+      return Facing::template compared<S>(one, frame_change_[side], lanes.volumes, lanes.size);
     }
     template <class Counter>
     [[gnu::always_inline]] S gaps(std::size_t side, std::uint32_t node, const One& one,
                                   Counter&) const {
-      return Facing::template gaps<S>(one, turn_[side], hierarchies_[side]->children(node).volumes);
+      return Facing::template gaps<S>(one, frame_change_[side],
+                                      hierarchies_[side]->children(node).volumes);
     }
     /// How far it is from each lane, at least, negative where they may meet; cheaper than gaps, and
     /// as near to the truth where they hardly meet.
@@ -153,8 +154,10 @@ struct RelativeFrame {
     [[gnu::always_inline]] Separated<S> separated(std::size_t side, std::uint32_t node,
                                                   const One& one, Counter& counter) const {
       const auto& lanes = hierarchies_[side]->children(node);
-      if constexpr (requires { Facing::template separation<S>(one, turn_[side], lanes.volumes); }) {
-        const S gap = Facing::template separation<S>(one, turn_[side], lanes.volumes);
+      if constexpr (requires {
+                      Facing::template separation<S>(one, frame_change_[side], lanes.volumes);
+                    }) {
+        const S gap = Facing::template separation<S>(one, frame_change_[side], lanes.volumes);
         return {gap, gap * roughly_one_over<S>(lanes.size + S(one.size))};
       } else {
         return {gaps(side, node, one, counter), compared(side, node, one, counter).order};
@@ -164,7 +167,7 @@ struct RelativeFrame {
 
    private:
     std::array<const WideHierarchy<V, F>*, 2> hierarchies_;
-    std::array<typename Facing::Turn, 2> turn_;  // into the frame of that side
+    std::array<typename Facing::FrameChange, 2> frame_change_;  // into the frame of that side
     CornersBetween corners_;
   };
 };
@@ -237,8 +240,8 @@ struct WorldFrame {
 
     void begin(Body<V, F>& a, Body<V, F>& b) {
       bodies_ = {&a, &b};
-      corners_.begin(RelativePose(a.standing(), b.standing()), a.hierarchy().reach(),
-                     b.hierarchy().reach());
+      corners_.begin(RelativePose(a.orthonormal_pose(), b.orthonormal_pose()),
+                     a.hierarchy().reach(), b.hierarchy().reach());
     }
 
     template <class Counter>

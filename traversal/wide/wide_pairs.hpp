@@ -59,8 +59,8 @@ class WidePairs {
       place(bodies_[i], poses[i], origin_);
       centres_[i] = poses[i](balls_[i].centre);
       // What is off, of a corner and of the centre, and of how far they are apart.
-      reaches_[i] =
-          (balls_[i].radius + 4 * bodies_[i].standing().noise) * (1 + 16 * unit_roundoff<double>);
+      reaches_[i] = (balls_[i].radius + 4 * bodies_[i].orthonormal_pose().noise) *
+                    (1 + 16 * unit_roundoff<double>);
     }
     std::size_t near = pairs_.size();
     before_ = counter.n_v + counter.n_p;
@@ -140,39 +140,39 @@ class WidePairs {
     std::array<Traversal, at_once> traversals{Traversal(workspaces_[0]), Traversal(workspaces_[1])};
     std::array<std::uint32_t, at_once> pair;
     std::size_t next = 0, active = 0;
-    std::array<Traversal*, at_once> turn;
+    std::array<Traversal*, at_once> running;
     const auto begin = [&](std::size_t slot) {
       pair[slot] = near_[next++];
       const auto [i, j] = pairs_[pair[slot]];
       if constexpr (Memory::remembers)
         place(bodies_[i], poses_[i], origin_), place(bodies_[j], poses_[j], origin_);
       if constexpr (Measure::measures)
-        turn[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter,
-                          memory_.template touched<Query>(pair[slot]), memory_.front(pair[slot]),
-                          memory_.way(pairs_[pair[slot]]));
+        running[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter,
+                             memory_.template touched<Query>(pair[slot]), memory_.front(pair[slot]),
+                             memory_.way(pairs_[pair[slot]]));
       else
-        turn[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter);
+        running[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter);
     };
     for (; active < at_once && next < near; ++active) {
-      turn[active] = &traversals[active];
+      running[active] = &traversals[active];
       begin(active);
     }
     while (active > 0)
       for (std::size_t slot = 0; slot < active;) {
-        if (turn[slot]->advance()) {
+        if (running[slot]->advance()) {
           ++slot;
           continue;
         }
         counter.asked(before_);
         if constexpr (Memory::remembers)
-          memory_.remember(pair[slot], pairs_[pair[slot]], turn[slot]->query(),
-                           turn[slot]->measure());
-        take(pair[slot], turn[slot]->query());
+          memory_.remember(pair[slot], pairs_[pair[slot]], running[slot]->query(),
+                           running[slot]->measure());
+        take(pair[slot], running[slot]->query());
         if (next < near) {
           begin(slot++);
         } else {
           --active;
-          std::swap(turn[slot], turn[active]), std::swap(pair[slot], pair[active]);
+          std::swap(running[slot], running[active]), std::swap(pair[slot], pair[active]);
         }
       }
   }

@@ -96,11 +96,11 @@ class WideTraversal {
       float order;
       const NodePair pair = frontier_.take_least(order);
       // What is `order` apart, or less where they may meet.
-      if (order > 0 && bits(query_->excludes(order))) return !frontier_.empty() || finish();
+      if (order > 0 && bits(query_->culls(order))) return !frontier_.empty() || finish();
       step(pair);
       while (!triangles_.empty()) {
         const NodePair next = triangles_.take_least(order);
-        if (!(order > 0 && bits(query_->excludes(order))) && open_distances(next)) return false;
+        if (!(order > 0 && bits(query_->culls(order))) && open_distances(next)) return false;
       }
     } else if constexpr (Query::one_hit_is_enough) {
       float order;
@@ -158,7 +158,7 @@ class WideTraversal {
     Frontier& next = leaves ? triangles_ : frontier_;
     if constexpr (SeeksDistance<Query>) {
       const S gaps = between_.gaps(side, node[side], one, *counter_);
-      const std::uint64_t left = many.lanes & ~bits(query_->excludes(gaps));
+      const std::uint64_t left = many.lanes & ~bits(query_->culls(gaps));
       next.template push_lanes<F>(static_cast<int>(side), left, many.first, node[1 - side], gaps);
     } else if constexpr (Measure::measures) {
       const auto seen = between_.separated(side, node[side], one, *counter_);
@@ -229,7 +229,7 @@ class WideTraversal {
         between_.one_child(0, a.leaf_of(pair.a), static_cast<int>(pair.a % F), *counter_);
     counter_->tested(static_cast<std::uint64_t>(std::popcount(leaf.lanes)));
     const S gaps = between_.gaps(1, pair.b, one, *counter_);
-    std::uint64_t left = leaf.lanes & ~bits(query_->excludes(gaps));
+    std::uint64_t left = leaf.lanes & ~bits(query_->culls(gaps));
     counter_->primitives(static_cast<std::uint64_t>(std::popcount(left)));
     for (; left; left &= left - 1)
       if (hold(a.triangle(pair.a), triangle_of_b(leaf.first, left))) return true;
@@ -245,7 +245,7 @@ class WideTraversal {
     world_[0][pending_] = bodies_[0]->triangle(a), world_[1][pending_] = bodies_[1]->triangle(b);
     candidates_[pending_] = {&world_[0][pending_], &world_[1][pending_], a, b, 0};
     ++pending_;
-    return pending_ > std::min(Query::patience, at_most - 1) && flush();
+    return pending_ > std::min(Query::buffer_size, at_most - 1) && flush();
   }
 
   bool flush() {

@@ -26,10 +26,10 @@
 
 namespace bvlab {
 
-class TurnedBox {
+class RotatedMeshBox {
  public:
   /// Vertices that no triangle uses count as well.
-  explicit TurnedBox(const TriangleMesh& mesh) {
+  explicit RotatedMeshBox(const TriangleMesh& mesh) {
     support_.fill(-std::numeric_limits<double>::infinity());
     for (const auto& v : mesh.vertices) {
       // For the two roundings of a sum of three.

@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What `blocks` does while boxes move steadily. Every box gets a *fat box*, which holds where it
+/// will be for some frames (the *horizon*) if it goes on as it just did, and the pairs of boxes
+/// whose fat boxes overlap are candidates (BibTeX: verlet1967computer; the fat box is one-sided,
+/// along the motion of each face, so it grows the box a quarter of what a margin would). Until a
+/// box leaves its fat box, no pair but a candidate can overlap. A box that leaves it gets a wider
+/// one, one that jumps or is new another slot.
+///
+/// A frame looks at every box, and compares all candidates, or those alone whose boxes moved where
+/// these are few.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "broadphase/methods/blocks/joined_blocks.hpp"
+#include "broadphase/structures/candidate_pairs.hpp"
+#include "broadphase/structures/last_frame.hpp"
+
+namespace bvlab {
+
+template <class T, class Contact>
+class FollowedBlocks {
+ public:
+  /// `joined`: whose tree then holds fat boxes; `pairs`: the list that is written; `last_frame`: is
+  /// kept up to date while few boxes move. All must outlive this.
+  FollowedBlocks(const MethodSettings& settings, JoinedBlocks<T, Contact>& joined,
+                 ReportedPairs& pairs, LastFrame<T>& last_frame)
+      : settings_(settings),
+        joined_(joined),
+        tree_(joined.tree()),
+        pairs_(pairs),
+        last_frame_(last_frame) {}
+
+  bool active() const { return active_; }
+  void stop() { active_ = false; }
+
+  /// Whether the candidates are good for another frame.
+  bool goes_on() const { return few_moved_ || age_ < horizon_; }
+  bool few_moved() const { return few_moved_; }
+  /// Whether boxes have gone on as they did.
+  bool steady() const { return steady_; }
+  /// The most frames that fat boxes may be made for.
+  int longest() const { return longest_; }
+
+  /// The last frame's box in this slot.
+  Row<T> last_row(std::uint32_t slot) const {
+    if (active_) return candidates_.rows()[slot];
+    return row_of(tree_.leaf(slot / block_width).box(static_cast<int>(slot % block_width)));
+  }
+
+  /// Fat boxes for `horizon` frames, their candidates, and all pairs.
+  void begin(Boxes<T> boxes, int horizon) { begin(boxes, horizon, settings_.changes); }
+
+  /// The same while boxes are followed. Where changes are reported, the old candidates, which are
+  /// good for one frame more, tell them before new ones are found; to compare two whole lists would
+  /// cost more. False where too many boxes left their fat boxes.
+  bool begin_again(Boxes<T> boxes, int horizon) {
+    if (settings_.changes != Changes::reported) return begin(boxes, horizon), true;
+    auto& rows = candidates_.rows();
+    last_rows_ = rows;
+    if (!follow(boxes)) return false;
+    if (!newcomers_.empty() || !emptied_.empty()) return true;  // slots changed: next time
+    std::swap(rows, last_rows_);
+    begin(boxes, horizon, Changes::unreported);
+    return true;
+  }
+
+  /// One frame in which boxes mostly stayed within their fat boxes; false where too many did not.
+  bool follow(Boxes<T> boxes) {
+    moved_.clear(), escaped_.clear(), newcomers_.clear(), emptied_.clear();
+    moved_count_ = 0;
+    for (std::size_t id = boxes.size(); id < count_; ++id) vacate(slots_[id]);
+    const std::size_t staying = std::min(boxes.size(), count_);
+    if (last_frame_.known())
+      look_by_index(boxes, staying);
+    else
+      look_by_slot(boxes, staying);
+    for (std::size_t id = count_; id < boxes.size(); ++id)
+      newcomers_.push_back(static_cast<std::uint32_t>(id));
+    // Each of these costs about as much as starting over does for thirty boxes, or a hundred.
+    if (32 * escaped_.size() + 100 * newcomers_.size() > boxes.size() + 3200) {
+      if (age_ < horizon_ && newcomers_.size() < escaped_.size()) distrust();
+      return false;
+    }
+    widen_escaped();
+    if (!newcomers_.empty()) seat_newcomers(boxes);
+    few_moved_ = 4 * moved_count_ < tree_.slots();
+    moved_.insert(moved_.end(), emptied_.begin(), emptied_.end());
+    compare();
+    for (const std::uint32_t slot : emptied_) tree_.ids(0)[slot] = no_box;
+    // A pair that ended in one slot and began in another, where its box went, did neither.
+    if (settings_.changes == Changes::reported && !emptied_.empty()) pairs_.cancel_out();
+    if (few_moved_ != last_frame_.known() || boxes.size() != count_) {
+      last_frame_.forget();
+      if (few_moved_) last_frame_.remember(boxes);
+    }
+    count_ = boxes.size();
+    ++age_;
+    told_few_moved_ = few_moved_;
+    if (too_many_candidates(boxes)) age_ = horizon_, few_moved_ = false;
+    return true;
+  }
+  /// Whether the last frame compared only the candidates of boxes that moved.
+  bool compared_few() const { return told_few_moved_; }
+
+  std::size_t bytes() const {
+    return candidates_.bytes() +
+           (fat_boxes_.capacity() + spare_.capacity() + last_rows_.capacity()) * sizeof(Row<T>) +
+           4 * slots_.capacity();
+  }
+
+ private:
+  using Keep = typename CandidatePairs<T, Contact>::Keep;
+
+  // ---- fat boxes and candidates -------------------------------------------------------------
+
+  void begin(Boxes<T> boxes, int horizon, Changes changes) {
+    const bool compare = changes == Changes::reported;
+    if (compare) pairs_.keep_before();
+    sort_if_due(boxes);
+    auto& rows = candidates_.rows();
+    const std::uint32_t slots = tree_.slots();
+    if (!active_) {
+      rows.resize(slots);
+      for (std::uint32_t slot = 0; slot < slots; ++slot) rows[slot] = last_row(slot);
+    }
+    slots_.resize(boxes.size());
+    fat_boxes_.resize(slots);
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+      const std::uint32_t id = tree_.ids(0)[slot];
+      Box<T> fat = nowhere<T>();
+      if (id == no_box) {
+        rows[slot] = nowhere_row<T>();
+      } else {
+        const Row<T> now = row_of(boxes[id]);
+        const Row<T> expected = fat_box_of(now, rows[slot], horizon);
+        fat_boxes_[slot].lo = expected.lo, fat_boxes_[slot].hi = expected.hi;
+        fat = box_of(expected);
+        rows[slot].lo = now.lo, rows[slot].hi = now.hi;
+        slots_[id] = slot;
+      }
+      tree_.leaf(slot / block_width).put(static_cast<int>(slot % block_width), fat);
+    }
+    for (std::uint32_t k = 0; k < tree_.leaves(); ++k)
+      tree_.set_leaf_bounds(k, bounds(tree_.leaf(k)));
+    tree_.refit_above();
+    candidates_.clear();
+    visits_ = 0;
+    tree_.join([&](std::uint32_t a, std::uint32_t b) {
+      ++visits_;
+      add_candidates(a, b);
+    });
+    if (sorted_) visits_when_sorted_ = visits_, sorted_ = false;
+    candidates_at_first_ = candidates_.size();
+    count_ = boxes.size();
+    active_ = true;
+    horizon_ = horizon, age_ = 0;
+    few_moved_ = false;
+    last_frame_.forget();
+    write_candidates(settings_.changes == Changes::reported ? Keep::places : Keep::nothing);
+    if (compare) pairs_.compare_with_kept();
+  }
+
+  /// A new order, once the old one costs a third more or holds slots that are empty.
+  void sort_if_due(Boxes<T> boxes) {
+    if (!active_) {
+      sorted_ = true;
+      return;
+    }
+    if (!joined_.holey(boxes.size()) && 3 * visits_ < 4 * visits_when_sorted_) return;
+    const auto order = joined_.order()(boxes);
+    auto& rows = candidates_.rows();
+    spare_.resize((order.size() + block_width - 1) / block_width * block_width);
+    for (std::size_t k = 0; k < order.size(); ++k) spare_[k] = rows[slots_[order[k].id]];
+    std::swap(rows, spare_);
+    joined_.build(order, boxes);
+    sorted_ = true;
+  }
+
+  /// Where a box will be for `frames` more frames, moving as it just did; where boxes have turned
+  /// out not to, a margin all around. Nothing depends on its being right.
+  Row<T> fat_box_of(const Row<T>& now, const Row<T>& was, int frames) const {
+    if (joined_.jumped(now, was)) return now;
+    const Four<T> zero{}, low = now.lo - was.lo, high = now.hi - was.hi;
+    const Four<T> far = most<T>(absolute<T>(low), absolute<T>(high));
+    Row<T> fat;
+    if (steady_) {
+      const T ahead = static_cast<T>(frames);
+      // A quarter of a step for what rounding adds up to.
+      fat = {now.lo + least<T>(low * ahead, zero) - far / 4,
+             now.hi + most<T>(high * ahead, zero) + far / 4};
+    } else {
+      const T widest = std::max({far[0], far[1], far[2]}) * static_cast<T>(frames);
+      fat = {now.lo - widest, now.hi + widest};
+    }
+    constexpr T limit = std::numeric_limits<T>::max();
+    return {most<T>(fat.lo, zero - limit), least<T>(fat.hi, zero + limit)};
+  }
+
+  void add_candidates(std::uint32_t a, std::uint32_t b) {
+    const Block<T>& left = tree_.leaf(a);
+    const Loaded<T> right(tree_.leaf(b));
+    const std::uint32_t* ids = tree_.ids(a);
+    PairList& list = candidates_.list();
+    Pair* out = list.room_for(block_width * block_width + block_width);
+    LaneMask rows = a == b ? all_lanes : overlapping_lanes<Closed>(left, tree_.leaf_bounds(b));
+    for (; rows; rows &= rows - 1) {
+      const int row = std::countr_zero(rows);
+      LaneMask lanes = right.template overlapping<Closed>(left.box(row));
+      if (a == b) lanes &= all_lanes << (row + 1);
+      out = write_pairs_by_id(out, a * block_width + static_cast<std::uint32_t>(row), ids[row],
+                              b * block_width, tree_.ids(b), lanes & all_lanes);
+    }
+    list.end_at(out);
+  }
+
+  // ---- one frame ----------------------------------------------------------------------------
+
+  /// In the order of the frame, beside a copy of the last one: best where few moved.
+  void look_by_index(Boxes<T> boxes, std::size_t staying) {
+    constexpr std::size_t stretch = LastFrame<T>::stretch;
+    for (std::size_t first = 0; first < staying; first += stretch) {
+      const std::size_t last = std::min(first + stretch, staying);
+      if (last_frame_.same(boxes, first, last - first)) continue;
+      for (std::size_t id = first; id < last; ++id) {
+        if (boxes[id] == last_frame_[id]) continue;
+        last_frame_[id] = boxes[id];
+        const std::uint32_t slot = slots_[id];
+        Row<T>& row = candidates_.rows()[slot];
+        const Row<T> was = row;
+        row = row_of(boxes[id]);
+        moved_.push_back(slot);
+        if (!inside(row, fat_boxes_[slot])) leave_fat_box(slot, was);
+      }
+    }
+    moved_count_ = moved_.size();
+  }
+  /// In the order of slots: best where most moved.
+  void look_by_slot(Boxes<T> boxes, std::size_t staying) {
+    const std::uint32_t slots = tree_.slots();
+    const std::uint32_t* ids = tree_.ids(0);
+    Row<T>* const rows = candidates_.rows().data();
+    const Row<T>* const fat_boxes = fat_boxes_.data();
+    const std::size_t had = moved_.size();  // boxes that are gone
+    moved_.resize(had + slots);
+    std::uint32_t* moved = moved_.data() + had;
+    // A frame that the cache holds is fetched in order, a longer one as it is needed.
+    const bool far = boxes.size_bytes() > (1u << 20);
+    if (!far)
+      for (std::size_t byte = 0; byte < boxes.size_bytes(); byte += 64)
+        __builtin_prefetch(reinterpret_cast<const char*>(boxes.data()) + byte, 0, 2);
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+      if (far && slot + ahead < slots && ids[slot + ahead] < staying)
+        __builtin_prefetch(&boxes[ids[slot + ahead]]);
+      if (ids[slot] >= staying) continue;
+      const Row<T> was = rows[slot], now = row_of(boxes[ids[slot]]);
+      // Both halves by themselves: copied whole, they would go through memory.
+      rows[slot].lo = now.lo, rows[slot].hi = now.hi;
+      *moved = slot;
+      moved += !bvlab::same(now, was);
+      if (!inside(now, fat_boxes[slot])) [[unlikely]] {
+        const Row<T> left = was;  // its address is taken: `was` itself can stay in registers
+        leave_fat_box(slot, left);
+      }
+    }
+    moved_count_ = static_cast<std::size_t>(moved - moved_.data());
+    moved_.resize(moved_count_);
+  }
+  static constexpr std::uint32_t ahead = 16;  ///< slots between a prefetch and its use
+
+  void leave_fat_box(std::uint32_t slot, const Row<T>& was) {
+    if (!joined_.jumped(candidates_.rows()[slot], was)) {
+      escaped_.push_back({slot, was});
+      return;
+    }
+    newcomers_.push_back(tree_.ids(0)[slot]);
+    vacate(slot);
+  }
+  /// Its pairs end with this frame; candidates of the slot stay and are never found again.
+  void vacate(std::uint32_t slot) {
+    candidates_.rows()[slot] = nowhere_row<T>();
+    tree_.leaf(slot / block_width).put(static_cast<int>(slot % block_width), nowhere<T>());
+    emptied_.push_back(slot);
+  }
+
+  void widen_escaped() {
+    for (const auto& [slot, was] : escaped_) {
+      const Row<T> now = candidates_.rows()[slot], next = fat_box_of(now, was, horizon_);
+      Row<T>& fat = fat_boxes_[slot];
+      const Box<T> old = box_of(fat);
+      fat = {least<T>(least<T>(fat.lo, next.lo), now.lo),
+             most<T>(most<T>(fat.hi, next.hi), now.hi)};
+      enter(slot, old);
+    }
+  }
+  /// Candidates are all pairs whose fat boxes overlap: adds those that the new fat box of this slot
+  /// overlaps and the old one did not.
+  void enter(std::uint32_t slot, const Box<T>& old) {
+    const Box<T> fat = box_of(fat_boxes_[slot]);
+    const std::uint32_t* ids = tree_.ids(0);
+    tree_.widen(slot, fat);
+    tree_.find(fat, [&](std::uint32_t k) {
+      const Loaded<T> block(tree_.leaf(k));
+      LaneMask lanes =
+          block.template overlapping<Closed>(fat) & ~block.template overlapping<Closed>(old);
+      for (; lanes; lanes &= lanes - 1) {
+        const std::uint32_t other = k * block_width + std::countr_zero(lanes);
+        if (other != slot) candidates_.add(slot, ids[slot], other, ids[other]);
+      }
+    });
+  }
+
+  /// Boxes that jumped or are new get slots of their own, among themselves in spatial order.
+  void seat_newcomers(Boxes<T> boxes) {
+    std::erase_if(newcomers_, [&](std::uint32_t id) { return id >= boxes.size(); });
+    new_boxes_.clear();
+    for (const std::uint32_t id : newcomers_) new_boxes_.push_back(boxes[id]);
+    const auto order = newcomers_order_(new_boxes_);
+    const std::uint32_t first = tree_.slots();
+    tree_.resize_leaves(tree_.leaves() +
+                        static_cast<std::uint32_t>((order.size() + block_width - 1) / block_width));
+    tree_.refit_above();
+    slots_.resize(boxes.size());
+    auto& rows = candidates_.rows();
+    rows.resize(tree_.slots(), nowhere_row<T>());
+    fat_boxes_.resize(tree_.slots());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const std::uint32_t id = newcomers_[order[k].id];
+      const std::uint32_t slot = first + static_cast<std::uint32_t>(k);
+      tree_.ids(0)[slot] = id;
+      slots_[id] = slot;
+      rows[slot] = fat_boxes_[slot] = row_of(boxes[id]);
+      enter(slot, nowhere<T>());
+      moved_.push_back(slot);
+    }
+    moved_count_ += order.size();
+  }
+
+  /// Too many boxes left the fat boxes made for them: they turn too often for that, or speed up.
+  void distrust() {
+    if (steady_)
+      steady_ = false;
+    else
+      longest_ = std::max(1, longest_ / 2);
+  }
+  bool too_many_candidates(Boxes<T> boxes) const {
+    return candidates_.size() > 2 * candidates_at_first_ + boxes.size() ||
+           tree_.slots() > boxes.size() + boxes.size() / 8 + 64;
+  }
+
+  void compare() {
+    if (few_moved_ && candidates_.places_known())
+      return candidates_.compare_some(moved_, tree_.ids(0), pairs_.all, pairs_.began, pairs_.ended);
+    write_candidates(settings_.changes == Changes::reported ? Keep::changes
+                     : few_moved_                           ? Keep::places
+                                                            : Keep::nothing);
+  }
+  void write_candidates(Keep keep) {
+    pairs_.all.clear();
+    const std::size_t count = candidates_.size();
+    if (keep != Keep::nothing || settings_.threads <= 1 || count < candidates_worth_sharing)
+      return candidates_.compare_all(tree_.ids(0), pairs_.all, keep, pairs_.began, pairs_.ended);
+    candidates_.forget_places();
+    joined_.shares()(static_cast<std::size_t>(settings_.threads), pairs_.all,
+                     [&](std::size_t t, std::size_t threads, PairList& share) {
+                       candidates_.compare_range(tree_.ids(0), share, count * t / threads,
+                                                 count * (t + 1) / threads);
+                     });
+  }
+  /// Below this a thread takes longer to start than the comparisons do.
+  static constexpr std::size_t candidates_worth_sharing = 100000;
+
+  MethodSettings settings_;
+  JoinedBlocks<T, Contact>& joined_;
+  BlockTree<T>& tree_;  ///< while active: of the fat boxes
+  ReportedPairs& pairs_;
+  LastFrame<T>& last_frame_;
+
+  CandidatePairs<T, Contact> candidates_;
+  std::vector<Row<T>> fat_boxes_, spare_, last_rows_;
+  std::vector<std::uint32_t> slots_;  ///< of each box
+  std::size_t count_ = 0;             ///< boxes of the last frame
+  std::size_t candidates_at_first_ = 0, visits_ = 0, visits_when_sorted_ = 0;
+  bool active_ = false, sorted_ = false, steady_ = true;
+  int longest_ = 64, horizon_ = 0, age_ = 0;
+
+  struct Escaped {
+    std::uint32_t slot;
+    Row<T> was;
+  };
+  std::vector<Escaped> escaped_;
+  std::vector<std::uint32_t> moved_, newcomers_, emptied_;
+  std::size_t moved_count_ = 0;
+  bool few_moved_ = false, told_few_moved_ = false;
+  std::vector<Box<T>> new_boxes_;
+  SpatialOrder<T> newcomers_order_;
+};
+
+}  // namespace bvlab

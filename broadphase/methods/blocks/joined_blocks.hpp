@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What `blocks` does without coherence, and with the order alone: boxes sorted into blocks of
+/// sixteen neighbours, the tree of blocks joined with itself into all pairs; or the tree refitted
+/// in the order of an earlier frame and joined again.
+#pragma once
+
+#include <algorithm>
+
+#include "broadphase/settings.hpp"
+#include "broadphase/structures/block_tree.hpp"
+#include "broadphase/structures/pair_shares.hpp"
+#include "broadphase/structures/reported_pairs.hpp"
+#include "broadphase/structures/row.hpp"
+#include "broadphase/structures/spatial_order.hpp"
+
+namespace bvlab {
+
+/// What the parts of a frame cost, in units of a nanosecond or so, as measured once; what counts is
+/// their ratios.
+struct BlockCosts {
+  static constexpr double sort = 12;      ///< a box into spatial order
+  static constexpr double visit = 36;     ///< a pair of leaves in the join
+  static constexpr double pair = 1.3;     ///< an overlapping pair, written
+  static constexpr double look = 4.5;     ///< a box, followed
+  static constexpr double test = 1.8;     ///< a candidate, compared
+  static constexpr double fat_box = 10;   ///< a fat box, made
+  static constexpr double candidate = 3;  ///< a candidate, written
+};
+
+template <class T, class Contact>
+class JoinedBlocks {
+ public:
+  explicit JoinedBlocks(const MethodSettings& settings) : settings_(settings) {}
+
+  BlockTree<T>& tree() { return tree_; }
+  const BlockTree<T>& tree() const { return tree_; }
+  const SpatialOrder<T>& order() const { return order_; }
+  SpatialOrder<T>& order() { return order_; }
+  PairShares& shares() { return shares_; }
+
+  /// Pairs of leaves that the join right after the last sort visited.
+  std::size_t fresh_visits() const { return fresh_visits_; }
+
+  /// Whether a box went farther in a frame than half a leaf: its neighbours are others now.
+  bool jumped(const Row<T>& now, const Row<T>& was) const {
+    return !(static_cast<double>(largest_change(now, was)) <= leaf_extent_ / 2);
+  }
+
+  /// Builds the tree of the boxes in this order.
+  void build(std::span<const Keyed<std::uint32_t>> order, Boxes<T> boxes) {
+    tree_.build(order, boxes);
+    leaf_extent_ = tree_.mean_leaf_extent();
+  }
+
+  void from_scratch(Boxes<T> boxes, ReportedPairs& pairs) {
+    build(order_(boxes), boxes);
+    write_all_pairs(pairs);
+    fresh_visits_ = visits_;
+  }
+
+  /// Joins the tree again with the leaves' bounds as they are; false where a new order costs less
+  /// than what boxes, spread since the last one, are going to add to the join.
+  bool refit(Boxes<T> boxes, ReportedPairs& pairs) {
+    const double spread = static_cast<double>(visits_) - static_cast<double>(fresh_visits_);
+    if (holey(boxes.size()) || BlockCosts::visit * (spread + spreading_) >
+                                   BlockCosts::sort * static_cast<double>(boxes.size())) {
+      spreading_ *= 0.9;  // to be tried again some time
+      return false;
+    }
+    for (std::uint32_t k = 0; k < tree_.leaves(); ++k) {
+      gather(tree_.leaf(k), tree_.ids(k), boxes);
+      tree_.set_leaf_bounds(k, bounds(tree_.leaf(k)));
+    }
+    tree_.refit_above();
+    const std::size_t before = visits_;
+    write_all_pairs(pairs);
+    spreading_ = std::max(0.0, static_cast<double>(visits_) - static_cast<double>(before));
+    return true;
+  }
+
+  /// Whether slots are empty that sorting these boxes would fill.
+  bool holey(std::size_t boxes) const { return tree_.slots() >= boxes + block_width; }
+
+  std::size_t bytes() const { return tree_.bytes() + order_.bytes(); }
+
+ private:
+  /// Joins the tree with itself into the list of pairs.
+  void write_all_pairs(ReportedPairs& pairs) {
+    const bool compare = settings_.changes == Changes::reported;
+    if (compare) pairs.keep_before();
+    PairList& list = pairs.all;
+    list.clear();
+    const bool alone = settings_.threads <= 1 || tree_.leaves() < leaves_worth_sharing;
+    visits_ = 0;
+    tree_.join([&](std::uint32_t a, std::uint32_t b) {
+      ++visits_;
+      if (alone) add_pairs(list, a, b);
+    });
+    if (!alone) join_in_shares(list);
+    if (compare) pairs.compare_with_kept();
+  }
+  /// Below this a thread takes longer to start than the join does.
+  static constexpr std::uint32_t leaves_worth_sharing = 1000;
+
+  void add_pairs(PairList& list, std::uint32_t a, std::uint32_t b) const {
+    Pair* out = list.room_for(block_width * block_width + block_width);
+    list.end_at(a == b ? pairs_within(out, a) : pairs_between(out, a, b));
+  }
+  /// Every thread walks the tree, which is cheap, and compares its share of the leaf pairs.
+  void join_in_shares(PairList& list) {
+    shares_(static_cast<std::size_t>(settings_.threads), list,
+            [&](std::size_t t, std::size_t threads, PairList& share) {
+              const std::size_t first = visits_ * t / threads, last = visits_ * (t + 1) / threads;
+              std::size_t at = 0;
+              tree_.join([&](std::uint32_t a, std::uint32_t b) {
+                if (at >= first && at < last) add_pairs(share, a, b);
+                ++at;
+              });
+            });
+  }
+  Pair* pairs_within(Pair* out, std::uint32_t a) const {
+    const Block<T>& block = tree_.leaf(a);
+    const Loaded<T> loaded(block);
+    const std::uint32_t* ids = tree_.ids(a);
+    for (int row = 0; row < block_width - 1; ++row)
+      out = write_pairs(
+          out, ids[row], ids,
+          loaded.template overlapping<Contact>(block.box(row)) & (all_lanes << (row + 1)));
+    return out;
+  }
+  Pair* pairs_between(Pair* out, std::uint32_t a, std::uint32_t b) const {
+    const Loaded<T> left(tree_.leaf(a)), right(tree_.leaf(b));
+    const LaneMask rows = left.template overlapping<Closed>(tree_.leaf_bounds(b));
+    const LaneMask columns = right.template overlapping<Closed>(tree_.leaf_bounds(a));
+    if (std::popcount(rows) <= std::popcount(columns)) return pairs_of_rows(out, a, b, right, rows);
+    return pairs_of_rows(out, b, a, left, columns);
+  }
+  Pair* pairs_of_rows(Pair* out, std::uint32_t a, std::uint32_t b, const Loaded<T>& right,
+                      LaneMask rows) const {
+    const Block<T>& left = tree_.leaf(a);
+    const std::uint32_t* left_ids = tree_.ids(a);
+    const std::uint32_t* right_ids = tree_.ids(b);
+    for (; rows; rows &= rows - 1) {
+      const int row = std::countr_zero(rows);
+      out = write_pairs(out, left_ids[row], right_ids,
+                        right.template overlapping<Contact>(left.box(row)));
+    }
+    return out;
+  }
+
+  MethodSettings settings_;
+  SpatialOrder<T> order_;
+  BlockTree<T> tree_;
+  PairShares shares_;
+  double leaf_extent_ = 0;  ///< mean, after sorting
+  std::size_t visits_ = 0, fresh_visits_ = 0;
+  double spreading_ = 0;  ///< visits that the last refit added
+};
+
+}  // namespace bvlab

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The narrow phase beside OPCODE and FCL, each side by one configuration fixed beforehand."""
+
+import tournament
+from quoting import RESULTS, claim, quotes
+
+FRESH, COHERENT = ["OPCODE", "FCL, obb"], ["OPCODE, coherent"]
+
+
+def cells(rows, ours, theirs):
+    return tournament.tournament(rows, ours, theirs).set_index(tournament.PLACES)
+
+
+@quotes("narrow-phase", RESULTS,
+        "| motion | polygons | recommended (us) | the fastest of FCL and OPCODE | times as long (95 %) | OPCODE's coherence: times as long (95 %) |")
+def table(record):
+    rows = tournament.read(record)
+    fresh, coherent = cells(rows, "recommended", FRESH), cells(rows, "recommended", COHERENT)
+    lines, last = [], None
+    for place, line in fresh.iterrows():
+        beside = coherent.loc[place] if place in coherent.index else None
+        lines.append(["" if place[0] == last else place[0], str(place[1]), f"{line.ours_ns / 1e3:.2f}", line.fastest,
+                      f"{line.ratio:.1f} ({line.low:.1f} to {line.high:.1f})",
+                      "" if beside is None else f"{beside.ratio:.1f} ({beside.low:.1f} to {beside.high:.1f})"])
+        last = place[0]
+    claim((fresh.low > 1).all(), "recommended is faster than the fastest of FCL and OPCODE in every cell")
+    return {"rows": lines}

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What wins where, strategies beside the best rebuilds, real workloads, and whole scenes."""
+
+import records
+from quotes.relation import measured
+from quoting import RESULTS, Interval, claim, quotes
+
+MEETING = ["obb", "rss", "aabb"]
+TIE = 1.1  # times this near to each other are the same
+
+
+def variants_of(record, cell):
+    """The median time of each variant in each cell: how many times as fast as recursive spheres, and over the least."""
+    rows = records.read(record)
+    records.wrong_answers(rows)
+    rows = rows[rows.peer == ""].assign(ns=rows.time_ns / rows.pairs)
+    middle = rows.groupby([*cell, "volume", "strategy"], as_index=False).ns.median()
+    base = middle[(middle.volume == "sphere") & (middle.strategy == "recursive")].set_index(cell).ns
+    middle = middle.set_index(cell)
+    return middle.assign(gain=base / middle.ns, over=middle.ns / middle.ns.groupby(cell).min()).reset_index()
+
+
+def win(rows, cell, wins):
+    """Whether in each cell one of those that `wins` says is the fastest, or as fast as that."""
+    return (rows[wins].groupby(cell).over.min().reindex(rows.groupby(cell).over.min().index) < TIE).all()
+
+
+@quotes("winners-motion", RESULTS,
+        "where bodies move at most {step} of their radius and {degrees} degrees a frame `margins` win {margins:d} of {little:d} cells, "
+        "{gain:.2g} times as fast as recursive spheres, and `adaptive`, which tries them, the others; recursion over both nodes where "
+        "they move {much_step} or {much_degrees} degrees;")
+def over_motion(record):
+    cell = ["step", "degrees"]
+    rows = variants_of(record, cell)
+    steps, degrees = sorted(rows.step.unique()), sorted(rows.degrees.unique())
+    little = rows[(rows.step <= steps[-3]) & (rows.degrees <= degrees[-3])]
+    much = rows[(rows.step == steps[-1]) | (rows.degrees == degrees[-1])]
+    won = little[(little.over == 1) & (little.strategy == "margins")]
+    claim(win(little, cell, little.strategy.isin(["margins", "adaptive"])), "margins or adaptive win where little moves")
+    claim(win(much, cell, much.strategy == "recursive-both"), "recursion over both nodes wins where much moves")
+    claim(win(rows, cell, rows.volume.isin(MEETING)), "boxes and rectangle swept spheres win wherever bodies meet")
+    return {"step": f"{steps[-3]:g}", "degrees": f"{degrees[-3]:g}", "margins": len(won), "little": len(little[little.over == 1]),
+            "gain": Interval(won.gain), "much_step": f"{steps[-1]:g}", "much_degrees": f"{degrees[-1]:g}"}
+
+
+@quotes("winners-scene", RESULTS, "spheres where bodies are far apart (a cube of {far:.0f} radii). Boxes and rectangle swept spheres "
+        "win wherever bodies meet.")
+def over_scene(record):
+    cell = ["polygons", "side"]
+    rows = variants_of(record, cell)
+    far = rows.side == rows.side.max()
+    claim(win(rows[far], cell, rows[far].volume == "sphere"), "spheres win where bodies are far apart")
+    claim(win(rows[~far], cell, rows[~far].volume.isin(MEETING)), "boxes and rectangle swept spheres win wherever bodies meet")
+    return {"far": rows.side.max()}
+
+
+@quotes("best-rebuilds", RESULTS,
+        "makes {raise_contacts:.2f} times those tests where all contacts are asked and {raise_touching:.2f} where a yes or no is "
+        "enough, but takes up to {longer:.1f} times as long as `by-cost` ({cost_contacts:.2f} and {cost_touching:.2f}); the talk's rules "
+        "{rules:.2f}, recursion {recursion:.1f}; `margins`, which need not look at every entry, {margins:.2f} where little moves, but "
+        "each at {price:.1f} times the price of a list's.",
+        "takes {violent:.2f} times as long as the fastest strategy where motion is violent, and {elsewhere:.2f} elsewhere;")
+def best_rebuilds(record):
+    rows = records.read(record)
+    records.wrong_answers(rows)
+    middle = rows.groupby(["query", "degrees", "strategy"])[["n_v", "best_tests", "time_ns", "later_ns"]].median()
+    tests, time = (middle.n_v / middle.best_tests).unstack(), middle.later_ns.unstack()
+    price = (middle.time_ns / middle.n_v).unstack()
+    adaptive = time.adaptive / time.min(axis=1)
+    violent = adaptive.index.get_level_values("degrees") >= 15
+    least = tests.index.get_level_values("degrees") == tests.index.get_level_values("degrees").min()
+    return {**{f"raise_{query}": Interval(tests["raise"][query]) for query in ("contacts", "touching")},
+            **{f"cost_{query}": Interval(tests["by-cost"][query]) for query in ("contacts", "touching")},
+            "longer": (time["raise"] / time["by-cost"]).max(), "rules": Interval(tests[["separation-list", "deferred"]].stack()),
+            "recursion": Interval(tests[["recursive", "recursive-both"]].stack()), "margins": Interval(tests.margins[least]),
+            "price": Interval(price.margins / price["separation-list"]),
+            "violent": Interval(adaptive[violent]), "elsewhere": Interval(adaptive[~violent])}
+
+
+@quotes("coherence", RESULTS, "its trials cost more ({all:.2f}, median over the record above, where all bodies move, and {one:.2f} "
+        "where one moves at a time")
+def adaptive(record):
+    rows, _ = measured(record)
+    cell = ["motion", "motion_model", "mesh", "volume", "query"]
+    time = rows.set_index([*cell, "strategy"]).time_ns.unstack()
+    ratio = time.adaptive / time.min(axis=1)
+    one = ratio.index.get_level_values("motion_model").str.startswith("one")
+    claim(rows.frames.max() == 100, "runs of a hundred frames")
+    return {"all": ratio[~one].median(), "one": ratio[one].median()}
+
+
+@quotes("workloads", RESULTS,
+        "a path planner takes {planner_recursive:.0f} ns a pair recursively, {planner_cost:.0f} `by-cost`, {planner_margins:.0f} with "
+        "`margins` and {planner_adaptive:.0f} `adaptive`; a pile of bunnies that comes to rest {pile:.0f}.")
+def workloads(record):
+    rows = records.read(record)
+    records.wrong_answers(rows)
+    rows = rows[rows.volume == "obb"]
+    ns = (rows.time_ns / rows.pairs).groupby([rows.workload, rows.strategy]).median()
+    planner = ns["planner"]
+    return {"planner_recursive": planner["recursive"], "planner_cost": planner["by-cost"], "planner_margins": planner["margins"],
+            "planner_adaptive": planner["adaptive"], "pile": list(ns["pile"][["recursive", "by-cost", "margins", "adaptive"]])}
+
+
+MOVING = [(1, 5, "all move, 5 degrees"), (1, 0.1, "all move, a tenth of a degree"), (0.1, 5, "a tenth moves, 5 degrees"),
+          (0.1, 0.1, "a tenth moves, a tenth of a degree"), (0.01, 5, "one in a hundred, 5 degrees"),
+          (0.01, 0.1, "one in a hundred, a tenth of a degree")]
+
+
+@quotes("worlds", RESULTS, "| | 1000: FCL | Bullet | 10 000: FCL | Bullet |")
+def worlds(record):
+    rows = records.read(record)
+    records.wrong_answers(rows)
+    middle = rows.groupby(["objects", "moving", "degrees", "peer", "variant"]).time_ns.median()
+
+    def cell(objects, moving, degrees, peer):
+        scene = middle[objects, moving, degrees]
+        ratio = scene[peer].min() / scene[""].min()
+        return f"{ratio:.{0 if ratio >= 20 else 1}f}"
+    return {"rows": [[name, *(cell(objects, moving, degrees, peer) for objects in (1000, 10000)
+                              for peer in ("fcl-world", "bullet-world"))] for moving, degrees, name in MOVING]}
+
+
+@quotes("worlds", RESULTS, "best of {variants:d} variants, times as fast as FCL's and Bullet's pipelines",
+        "Bullet's answers differ for up to {differing:d} of {near:d} pairs near each other in a frame, FCL's and ours for none.")
+def worlds_answers(record):
+    rows = records.read(record)
+    wrong = rows[records.wrong_answers(rows)]
+    claim(set(wrong.peer) <= {"bullet-world"}, "FCL's answers and ours differ for none")
+    worst = wrong.loc[wrong.differing.idxmax()]
+    # Of all frames but the first; ours count what is near.
+    near = rows[(rows.peer == "") & (rows.objects == worst.objects)].near / (rows.frames - 1)
+    return {"variants": rows[rows.peer == ""].variant.nunique(), "differing": worst.differing / worst.frames, "near": near.max()}
