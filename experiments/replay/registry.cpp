@@ -46,7 +46,7 @@ std::vector<Named> trees() {
       {"wide", "up to " + std::to_string(wide_entries()[0]->fan_out) +
                    " children a node, tested at once in their mesh's own frame, the likeliest "
                    "first: --volume " +
-                   text_of(wide_volumes()) + ", --strategy recursive"}};
+                   text_of(wide_volumes()) + ", --strategy recursive or margins"}};
 }
 
 std::vector<Named> strategies() {

@@ -25,15 +25,16 @@ void check_name(std::string_view option, std::string_view name) {
                    List::names());
 }
 
-/// Loops over binary trees know every strategy; those over wide ones start from the roots.
+/// Loops over binary trees know every strategy; those over wide ones two.
 void check_tree(const Variant& variant) {
   if (variant.tree == "binary") {
     volume_entry(variant.volume);
     play_entry(name_of(variant.strategy), variant.query).check(variant.strategy);
   } else if (variant.tree == "wide") {
     wide_entry(variant.volume, variant.query);
-    if (variant.strategy != "recursive")
-      throw Unusable("--strategy " + variant.strategy + ": not in wide trees; there is recursive");
+    if (variant.strategy != "recursive" && variant.strategy != "margins")
+      throw Unusable("--strategy " + variant.strategy +
+                     ": not in wide trees; there are recursive, margins");
   } else {
     throw Unusable("--tree " + variant.tree + ": unknown; there are binary, wide");
   }

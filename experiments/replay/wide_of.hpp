@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
 #include <vector>
 
 #include "experiments/replay/hierarchies_of.hpp"
@@ -35,12 +36,18 @@ void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const V
   std::vector<WideShape<V, fan_out>> shapes;
   for (std::size_t i = 0; i < trace.objects; ++i)
     shapes.push_back({&meshes[i % meshes.size()], &hierarchies[i % meshes.size()]});
-  const auto engine = [&](auto) {
-    return [&](std::vector<ObjectPair> pairs) {
-      return WidePairs<V, fan_out>(shapes, std::move(pairs));
+  const auto with = [&]<class Memory>(std::type_identity<Memory>) {
+    const auto engine = [&](auto) {
+      return [&](std::vector<ObjectPair> pairs) {
+        return WidePairs<V, fan_out, RelativeFrame, Memory>(shapes, std::move(pairs));
+      };
     };
+    play_over<Query>(engine, trace, variant, options, result);
   };
-  play_over<Query>(engine, trace, variant, options, result);
+  if (variant.strategy == WideMargins::name)
+    with(std::type_identity<WideMargins>());
+  else
+    with(std::type_identity<Forgetful>());
 }
 
 }  // namespace detail

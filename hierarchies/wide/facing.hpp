@@ -25,6 +25,12 @@ struct Compared {
   S order;
 };
 
+/// The same, with how far they are apart instead of whether they are.
+template <Scalar S>
+struct Separated {
+  S gap, order;
+};
+
 namespace detail {
 
 /// About the middle of a volume.

@@ -98,6 +98,58 @@ inline std::vector<Scene> scenes(int frames) {
   return all;
 }
 
+/// Frames in between those of a scene: at rest, in small steps and larger ones, all bodies or one,
+/// there and back, and once all together; then the scene's own next frame, which is a jump.
+inline Scene in_motion(const Scene& scene) {
+  std::mt19937 random(20260702);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto moved = [&](Pose pose, double by) {
+    const Pose turn = *pose_from(Vec3<double>::Zero(), by * unit(random), by * unit(random),
+                                 by * unit(random), 1);
+    pose.rotation = (turn.rotation * pose.rotation).eval();
+    pose.translation += by * Vec3<double>(unit(random), unit(random), unit(random));
+    return pose;
+  };
+  Scene result{scene.name, scene.meshes, {}};
+  for (const Frame& start : scene.frames) {
+    Frame frame = start;
+    const auto add = [&] { result.frames.push_back(frame); };
+    add(), add();
+    for (const double by : {1e-9, 1e-4, 3e-3, 3e-3, 3e-2}) {
+      for (auto& pose : frame) pose = moved(pose, by);
+      add();
+    }
+    const Pose before = frame[1];
+    frame[1] = moved(frame[1], 0.05), add();
+    frame[1] = before, add();
+    for (auto& pose : frame) pose.translation += Vec3<double>(0.3, -0.2, 0.1);
+    add(), add();
+  }
+  return result;
+}
+
+/// Two bodies that come near each other in small steps, through each other and apart: answers
+/// change in the midst of what is remembered.
+inline Scene passing_by(const Scene& scene, int frames) {
+  std::mt19937 random(20260703);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Scene result{scene.name, scene.meshes, {}};
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Frame& start = scene.frames[s];
+    const Vec3<double> middle = start[0].translation;
+    const Vec3<double> from = Vec3<double>(unit(random), unit(random), unit(random)).normalized();
+    Frame frame{start[0], start[1]};
+    for (int k = 0; k < frames; ++k) {
+      const double along = 2.4 * (0.5 - (k + 0.5) / frames);
+      const Pose turn = *pose_from(Vec3<double>::Zero(), 0.002, 0.005 * unit(random), 0, 1);
+      frame[1].rotation = (turn.rotation * frame[1].rotation).eval();
+      frame[1].translation = middle + along * from + 0.3 * from.unitOrthogonal();
+      result.frames.push_back(frame);
+    }
+  }
+  return result;
+}
+
 inline Truth truth_of(const Scene& scene) {
   Truth truth;
   for (const Frame& frame : scene.frames) {
@@ -138,7 +190,20 @@ inline const std::vector<std::pair<Scene, Truth>>& scenes_with_truth() {
   return all;
 }
 
-template <class V, int F, class FrameOfComparison>
+inline const std::vector<std::pair<Scene, Truth>>& motions_with_truth() {
+  static const auto all = [] {
+    std::vector<std::pair<Scene, Truth>> result;
+    for (const auto& scene : scenes(4))
+      for (Scene moving : {in_motion(scene), passing_by(scene, 120)}) {
+        const Truth truth = truth_of(moving);
+        result.emplace_back(std::move(moving), truth);
+      }
+    return result;
+  }();
+  return all;
+}
+
+template <class V, int F, class FrameOfComparison, class Memory = Forgetful>
 class PlayedWide {
  public:
   PlayedWide(const Scene& scene, std::uint32_t leaf_size) : scene_(scene) {
@@ -150,7 +215,7 @@ class PlayedWide {
       const std::size_t k = i % scene.meshes.size();
       shapes.push_back({&scene.meshes[k], &hierarchies_[k]});
     }
-    engine_ = std::make_unique<WidePairs<V, F, FrameOfComparison>>(
+    engine_ = std::make_unique<WidePairs<V, F, FrameOfComparison, Memory>>(
         shapes, all_object_pairs(static_cast<std::uint32_t>(shapes.size())));
   }
 
@@ -197,12 +262,12 @@ class PlayedWide {
  private:
   std::string where() const {
     return std::string(scene_.name) + ' ' + std::string(V::name) + ' ' + std::to_string(F) + ' ' +
-           std::string(FrameOfComparison::name);
+           std::string(FrameOfComparison::name) + ' ' + std::string(Memory::name);
   }
 
   const Scene& scene_;
   std::vector<WideHierarchy<V, F>> hierarchies_;
-  std::unique_ptr<WidePairs<V, F, FrameOfComparison>> engine_;
+  std::unique_ptr<WidePairs<V, F, FrameOfComparison, Memory>> engine_;
 };
 
 template <class V, int F, class FrameOfComparison, class Expect>
@@ -227,6 +292,18 @@ void expect_truth() {
     played.expect_contacts(truth);
     played.expect_distances(truth);
   });
+}
+
+/// One engine for all queries, one after the other, so that each begins with another's memory.
+template <class V, int F, class FrameOfComparison, class Memory>
+void expect_truth_in_motion() {
+  for (const auto& [scene, truth] : motions_with_truth()) {
+    PlayedWide<V, F, FrameOfComparison, Memory> played(scene, static_cast<std::uint32_t>(F));
+    played.expect_touching(truth);
+    played.expect_contacts(truth);
+    played.expect_touching(truth);
+    played.expect_distances(truth);
+  }
 }
 
 }  // namespace bvlab

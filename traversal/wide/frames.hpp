@@ -148,6 +148,21 @@ struct RelativeFrame {
       return Facing::template gaps<S>(one, frame_change_[side],
                                       hierarchies_[side]->children(node).volumes);
     }
+    /// How far it is from each lane, at least, negative where they may meet; cheaper than gaps, and
+    /// as near to the truth where they hardly meet.
+    template <class Counter>
+    [[gnu::always_inline]] Separated<S> separated(std::size_t side, std::uint32_t node,
+                                                  const One& one, Counter& counter) const {
+      const auto& lanes = hierarchies_[side]->children(node);
+      if constexpr (requires {
+                      Facing::template separation<S>(one, frame_change_[side], lanes.volumes);
+                    }) {
+        const S gap = Facing::template separation<S>(one, frame_change_[side], lanes.volumes);
+        return {gap, gap * roughly_one_over<S>(lanes.size + S(one.size))};
+      } else {
+        return {gaps(side, node, one, counter), compared(side, node, one, counter).order};
+      }
+    }
     const CornersBetween& corners() const { return corners_; }
 
    private:
@@ -249,6 +264,11 @@ struct WorldFrame {
     template <class Counter>
     S gaps(std::size_t side, std::uint32_t node, const One& one, Counter& counter) const {
       return gap(one.volume, bodies_[side]->lanes(node, counter));
+    }
+    template <class Counter>
+    Separated<S> separated(std::size_t side, std::uint32_t node, const One& one,
+                           Counter& counter) const {
+      return {gaps(side, node, one, counter), compared(side, node, one, counter).order};
     }
     const CornersBetween& corners() const { return corners_; }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Bodies over wide trees that move from frame to frame, and pairs of them asked in every frame,
-/// from the roots: AllPairs' sibling. Balls around the bodies dismiss what is far apart; what is
-/// near takes turns, two pairs at a time.
+/// Bodies over wide trees that move from frame to frame, and pairs of them asked in every frame:
+/// AllPairs' sibling. Balls around the bodies dismiss what is far apart; what is near takes turns,
+/// two pairs at a time.
+///
+/// What is remembered from one frame to the next is a policy: nothing (Forgetful), so that every
+/// pair starts from the roots, or how long answers stay (WideMargins).
 #pragma once
 
 #include <array>
@@ -12,7 +15,7 @@
 #include <vector>
 
 #include "traversal/all_pairs.hpp"
-#include "traversal/wide/wide_traversal.hpp"
+#include "traversal/wide/wide_margins.hpp"
 
 namespace bvlab {
 
@@ -23,7 +26,7 @@ struct WideShape {
   const WideHierarchy<V, F>* hierarchy;
 };
 
-template <BoundingVolume V, int F, class Frame = RelativeFrame>
+template <BoundingVolume V, int F, class Frame = RelativeFrame, class Memory = Forgetful>
 class WidePairs {
   using Body = typename Frame::template Body<V, F>;
 
@@ -38,6 +41,11 @@ class WidePairs {
     }
     centres_.resize(bodies_.size()), reaches_.resize(bodies_.size());
     near_.resize(pairs_.size());
+    if constexpr (Memory::remembers) {
+      for (const auto& shape : shapes)
+        memory_.add_body(shape.hierarchy->ball(), shape.hierarchy->reach());
+      memory_.resize(pairs_.size());
+    }
   }
 
   /// As AllPairs::frame; answers are taken in the order of pairs that were far apart, then of those
@@ -45,6 +53,7 @@ class WidePairs {
   template <class Counter, class Ask, class Take>
   void frame(std::span<const Pose> poses, Counter& counter, Ask&& ask, Take&& take) {
     using Query = std::remove_cvref_t<decltype(ask(0))>;
+    if constexpr (Memory::remembers) return frame_from_memory<Query>(poses, counter, ask, take);
     if (!placed_) origin_ = middle_of(poses), placed_ = true;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       place(bodies_[i], poses[i], origin_);
@@ -68,7 +77,7 @@ class WidePairs {
   }
 
   const std::vector<ObjectPair>& pairs() const { return pairs_; }
-  /// Nothing is kept from one frame to the next.
+  /// No front is kept.
   std::size_t front_size() const { return 0; }
 
  private:
@@ -91,35 +100,79 @@ class WidePairs {
     return near;
   }
 
+  /// Bodies are placed when one of their pairs has to be looked at.
+  template <class Query, class Counter, class Ask, class Take>
+  void frame_from_memory(std::span<const Pose> poses, Counter& counter, Ask& ask, Take& take) {
+    if (!placed_) origin_ = middle_of(poses), placed_ = true;
+    poses_ = poses;
+    memory_.template move<Query>(poses);
+    std::size_t due = 0;
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+      if (memory_.template stays<Query>(p, pairs_[p])) {
+        auto query = ask(p);
+        memory_.repeat(p, query);
+        take(p, query);
+      } else {
+        near_[due++] = static_cast<std::uint32_t>(p);
+      }
+    }
+    before_ = counter.n_v + counter.n_p;
+    counter.tested(due);
+    std::size_t near = 0;
+    for (std::size_t k = 0; k < due; ++k) {
+      const std::uint32_t p = near_[k];
+      if constexpr (!SeeksDistance<Query>)
+        if (memory_.stays_after_all(p, pairs_[p]) || memory_.balls_apart(p, pairs_[p])) {
+          counter.asked(before_);
+          take(p, ask(p));
+          continue;
+        }
+      near_[near++] = p;
+    }
+    take_turns<Query>(near, counter, ask, take);
+  }
+
   template <class Query, class Counter, class Ask, class Take>
   void take_turns(std::size_t near, Counter& counter, Ask& ask, Take& take) {
-    using Traversal = WideTraversal<V, F, Frame, Query, Counter>;
+    using Measure = std::conditional_t<SeeksDistance<Query>, NotMeasuring,
+                                       typename Memory::template Measure<F>>;
+    using Traversal = WideTraversal<V, F, Frame, Query, Counter, Measure>;
     std::array<Traversal, at_once> traversals{Traversal(workspaces_[0]), Traversal(workspaces_[1])};
     std::array<std::uint32_t, at_once> pair;
     std::size_t next = 0, active = 0;
-    std::array<Traversal*, at_once> frame_change;
+    std::array<Traversal*, at_once> running;
     const auto begin = [&](std::size_t slot) {
       pair[slot] = near_[next++];
       const auto [i, j] = pairs_[pair[slot]];
-      frame_change[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter);
+      if constexpr (Memory::remembers)
+        place(bodies_[i], poses_[i], origin_), place(bodies_[j], poses_[j], origin_);
+      if constexpr (Measure::measures)
+        running[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter,
+                             memory_.template touched<Query>(pair[slot]), memory_.front(pair[slot]),
+                             memory_.way(pairs_[pair[slot]]));
+      else
+        running[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter);
     };
     for (; active < at_once && next < near; ++active) {
-      frame_change[active] = &traversals[active];
+      running[active] = &traversals[active];
       begin(active);
     }
     while (active > 0)
       for (std::size_t slot = 0; slot < active;) {
-        if (frame_change[slot]->advance()) {
+        if (running[slot]->advance()) {
           ++slot;
           continue;
         }
         counter.asked(before_);
-        take(pair[slot], frame_change[slot]->query());
+        if constexpr (Memory::remembers)
+          memory_.remember(pair[slot], pairs_[pair[slot]], running[slot]->query(),
+                           running[slot]->measure());
+        take(pair[slot], running[slot]->query());
         if (next < near) {
           begin(slot++);
         } else {
           --active;
-          std::swap(frame_change[slot], frame_change[active]), std::swap(pair[slot], pair[active]);
+          std::swap(running[slot], running[active]), std::swap(pair[slot], pair[active]);
         }
       }
   }
@@ -132,6 +185,8 @@ class WidePairs {
   std::vector<std::uint32_t> near_;  // pairs, near ones first
   std::array<WideWorkspace, at_once> workspaces_;
   Vec3<double> origin_ = Vec3<double>::Zero();
+  [[no_unique_address]] Memory memory_;
+  std::span<const Pose> poses_;
   std::uint64_t before_ = 0;  // what had been tested when the frame began
   bool placed_ = false;
 };

@@ -24,6 +24,7 @@
 #include "traversal/queries/candidate.hpp"
 #include "traversal/wide/frames.hpp"
 #include "traversal/wide/frontier.hpp"
+#include "traversal/wide/wide_front.hpp"
 
 namespace bvlab {
 
@@ -38,7 +39,13 @@ struct WideWorkspace {
   Frontier triangles;  ///< a's triangles, as leaves number them, with leaves of b
 };
 
-template <BoundingVolume V, int F, class Frame, class Query, class Counter>
+/// How far bodies are apart is not asked: see wide_margins.hpp for what asks it.
+struct NotMeasuring {
+  static constexpr bool measures = false;
+};
+
+template <BoundingVolume V, int F, class Frame, class Query, class Counter,
+          class Measure = NotMeasuring>
 class WideTraversal {
   using T = typename V::scalar;
   using S = Batch<T, F>;
@@ -59,10 +66,32 @@ class WideTraversal {
     frontier_.push({0, 0}, 0);
   }
 
+  /// `touched`, a triangle of a and a leaf of b, is looked at first, then its leaf. What the bodies
+  /// are known to be apart by is in `front`, if that is complete; else it is written there.
+  void begin(Body& a, Body& b, Query query, Counter& counter,
+             const std::optional<NodePair>& touched, WideFront* front,
+             double way) requires(Measure::measures) {
+    begin(a, b, std::move(query), counter);
+    measure_.begin(front, way);
+    if (measure_.sweeps()) {
+      frontier_.clear();
+    } else if (touched) {
+      frontier_.push({a.hierarchy().leaf_of(touched->a), touched->b},
+                     -std::numeric_limits<float>::max());
+      triangles_.push(*touched, 0);
+    }
+  }
+
   const Query& query() const { return *query_; }
+  const Measure& measure() const { return measure_; }
 
   /// Says whether there is more to do.
   [[gnu::noinline]] bool advance() {
+    if constexpr (Measure::measures)
+      if (measure_.sweeps() && !measure_.swept()) {
+        if (sweep()) return false;
+        return !frontier_.empty() || finish();
+      }
     if constexpr (SeeksDistance<Query>) {
       float order;
       const NodePair pair = frontier_.take_least(order);
@@ -75,6 +104,8 @@ class WideTraversal {
       }
     } else if constexpr (Query::one_hit_is_enough) {
       float order;
+      if constexpr (Measure::measures)
+        if (!triangles_.empty() && open_triangle(triangles_.take_last())) return false;
       step(frontier_.take_least(order));
       while (!triangles_.empty())
         if (open_triangle(triangles_.take_last())) return false;
@@ -93,8 +124,27 @@ class WideTraversal {
     return false;
   }
 
+  /// Looks again at the entries of the front that are due. Says whether that is enough.
+  bool sweep() requires(Measure::measures) {
+    WideFront& front = measure_.sweep();
+    const std::size_t size = front.size();  // what is added needs no second look
+    for (std::size_t i = 0; i < size; ++i) {
+      if (front.deadline(i) > measure_.way()) continue;
+      const WideFront::Entry entry = front[i];
+      if (!entry.triangle)
+        step(entry.pair, i);
+      else if (open_triangle(entry.pair, i))
+        return true;
+    }
+    while (!triangles_.empty())
+      if (open_triangle(triangles_.take_last())) return true;
+    return false;
+  }
+
   /// Tests one node of the pair against the children of the other: of a, where both are leaves.
-  [[gnu::always_inline]] void step(const NodePair& pair) {
+  /// `entry` is the one of the front that is looked at again, if any.
+  [[gnu::always_inline]] void step(const NodePair& pair,
+                                   [[maybe_unused]] std::size_t entry = WideFront::none) {
     const std::array<std::uint32_t, 2> node{pair.a, pair.b};
     const auto& a = bodies_[0]->hierarchy().node(pair.a);
     const auto& b = bodies_[1]->hierarchy().node(pair.b);
@@ -110,6 +160,11 @@ class WideTraversal {
       const S gaps = between_.gaps(side, node[side], one, *counter_);
       const std::uint64_t left = many.lanes & ~bits(query_->culls(gaps));
       next.template push_lanes<F>(static_cast<int>(side), left, many.first, node[1 - side], gaps);
+    } else if constexpr (Measure::measures) {
+      const auto seen = between_.separated(side, node[side], one, *counter_);
+      const std::uint64_t left = measure_.left(pair, many.lanes & measure_.opened(seen.gap), entry);
+      next.template push_lanes<F>(static_cast<int>(side), left, many.first, node[1 - side],
+                                  seen.order);
     } else {
       const auto seen = between_.compared(side, node[side], one, *counter_);
       const std::uint64_t left = many.lanes & ~bits(seen.apart);
@@ -119,7 +174,8 @@ class WideTraversal {
   }
 
   /// A triangle of a against all of a leaf of b.
-  [[gnu::noinline]] bool open_triangle(const NodePair& pair) {
+  [[gnu::noinline]] bool open_triangle(const NodePair& pair,
+                                       [[maybe_unused]] std::size_t entry = WideFront::none) {
     const auto& leaf = bodies_[1]->hierarchy().node(pair.b);
     const auto& lanes = bodies_[1]->hierarchy().corners(leaf.first).corner;
     const auto& own = bodies_[0]->hierarchy().corners(pair.a).corner;
@@ -143,14 +199,29 @@ class WideTraversal {
     std::uint64_t met = bits(verdict.meeting) & leaf.lanes;
     const std::uint32_t triangle = bodies_[0]->hierarchy().triangle(pair.a);
     for (std::uint64_t rest = met; rest; rest &= rest - 1)
-      if (query_->known(triangle, triangle_of_b(leaf.first, rest))) return true;
+      if (query_->known(triangle, triangle_of_b(leaf.first, rest))) {
+        if constexpr (Measure::measures) measure_.triangles(pair, true, entry);
+        return true;
+      }
     std::uint64_t open = leaf.lanes & ~bits(verdict.apart) & ~met;
+    if constexpr (Measure::measures)
+      if (measure_.triangles(pair, open != 0, entry)) measure_.triangles_are(gaps_of(pair), entry);
     for (; open; open &= open - 1)
       if (hold(triangle, triangle_of_b(leaf.first, open))) return true;
     return false;
   }
 
-  /// The same where a distance is sought: pairs whose volumes are near enough are looked at.
+  /// How far the volume of a triangle of a is from those of all of a leaf of b.
+  [[gnu::noinline]] S gaps_of(const NodePair& pair) const {
+    const auto one = between_.one_child(0, bodies_[0]->hierarchy().leaf_of(pair.a),
+                                        static_cast<int>(pair.a % F), *counter_);
+    const auto& leaf = bodies_[1]->hierarchy().node(pair.b);
+    counter_->tested(static_cast<std::uint64_t>(std::popcount(leaf.lanes)));
+    return between_.separated(1, pair.b, one, *counter_).gap;
+  }
+
+  /// As open_triangle, where a distance is sought: pairs whose volumes are near enough are looked
+  /// at.
   [[gnu::noinline]] bool open_distances(const NodePair& pair) {
     const auto& a = bodies_[0]->hierarchy();
     const auto& leaf = bodies_[1]->hierarchy().node(pair.b);
@@ -187,6 +258,7 @@ class WideTraversal {
   std::array<Body*, 2> bodies_;
   typename Frame::template Between<V, F> between_;
   std::optional<Query> query_;
+  [[no_unique_address]] Measure measure_;
   Counter* counter_;
   Frontier& frontier_;
   Frontier& triangles_;

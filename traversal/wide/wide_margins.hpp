@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What pairs of bodies over wide trees remember from frame to frame: how long nothing can have
+/// changed, and where they touched.
+///
+/// A traversal that finds two bodies apart has compared volumes that are apart, and the least of
+/// their gaps is one of the bodies unless triangles had to be looked at. Until the bodies can have
+/// come nearer by that much the answer stays, and costs one comparison: of a deadline with the ways
+/// that they have gone since the first frame (MovingBody::displacement_bound). Where ways are long
+/// because bodies jitter or go together, the bound between reference poses is looked at before the
+/// pair is. Bodies that touch are looked at where they did, first.
+///
+/// Bodies that were apart twice, but hardly, get a front (WideFront), of which those entries are
+/// looked at again whose deadlines have passed. Where most have, there is none for a while: four
+/// traversals, four times as many whenever that comes again, 256 at most.
+///
+/// Tried and not kept: to open volumes that are hardly apart so that the least gap grows. Triangles
+/// of two surfaces are near each other in many places, and to know the nearest is to know the
+/// distance, at five times the price. Nor does it pay to measure triangles that are apart by more
+/// than the volumes they have anyway.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "traversal/body_pair.hpp"
+#include "traversal/relative_motion_bound.hpp"
+#include "traversal/wide/wide_front.hpp"
+#include "traversal/wide/wide_traversal.hpp"
+
+namespace bvlab {
+
+/// Nothing: every pair starts from the roots in every frame.
+struct Forgetful {
+  static constexpr std::string_view name = "recursive";
+  static constexpr bool remembers = false;
+  template <int F>
+  using Measure = NotMeasuring;
+};
+
+/// Finds out how far apart two bodies are, at least, while it finds that they do not touch.
+template <int F>
+class MeasuringGap {
+  using S = Batch<float, F>;
+
+ public:
+  static constexpr bool measures = true;
+
+  /// A front that is not complete is written anew.
+  void begin(WideFront* front, double way) {
+    front_ = front, way_ = way;
+    sweeps_ = front && front->is_complete(), swept_ = false, due_ = 0;
+    if (front && !sweeps_) front->clear();
+    least_ = S(std::numeric_limits<float>::infinity()), touched_.reset();
+  }
+
+  /// Whether it starts from a front, and whether that has been looked at.
+  bool sweeps() const { return sweeps_; }
+  bool swept() const { return swept_; }
+  WideFront& sweep() { return swept_ = true, *front_; }
+  double way() const { return way_; }
+  bool front() const { return front_; }
+  std::size_t due() const { return due_; }
+
+  /// Which of the volumes so far apart are to be opened. Lanes without a child repeat one.
+  [[gnu::always_inline]] std::uint64_t opened(const S& separation) {
+    const auto apart = separation > S(0.0f);
+    last_ = S(std::numeric_limits<float>::infinity());
+    stdx::where(apart, last_) = separation;
+    least_ = stdx::min(least_, last_);
+    return ~bits(apart);
+  }
+  /// The same of a pair of nodes: those which have not been opened before.
+  [[gnu::always_inline]] std::uint64_t left(const NodePair& pair, std::uint64_t lanes,
+                                            std::size_t entry) {
+    if (!front_) return lanes;
+    const double deadline = deadline_of(stdx::hmin(last_));
+    if (entry == WideFront::none) {
+      front_->add({pair, static_cast<std::uint16_t>(lanes), 0, 0}, deadline);
+      return lanes;
+    }
+    ++due_;
+    auto& opened = (*front_)[entry].opened;
+    const std::uint64_t fresh = lanes & ~std::uint64_t{opened};
+    opened = static_cast<std::uint16_t>(opened | fresh);
+    front_->deadline(entry) = deadline;
+    return fresh;
+  }
+  /// A triangle of a has been tested against a leaf of b; whether it may touch any. Says whether
+  /// their gap is to be measured.
+  bool triangles(const NodePair& pair, bool touching, std::size_t entry) {
+    least_ = S(0.0f);
+    if (touching) touched_ = pair;
+    if (!front_) return false;
+    if (entry == WideFront::none) {
+      front_->add({pair, 0, 1, 0}, WideFront::passed);
+      return false;
+    }
+    ++due_;
+    auto& rest = (*front_)[entry].rest;
+    if (rest > 0) --rest;
+    return !touching && rest == 0;
+  }
+  void triangles_are(const S& gaps, std::size_t entry) {
+    const float gap = stdx::hmin(select(gaps > S(0.0f), gaps, S(0.0f)));
+    front_->deadline(entry) = deadline_of(gap);
+    if (!(gap > 0)) (*front_)[entry].rest = 8;
+  }
+
+  /// A triangle of a, as leaves number them, and a leaf of b: where they touched, or may have.
+  const std::optional<NodePair>& touched() const { return touched_; }
+  /// What separations are short of distances by is in this (see slab_box_facing.hpp, gaps).
+  double gap() const {
+    const double least = stdx::hmin(least_);
+    return least > 0 ? least * (1 - 32 * unit_roundoff<float>) : 0;
+  }
+
+ private:
+  /// Sums of ways are rounded here and where they are compared.
+  double deadline_of(float gap) const {
+    if (!(gap > 0)) return WideFront::passed;
+    return (way_ + gap * (1 - 32.0 * unit_roundoff<float>)) * (1 - 8 * unit_roundoff<double>);
+  }
+
+  S least_, last_;
+  std::optional<NodePair> touched_;
+  WideFront* front_ = nullptr;
+  double way_ = 0;
+  std::size_t due_ = 0;
+  bool sweeps_ = false, swept_ = false;
+};
+
+/// For every pair of bodies its last answer, until when it stays, and where they touched.
+class WideMargins {
+ public:
+  static constexpr std::string_view name = "margins";
+  static constexpr bool remembers = true;
+  template <int F>
+  using Measure = MeasuringGap<F>;
+
+  void add_body(const MeshBall& ball, double reach) {
+    bodies_.emplace_back(HierarchyExtent{ball.centre, ball.radius, reach, 0});
+    ways_.push_back(0), steps_.push_back(0), reaches_.push_back(0), epochs_.push_back(0);
+  }
+  void resize(std::size_t pairs) { answers_.resize(pairs), kept_.resize(pairs); }
+
+  /// Another query than last time begins anew.
+  template <class Query>
+  void move(std::span<const Pose> poses) {
+    if (asked_ != &Query::name) {
+      std::fill(answers_.begin(), answers_.end(), Answer{});
+      std::fill(kept_.begin(), kept_.end(), Kept{});
+      asked_ = &Query::name;
+    }
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      Followed& body = bodies_[i];
+      steps_[i] = 0;
+      if (!body.place(poses[i])) continue;
+      const double way = body.displacement_bound();
+      steps_[i] = way - ways_[i];
+      ways_[i] = way, epochs_[i] = body.epoch();
+      const ReferencePose& at = body.reference_pose();
+      // A matrix stretches by its defect at most.
+      reaches_[i] =
+          (body.extent().radius * (1 + at.defect) + at.noise) * (1 + 16 * unit_roundoff<double>);
+    }
+  }
+
+  /// Whether the answer is what it was, as far as one comparison tells.
+  template <class Query>
+  bool stays(std::size_t p, const ObjectPair& pair) const {
+    const Answer& answer = answers_[p];
+    return ways_[pair.i] + ways_[pair.j] < answer.until ||
+           (says_all<Query> && epochs(pair) == answer.epochs);
+  }
+  /// Whether that is so by the bound between reference poses.
+  bool stays_after_all(std::size_t p, const ObjectPair& pair) {
+    Kept& kept = kept_[p];
+    if (!(kept.deadline > 0)) return false;
+    kept.clock.advance(bodies_[pair.i], bodies_[pair.j]);
+    const double left = kept.deadline - kept.clock.now();
+    if (!(left > 0)) return false;
+    hold(p, pair, left * (1 - 4 * unit_roundoff<double>));
+    return true;
+  }
+  /// Whether the balls around them are apart.
+  bool balls_apart(std::size_t p, const ObjectPair& pair) {
+    const double reach = reaches_[pair.i] + reaches_[pair.j];
+    const double distance =
+        (bodies_[pair.i].reference_pose().centre - bodies_[pair.j].reference_pose().centre).norm() *
+        (1 - 16 * unit_roundoff<double>);
+    if (!(distance > reach)) return false;
+    kept_[p].deadline = 0;
+    answers_[p] = {0, epochs(pair), false};
+    hold(p, pair, (distance - reach) * (1 - 4 * unit_roundoff<double>));
+    return true;
+  }
+
+  /// Where they touched last time, if one hit is enough.
+  template <class Query>
+  std::optional<NodePair> touched(std::size_t p) const {
+    if (!Query::one_hit_is_enough || !answers_[p].touching) return std::nullopt;
+    return kept_[p].touched;
+  }
+
+  /// Where it is worth keeping one: it has been apart before, and fronts did not wear out at once.
+  WideFront* front(std::size_t p) {
+    Kept& kept = kept_[p];
+    if (kept.pause > 0) return --kept.pause, nullptr;
+    return kept.was_apart ? &kept.front : nullptr;
+  }
+  double way(const ObjectPair& pair) const { return ways_[pair.i] + ways_[pair.j]; }
+
+  /// Gives a query that was not asked the answer of the last one.
+  template <class Query>
+  void repeat(std::size_t p, Query& query) const {
+    if constexpr (requires { query.stays(0.0); })
+      query.stays(kept_[p].distance);
+    else if (answers_[p].touching)
+      query.known(kept_[p].touched.a, kept_[p].touched.b);
+  }
+
+  /// A distance stays while neither body moves.
+  template <class Query>
+  void remember(std::size_t p, const ObjectPair& pair, const Query& query, const NotMeasuring&) {
+    answers_[p] = {unknown, epochs(pair), false};
+    kept_[p].distance = query.distance();
+  }
+  template <class Query, int F>
+  void remember(std::size_t p, const ObjectPair& pair, const Query& query,
+                const MeasuringGap<F>& found) {
+    Answer& answer = answers_[p];
+    Kept& kept = kept_[p];
+    answer = {unknown, epochs(pair), found.touched().has_value()};
+    if constexpr (says_all<Query>) answer.touching = query.touching();
+    kept.deadline = 0;
+    kept.was_apart = !answer.touching;
+    if (answer.touching) {
+      kept.touched = *found.touched();
+      kept.front.clear();
+      return;
+    }
+    if (found.front()) {
+      WideFront& front = kept.front;
+      // What is looked at again costs as much as in a traversal, and the rest is to pay for making
+      // fronts.
+      const bool worn = found.sweeps() && 4 * found.due() > 3 * front.size();
+      if (!found.sweeps()) {
+        front.complete();
+      } else if (worn) {
+        kept.pause = kept.next_pause;
+        kept.next_pause = std::min(4 * kept.next_pause, longest_pause);
+      } else {
+        kept.next_pause = shortest_pause;
+      }
+      if (worn || front.overgrown()) return front.clear();
+      const double earliest = front.earliest();
+      if (earliest > way(pair)) answer.until = earliest;
+      return;
+    }
+    // Less would hardly last until the next frame.
+    const double gap = found.gap();
+    if (!(gap > steps_[pair.i] + steps_[pair.j])) return;
+    kept.clock.restart(bodies_[pair.i], bodies_[pair.j]);
+    kept.deadline = kept.clock.deadline(gap);
+    hold(p, pair, gap);
+  }
+
+ private:
+  class Followed : public MovingBody {
+   public:
+    using MovingBody::MovingBody;
+    bool place(const Pose& pose) { return MovingBody::place(pose, Vec3<double>::Zero()); }
+  };
+
+  static constexpr int shortest_pause = 4, longest_pause = 256;  // traversals without a front
+
+  struct Answer {
+    double until = unknown;  ///< as a sum of ways; negative where only rest keeps it
+    std::uint32_t epochs = 0;
+    bool touching = false;
+  };
+  struct Kept {
+    RelativeMotionBound clock;
+    double deadline = 0;  ///< by the clock; 0: none
+    double distance = 0;
+    NodePair touched{};
+    WideFront front;
+    int pause = 0, next_pause = shortest_pause;
+    bool was_apart = false;
+  };
+
+  static constexpr double unknown = -1;
+  /// All that such a query says is kept: of contacts, only that there are none.
+  template <class Query>
+  static constexpr bool says_all = requires(Query query) {
+    query.answer();
+  };
+
+  /// Changes whenever one of the bodies moves.
+  std::uint32_t epochs(const ObjectPair& pair) const { return epochs_[pair.i] + epochs_[pair.j]; }
+
+  /// The bodies are `gap` apart. Sums of ways are rounded here and where they are compared.
+  void hold(std::size_t p, const ObjectPair& pair, double gap) {
+    const double way = ways_[pair.i] + ways_[pair.j];
+    answers_[p].until = (way + gap) * (1 - 8 * unit_roundoff<double>);
+  }
+
+  std::vector<Followed> bodies_;
+  std::vector<double> ways_, steps_, reaches_;
+  std::vector<std::uint32_t> epochs_;
+  std::vector<Answer> answers_;
+  std::vector<Kept> kept_;
+  const std::string_view* asked_ = nullptr;
+};
+
+}  // namespace bvlab
