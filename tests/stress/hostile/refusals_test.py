@@ -226,7 +226,7 @@ class Names(ProgramTest):
         for volume in volumes_of("wide"):
             self.refuse(*self.replay, "--volume", volume, mentions=["--tree wide", *volumes_of("binary")])
             wide = [*self.replay, "--tree", "wide", "--volume", volume]
-            for strategy in set(names_of("strategies")) - {"recursive"} | {"recursive:1", "frob", ""}:
+            for strategy in set(names_of("strategies")) - {"recursive", "margins"} | {"recursive:1", "margins:1", "frob", ""}:
                 self.refuse(*wide, "--strategy", strategy, mentions=["--strategy", strategy, "recursive"])
             self.refuse(*wide, "--query", "frob", mentions=["--query", *names_of("queries")])
             self.refuse(*wide, "--budget", "10", mentions=["--budget", "wide"])
