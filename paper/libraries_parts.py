@@ -100,14 +100,14 @@ def write_narrow_phase(paper):
 
 
 def tournament_text(rows):
-    """The recommended configuration beside the fastest peer, from the roots and with coherence, with intervals."""
+    """Beside the fastest peer, both from the roots, and our recommended configuration beside those with coherence."""
     peers = list(dict.fromkeys(rows[rows.peer != ""].method))
     parts = []
-    for names, what in (
-        ([m for m in peers if "coherent" not in m], "that starts from the roots"),
-        ([m for m in peers if "coherent" in m], "that uses coherence"),
+    for ours, names, what in (
+        ("wide, from the roots", [m for m in peers if "coherent" not in m], "that starts from the roots"),
+        ("recommended", [m for m in peers if "coherent" in m], "that uses coherence"),
     ):
-        found = tournament.tournament(rows, "recommended", names) if names else []
+        found = tournament.tournament(rows, ours, names) if names else []
         if len(found):
             parts.append(
                 f"The fastest peer {what} takes {times(found.ratio.min())} to {times(found.ratio.max())} times as long "
