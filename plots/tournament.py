@@ -29,10 +29,9 @@ def read(record):
 
 
 def times(rows, place, method):
-    """Nanoseconds a pair, shape (seeds, repetitions)."""
+    """Nanoseconds a pair: a row for each seed, a column for each repetition."""
     part = rows[(rows[PLACES] == pd.Series(dict(zip(PLACES, place)))).all(axis=1) & (rows.method == method)]
-    table = part.pivot_table(index="seed", columns="repetition", values="ns").dropna(axis=1)
-    return table.to_numpy()
+    return part.pivot_table(index="seed", columns="repetition", values="ns").dropna(axis=1)
 
 
 def mean_time(table):
@@ -46,7 +45,9 @@ def drawn(table, seeds, random):
 
 
 def ratio(theirs, ours):
-    """How many times as long theirs takes, and the ends of the interval."""
+    """How many times as long theirs takes, and the ends of the interval; over the seeds on which both answer rightly."""
+    both = ours.index.intersection(theirs.index)
+    theirs, ours = theirs.loc[both].to_numpy(), ours.loc[both].to_numpy()
     random = np.random.default_rng(1)
     seeds = random.integers(len(ours), size=(DRAWS, len(ours)))
     low, high = np.percentile(drawn(theirs, seeds, random) / drawn(ours, seeds, random), [2.5, 97.5])
@@ -58,12 +59,12 @@ def tournament(rows, ours, theirs):
     lines = []
     for place in rows[PLACES].drop_duplicates().itertuples(index=False, name=None):
         table = times(rows, place, ours)
-        others = {method: times(rows, place, method) for method in theirs}
-        others = {method: t for method, t in others.items() if t.size}
-        if not table.size or not others:
+        mean = {method: mean_time(t.to_numpy()) for method in theirs if (t := times(rows, place, method)).size}
+        if not table.size or not mean:
             continue
-        fastest = min(others, key=lambda method: mean_time(others[method]))
-        lines.append((*place, mean_time(table), fastest, mean_time(others[fastest]), *ratio(others[fastest], table)))
+        fastest = min(mean, key=mean.get)
+        lines.append((*place, mean_time(table.to_numpy()), fastest, mean[fastest],
+                      *ratio(times(rows, place, fastest), table)))
     return pd.DataFrame(lines, columns=[*PLACES, "ours_ns", "fastest", "fastest_ns", "ratio", "low", "high"])
 
 

@@ -42,6 +42,11 @@ class Tournament(unittest.TestCase):
                                       "ours", ["A"])
         self.assertLess(table.high[0] - table.low[0], 0.3)
 
+    def test_a_seed_that_one_side_lacks_is_left_out(self):
+        runs = rows({("ours", ""): lambda seed: 100 * seed, ("A", "a"): lambda seed: 300 * seed})
+        runs = runs[(runs.method == "ours") | (runs.seed != 6)]
+        self.assertAlmostEqual(tournament.tournament(runs, "ours", ["A"]).ratio[0], 3, delta=0.1)
+
     def test_a_cell_without_peers_is_left_out(self):
         self.assertEqual(len(tournament.tournament(rows({("ours", ""): 100}), "ours", ["A"])), 0)
 
