@@ -78,6 +78,12 @@ def write_hierarchies(paper):
     paper.have("hierarchies")
 
 
+def two_lines(name):
+    """A column's name broken at its first comma, so that the table is no wider than its numbers."""
+    first, comma, rest = name.partition(", ")
+    return rf"\shortstack[r]{{{escape(first)},\\{escape(rest)}}}" if comma else escape(first)
+
+
 def write_narrow_phase(paper):
     """Whatever methods the record has, by work and size."""
     record = paper.record("narrow-phase")
@@ -94,7 +100,7 @@ def write_narrow_phase(paper):
         lines.append(
             [escape(work), str(polygons)] + ["--" if np.isnan(of[m]) else f"{of[m] / 1e3:.2f}" for m in methods]
         )
-    paper.table("narrow-phase", "lr" + "r" * len(methods), ["work", "polygons"] + [escape(m) for m in methods], lines)
+    paper.table("narrow-phase", "lr" + "r" * len(methods), ["work", "polygons"] + [two_lines(m) for m in methods], lines)
     paper.text("narrow-phase-text", tournament_text(tournament.read(record)))
     paper.have("narrow-phase")
 
@@ -160,7 +166,7 @@ def write_tori(paper):
     paper.text(
         "tori",
         "; ".join(parts)
-        + f". FrontPolicy a front loses there in {kept - len(lost)} of {kept} pairs of volume and query"
+        + f". Keeping a front loses there in {kept - len(lost)} of {kept} pairs of volume and query"
         + (f"; it wins with {listed(lost)}" if lost else "")
         + ".",
     )

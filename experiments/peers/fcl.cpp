@@ -139,16 +139,16 @@ ReplayResult replay_fcl(std::span<const TriangleMesh> meshes, const Trace& trace
              : play_peer<FclWorld<Volume, NotCounting>>(meshes, trace, query, options);
 }
 
-#define BVLAB_FCL(model)                                                                         \
+#define BVLAB_FCL_PEER(model)                                                                    \
   template ReplayResult replay_fcl<FclModel::model>(std::span<const TriangleMesh>, const Trace&, \
                                                     std::string_view, const ReplayOptions&)
-BVLAB_FCL(obb);
-BVLAB_FCL(obbrss);
-BVLAB_FCL(kios);
-BVLAB_FCL(rss);
-BVLAB_FCL(aabb);
-BVLAB_FCL(kdop16);
-BVLAB_FCL(kdop18);
-BVLAB_FCL(kdop24);
+BVLAB_FCL_PEER(obb);
+BVLAB_FCL_PEER(obbrss);
+BVLAB_FCL_PEER(kios);
+BVLAB_FCL_PEER(rss);
+BVLAB_FCL_PEER(aabb);
+BVLAB_FCL_PEER(kdop16);
+BVLAB_FCL_PEER(kdop18);
+BVLAB_FCL_PEER(kdop24);
 
 }  // namespace bvlab
