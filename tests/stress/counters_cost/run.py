@@ -15,7 +15,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 CALL = re.compile(r"^\s*(counter_?\.(posed|tested|primitives|asked)\(.*\)"
-                  r"|const std::uint64_t tested = counter\.n_v \+ counter\.n_p);\s*$")
+                  r"|(const std::uint64_t tested|before_) = counter\.n_v \+ counter\.n_p);\s*$")
 MOST = 0.001
 
 
