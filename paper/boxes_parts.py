@@ -5,7 +5,7 @@ import boxes_fast
 import column
 import records
 import style
-from sheet import escape, listed, percent, thousands, times
+from sheet import escape, listed, part, percent, thousands, times
 from words import number
 
 # The six that were published.
@@ -61,11 +61,9 @@ def write_boxes(paper):
     paper.have("boxes")
 
 
-def write_boxes_motions(paper):
+@part("boxes-motions")
+def write_boxes_motions(paper, record):
     """What coherence saves each sweep under each of the second text's motions, at the largest sets."""
-    record = paper.record("boxes-motions")
-    if not record:
-        return
     rows = records.read(record)
     records.wrong_answers(rows)
     rows = rows[(rows.peer == "") & (rows.frame_ns > 0) & rows.method.str.startswith("sweep")]
@@ -79,7 +77,6 @@ def write_boxes_motions(paper):
             for motion, of in saved.groupby(level="motion", sort=False)
         ),
     )
-    paper.have("boxes-motions")
 
 
 def milliseconds(value):
@@ -176,11 +173,9 @@ def kept(rows):
     return theirs.min() / ours.min() if len(ours) and len(theirs) else None
 
 
-def write_boxes_peers(paper):
+@part("boxes-peers")
+def write_boxes_peers(paper, record):
     """Every method and peer: who misses pairs, and who is best where nothing moves."""
-    record = paper.record("boxes-peers")
-    if not record:
-        return
     rows = records.read(record)
     wrong = records.wrong_answers(rows)
     paper.put_text(
@@ -200,13 +195,10 @@ def write_boxes_peers(paper):
     paper.put_text(
         stillBestPeers=listed(f"{escape(m)} ({best.count(m)} of {len(best)} sets)" for m in dict.fromkeys(best))
     )
-    paper.have("boxes-peers")
 
 
-def write_boxes_displacement(paper):
-    record = paper.record("boxes-displacement")
-    if not record:
-        return
+@part("boxes-displacement")
+def write_boxes_displacement(paper, record):
     rows = records.read(record)
     write_beaten(paper, rows)
     rows = rows[rows.method == "blocks"]
@@ -219,7 +211,6 @@ def write_boxes_displacement(paper):
     paper.put("startingOverMost", ratio.max().max(), f"{ratio.max().max():.2f}")
     if paper.out:
         draw_displacement(ratio, paper.figures())
-    paper.have("boxes-displacement")
 
 
 def write_beaten(paper, rows):

@@ -2,7 +2,7 @@
 """The paper's part on nine bunnies, under every reading of the talk."""
 
 import nine_bunnies
-from sheet import escape, listed, medians, read_right
+from sheet import escape, listed, medians, part, read_right
 
 
 PART_LABEL = {"one body": "one", "all bodies": "all", "one freedom": "one", "all freedoms": "all"}
@@ -67,11 +67,9 @@ def write_nine_bunnies(paper):
     paper.have("nine-bunnies")
 
 
-def write_talk(paper):
+@part("talk")
+def write_talk(paper, record):
     """The talk's tree, as near as it describes it, beside Quinlan's division: what each reading saves."""
-    record = paper.record("talk")
-    if not record:
-        return
     rows = read_right(record)
     middle = medians(rows, ["build", "reading", "density", "seed", "strategy"], ["n_v", "time_ns"])
     two = "{:.2f}".format
@@ -119,7 +117,6 @@ def write_talk(paper):
         paper.put_range(f"talk{name}Deferred", of[what]["deferred"], two)
     paper.text("talk-prices", prices_text(rows, paper.values))
     paper.put_text(talkInTime=reach_text(of["time_ns"], paper.values))
-    paper.have("talk")
 
 
 def reach_text(speedups, published):
@@ -132,12 +129,9 @@ def reach_text(speedups, published):
 
 def prices_text(rows, published):
     """Speedups by cost where a pair of triangles costs as much as so many tests of volumes, as in scalar code."""
-    keys, parts = ["build", "reading", "density", "seed"], []
+    parts = []
     for price in (2, 10):
-        cost = rows.assign(cost=rows.n_v + price * rows.n_p).pivot_table(
-            index=keys, columns="strategy", values="cost", sort=False
-        )
-        ratio = (cost[["recursive"]].to_numpy() / cost[nine_bunnies.LISTS]).groupby(level=["build", "reading"]).mean()
+        ratio = nine_bunnies.saved_by_cost(rows, price).groupby(level=["build", "reading"]).mean()
         ranges = " and ".join(f"{ratio[name].min():.2f} to {ratio[name].max():.2f}" for name in nine_bunnies.LISTS)
         parts.append(f"at {price} tests {ranges}, so that {reach_text(ratio, published)}")
     return "; ".join(parts)

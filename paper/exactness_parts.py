@@ -4,13 +4,11 @@
 import column
 import records
 import style
-from sheet import count, duration, escape, listed, percent
+from sheet import count, duration, escape, listed, part, percent
 
 
-def write_triangles(paper):
-    record = paper.record("triangles-error")
-    if not record:
-        return
+@part("triangles-error")
+def write_triangles(paper, record):
     rows = records.read(record)
     rows["wrong"] = rows.false_positives + rows.false_negatives
     keys = ["test", "source", "set"]
@@ -34,13 +32,10 @@ def write_triangles(paper):
     paper.put_text(triangleSets=sets, trianglePairs=count(rows.pairs.max()), exactWrong=int(exact.wrong.sum()))
     if "batched" in exact.index:
         paper.put_range("exactBatched", exact.loc["batched"].ns_per_call, "{:.0f}".format)
-    paper.have("triangles")
 
 
-def write_stability(paper):
-    record = paper.record("stability-map")
-    if not record:
-        return
+@part("stability-map")
+def write_stability(paper, record):
     rows = records.read(record)
     rows["wrong"] = rows.false_positives + rows.false_negatives
     ours = rows[rows.peer == ""].groupby("precision", sort=False)[["answers", "wrong", "false_negatives"]].sum()
@@ -87,7 +82,6 @@ def write_stability(paper):
         if len(embree) and embree[embree.wrong > 0].stressor.nunique() == 1
         else "",
     )
-    paper.have("stability-map")
 
 
 def share_of(total):
@@ -97,10 +91,8 @@ def share_of(total):
     return "0" if not total.wrong else f"{100 * share:.0f}" if share >= 0.005 else "$<$1"
 
 
-def write_precision(paper):
-    record = paper.record("boxes-precision")
-    if not record:
-        return
+@part("boxes-precision")
+def write_precision(paper, record):
     rows = records.read(record)
     outward = rows[rows.numbers == "float, outward"].assign(share=lambda r: r.false_positives / r.pairs)
     middle = outward.groupby(["set", "offset"]).share.median()
@@ -116,13 +108,10 @@ def write_precision(paper):
         "precision-time",
         listed(f"\\emph{{{escape(m)}}} {r[0.5]:.2f} ({r[0.0]:.2f} to {r[1.0]:.2f})" for m, r in ratio.iterrows()),
     )
-    paper.have("boxes-precision")
 
 
-def write_distance_error(paper):
-    record = paper.record("distance-error")
-    if not record:
-        return
+@part("distance-error")
+def write_distance_error(paper, record):
     rows = records.read(record)
     rows["an_answer"] = rows.time_ns / rows.answers
     table = rows.groupby(["mesh", "volume", "relative_error"], sort=False).an_answer.median().unstack("relative_error")
@@ -157,7 +146,6 @@ def write_distance_error(paper):
     )
     if paper.out:
         draw_distance(table, paper.figures())
-    paper.have("distance-error")
 
 
 def draw_distance(table, out):
@@ -174,10 +162,8 @@ def draw_distance(table, out):
     return column.finish(figure, axes, out, "distance-error")
 
 
-def write_budget(paper):
-    record = paper.record("budget")
-    if not record:
-        return
+@part("budget")
+def write_budget(paper, record):
     rows = records.read(record)
     rows["an_answer"] = rows.time_ns / rows.answers
     middle = rows.groupby(["mesh", "volume", "budget"], as_index=False)[
@@ -192,4 +178,3 @@ def write_budget(paper):
             + listed(f"{duration(r.an_answer)} ({escape(r.mesh)}, {escape(r.volume)})" for r in best.itertuples())
         )
     paper.text("budget", "; ".join(parts))
-    paper.have("budget")

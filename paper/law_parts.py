@@ -7,7 +7,7 @@ import law
 import law_unseen
 import numpy as np
 import style
-from sheet import escape, listed, percent, signed
+from sheet import escape, listed, part, percent, signed
 
 
 def alone(rows):
@@ -38,10 +38,8 @@ def two_errors(off):
     return [percent(off.median()), percent(off.quantile(0.95), 0)]
 
 
-def write_coherence(paper):
-    record = paper.record("coherence")
-    if not record:
-        return
+@part("coherence")
+def write_coherence(paper, record):
     rows = law.read(record)
     kappa = law.fit_kappa(rows)
     paper.kappa = kappa
@@ -115,7 +113,6 @@ def write_coherence(paper):
         draw_law(lists, kappa, paper.figures())
         draw_strategies(rows, paper.figures())
         draw_curve(kappa, paper.figures())
-    paper.have("coherence")
 
 
 def write_ceiling(paper, lists):
@@ -303,11 +300,9 @@ def write_sweep(paper):
     paper.have("sweep")
 
 
-def write_law_unseen(paper):
+@part("law-unseen")
+def write_law_unseen(paper, record):
     """The law from the first frames of runs that were made after it was written down."""
-    record = paper.record("law-unseen")
-    if not record:
-        return
     fit = law_unseen.fit_of_coherence()
     runs = law_unseen.read(record)
     said = law_unseen.all_predictions(runs, fit)[law_unseen.PREFIX]
@@ -328,4 +323,3 @@ def write_law_unseen(paper):
     paper.put_percent(
         0, unseenTail=np.quantile(of_law, 0.95), unseenPile=np.median(of_law[pile]), unseenLost=np.median(of_law[less])
     )
-    paper.have("law-unseen")

@@ -4,7 +4,7 @@
 import numpy as np
 import records
 import tournament
-from sheet import duration, escape, listed, medians, percent, read_right, times
+from sheet import duration, escape, listed, medians, part, percent, read_right, times
 
 
 def fixed_for(query):
@@ -12,10 +12,8 @@ def fixed_for(query):
     return "rss recursive-both" if query == "distance" else "obb recursive-both"
 
 
-def write_hierarchies(paper):
-    record = paper.record("hierarchies")
-    if not record:
-        return
+@part("hierarchies")
+def write_hierarchies(paper, record):
     rows = read_right(record)
     rows = rows[~rows.wrong_answer].assign(
         a_pair=rows.later_ns / rows.later_pairs, all_frames=rows.time_ns / rows.pairs
@@ -75,7 +73,6 @@ def write_hierarchies(paper):
     )
     sparse = middle[(middle.density == "sparse") & (middle["query"] == "contacts")].groupby("work").a_pair.min()
     paper.put("librariesSparse", sparse.max(), duration(sparse.max()))
-    paper.have("hierarchies")
 
 
 def two_lines(name):
@@ -84,11 +81,9 @@ def two_lines(name):
     return rf"\shortstack[r]{{{escape(first)},\\{escape(rest)}}}" if comma else escape(first)
 
 
-def write_narrow_phase(paper):
+@part("narrow-phase")
+def write_narrow_phase(paper, record):
     """Whatever methods the record has, by work and size."""
-    record = paper.record("narrow-phase")
-    if not record:
-        return
     rows = read_right(record)
     name = "method" if "method" in rows else "variant"
     rows = rows[~rows.wrong_answer].assign(a_pair=rows.later_ns / rows.later_pairs)
@@ -102,7 +97,6 @@ def write_narrow_phase(paper):
         )
     paper.table("narrow-phase", "lr" + "r" * len(methods), ["work", "polygons"] + [two_lines(m) for m in methods], lines)
     paper.text("narrow-phase-text", tournament_text(tournament.read(record)))
-    paper.have("narrow-phase")
 
 
 def tournament_text(rows):
@@ -137,10 +131,8 @@ def write_peers_cgal(paper):
         paper.have("peers-cgal")
 
 
-def write_tori(paper):
-    record = paper.record("tori")
-    if not record:
-        return
+@part("tori")
+def write_tori(paper, record):
     rows = read_right(record)
     rows = rows[~rows.wrong_answer].assign(a_frame=rows.time_ns / rows.frames)
     middle = rows.groupby(["query", "variant", "peer", "strategy"], sort=False, as_index=False)[
@@ -170,17 +162,14 @@ def write_tori(paper):
         + (f"; it wins with {listed(lost)}" if lost else "")
         + ".",
     )
-    paper.have("tori")
 
 
 def microseconds(value):
     return f"{value:.0f}" if value >= 9.5 else f"{value:.1f}"
 
 
-def write_closest_features(paper):
-    record = paper.record("closest-features")
-    if not record:
-        return
+@part("closest-features")
+def write_closest_features(paper, record):
     rows = records.read(record)
     rows = rows.assign(a_pair=rows.time_ns / rows.pairs)
     middle = medians(rows, ["mesh", "motion", "variant"], "a_pair")
@@ -208,4 +197,3 @@ def write_closest_features(paper):
             if of.differing / of.pairs > 5e-4
         ),
     )
-    paper.have("closest-features")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the paper takes from records: numbers by name, tables, texts and figures in the folder that LaTeX reads."""
 
+import functools
 import sys
 from pathlib import Path
 
@@ -76,6 +77,22 @@ class Paper:
     def write_numbers(self):
         text = "".join(f"\\newcommand{{\\{name}}}{{{value}}}\n" for name, value in self.numbers.items())
         (self.out / "numbers.tex").write_text(text)
+
+
+def part(name):
+    """A part of the paper that one record gives: left out where there is none."""
+
+    def of(write):
+        @functools.wraps(write)
+        def written(paper):
+            record = paper.record(name)
+            if record:
+                write(paper, record)
+                paper.have(name)
+
+        return written
+
+    return of
 
 
 def latest(folder, name):

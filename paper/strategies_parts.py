@@ -5,7 +5,7 @@ import column
 import law
 import style
 from law_parts import alone, off_by
-from sheet import duration, escape, listed, medians, read_right, times
+from sheet import duration, escape, listed, medians, part, read_right, times
 
 
 SHORT = {
@@ -20,10 +20,8 @@ SHORT = {
 }
 
 
-def write_best_rebuilds(paper):
-    record = paper.record("best-rebuilds")
-    if not record:
-        return
+@part("best-rebuilds")
+def write_best_rebuilds(paper, record):
     rows = read_right(record)
     cells = ["motion", "degrees", "query", "strategy"]
     rows["over_best"] = rows.n_v / rows.best_tests
@@ -46,7 +44,6 @@ def write_best_rebuilds(paper):
             paper.put_range(f"rebuildsTime{name}{query.title()}", of, "{:.2f}".format)
     if paper.out:
         draw_rebuilds(over, paper.figures())
-    paper.have("best-rebuilds")
 
 
 def draw_rebuilds(over, out):
@@ -112,10 +109,8 @@ def winners_map(paper, name, across, down, short):
     paper.have(name)
 
 
-def write_workloads(paper):
-    record = paper.record("workloads")
-    if not record:
-        return
+@part("workloads")
+def write_workloads(paper, record):
     rows = law.read(record)
     strategies = list(dict.fromkeys(rows.strategy))
     rows["a_pair"] = rows.time_ns / rows.pairs
@@ -143,4 +138,3 @@ def write_workloads(paper):
         paper.put_percent(workloadsLawMost=off.max(), workloadsAloneMost=talk.max())
     else:
         paper.put_text(workloadsLawMost="--", workloadsAloneMost="--")
-    paper.have("workloads")

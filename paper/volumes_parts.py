@@ -6,17 +6,15 @@ import cost_model
 import numpy as np
 import records
 import style
-from sheet import escape, percent, read_right
+from sheet import escape, part, percent, read_right
 
 
 BASE_BUILD = "top-down-principal"  # along the principal axis, at the mean
 VOLUMES = ["sphere", "aabb", "obb", "kdop14", "kdop18", "kdop26", "rss", "shell"]
 
 
-def write_tightness(paper):
-    record = paper.record("tightness")
-    if not record:
-        return
+@part("tightness")
+def write_tightness(paper, record):
     rows = records.read(record)
     mesh = max(dict.fromkeys(rows.mesh), key=lambda m: (m.startswith("bunny"), rows[rows.mesh == m].level.max()))
     rows = rows[rows.mesh == mesh].drop_duplicates(["volume", "fit", "level"])
@@ -38,7 +36,6 @@ def write_tightness(paper):
         paper.put(name, value, two(value))
     if paper.out:
         draw_tightness(rows, paper.figures())
-    paper.have("tightness")
 
 
 def draw_tightness(rows, out):
@@ -59,11 +56,9 @@ def draw_tightness(rows, out):
     return column.finish(figure, [axis], out, "tightness")
 
 
-def write_fits(paper):
+@part("fits")
+def write_fits(paper, record):
     """Volume tests of each build and fit over those of the plainest, medians over sizes and queries."""
-    record = paper.record("fits")
-    if not record:
-        return
     rows = read_right(record)
     cell = ["polygons", "query", "volume"]
     base = rows[(rows.build == BASE_BUILD) & (rows.fit == "published")].groupby(cell)[["n_v", "build_ns"]].first()
@@ -105,13 +100,10 @@ def write_fits(paper):
         "fitsArea", [middle[v, "published", "top-down-surface-area"] for v in set(rows.volume)], "{:.2f}".format
     )
     paper.put_range("fitsBottomUp", [middle[v, "published", "bottom-up"] for v in set(rows.volume)], "{:.2f}".format)
-    paper.have("fits")
 
 
-def write_posing(paper):
-    record = paper.record("posing")
-    if not record:
-        return
+@part("posing")
+def write_posing(paper, record):
     rows = records.read(record)
     keys = ["side", "k", "query"]
     asked = rows[rows["query"] != "roots"].groupby([*keys, "policy"])[["n_v", "time_ns"]].median().unstack("policy")
@@ -122,7 +114,6 @@ def write_posing(paper):
     shares = (rows.dismissed / rows.pairs)[(rows["query"] == "roots") & (rows.side == 4)]
     for policy, group in roots:
         paper.put_range(f"posing{policy.title()}", shares[group.index], lambda v: percent(v, 0))
-    paper.have("posing")
 
 
 def write_cost_model(paper):

@@ -54,6 +54,14 @@ def speedups(runs, what="time_ns"):
     return pd.DataFrame({name: wide[BASE] / wide[name] for name in lists_of(runs)})
 
 
+def saved_by_cost(rows, price):
+    """What each list saves over recursion where a pair of triangles costs as much as `price` tests of volumes: one row a
+    build, reading, density and seed."""
+    wide = rows.assign(cost=rows.n_v + price * rows.n_p).pivot_table(
+        index=["build", "reading", "density", "seed"], columns="strategy", values="cost", sort=False)
+    return wide[LISTS].rdiv(wide[BASE], axis=0)
+
+
 def percent(ratio):
     return f"{100 * (ratio - 1):+.0f}%"
 

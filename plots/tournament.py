@@ -23,9 +23,9 @@ DRAWS = 1000
 
 def read(record):
     rows = records.read(record)
-    records.say_left_out(rows[records.wrong_answers(rows)].method, "where their answers differ")
-    rows = rows[~records.wrong_answers(rows)]
-    return rows.assign(ns=rows.later_ns / rows.later_pairs)
+    wrong = records.wrong_answers(rows)
+    records.say_left_out(rows[wrong].method, "where their answers differ")
+    return rows[~wrong].assign(ns=rows.later_ns / rows.later_pairs)
 
 
 def times(rows, place, method):
@@ -59,12 +59,12 @@ def tournament(rows, ours, theirs):
     lines = []
     for place in rows[PLACES].drop_duplicates().itertuples(index=False, name=None):
         table = times(rows, place, ours)
-        mean = {method: mean_time(t.to_numpy()) for method in theirs if (t := times(rows, place, method)).size}
-        if not table.size or not mean:
+        others = {method: t for method in theirs if (t := times(rows, place, method)).size}
+        if not table.size or not others:
             continue
+        mean = {method: mean_time(t.to_numpy()) for method, t in others.items()}
         fastest = min(mean, key=mean.get)
-        lines.append((*place, mean_time(table.to_numpy()), fastest, mean[fastest],
-                      *ratio(times(rows, place, fastest), table)))
+        lines.append((*place, mean_time(table.to_numpy()), fastest, mean[fastest], *ratio(others[fastest], table)))
     return pd.DataFrame(lines, columns=[*PLACES, "ours_ns", "fastest", "fastest_ns", "ratio", "low", "high"])
 
 

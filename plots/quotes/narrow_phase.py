@@ -1,10 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The narrow phase beside OPCODE and FCL, each side by one configuration fixed beforehand."""
 
+from functools import cache
+
 import tournament
 from quoting import README, RESULTS, Interval, claim, quotes
 
 FRESH, COHERENT = ["OPCODE", "FCL, obb"], ["OPCODE, coherent"]
+
+
+@cache
+def recommended_beside(record):
+    """The rows of the record, and `recommended` beside those that start from the roots and beside those that are coherent."""
+    rows = tournament.read(record)
+    return rows, cells(rows, "recommended", FRESH), cells(rows, "recommended", COHERENT)
 
 
 def cells(rows, ours, theirs):
@@ -15,9 +24,8 @@ def cells(rows, ours, theirs):
         "| motion | polygons | from the roots (us) | the fastest of FCL and OPCODE | times as long (95 %) | recommended (us) | "
         "OPCODE's coherence: times as long (95 %) |")
 def table(record):
-    rows = tournament.read(record)
-    fresh, coherent = cells(rows, "wide, from the roots", FRESH), cells(rows, "recommended", COHERENT)
-    recommended = cells(rows, "recommended", FRESH)
+    rows, recommended, coherent = recommended_beside(record)
+    fresh = cells(rows, "wide, from the roots", FRESH)
     lines, last = [], None
     for place, line in fresh.iterrows():
         beside = coherent.loc[place] if place in coherent.index else None
@@ -34,8 +42,7 @@ def table(record):
         "Whether two bunnies touch `recommended` says in {us:.2f} us, {fresh:.1f} times as fast as the fastest of FCL and OPCODE from the roots and "
         "{coherent:.1f} times as fast as OPCODE with its coherence; all contacts it finds {contacts:.1f} times as fast as the fastest of them")
 def headline(record):
-    rows = tournament.read(record)
-    fresh, coherent = cells(rows, "recommended", FRESH), cells(rows, "recommended", COHERENT)
+    _, fresh, coherent = recommended_beside(record)
     contacts = fresh.index.get_level_values("work").str.startswith("contacts")
     return {"us": Interval(fresh[~contacts].ours_ns / 1e3), "fresh": Interval(fresh[~contacts].ratio),
             "coherent": Interval(coherent.ratio), "contacts": Interval(fresh[contacts].ratio)}

@@ -10,11 +10,7 @@ PRICES = [2, 10]  # of a pair of triangles, in tests of volumes
 
 def speedups(rows, price):
     """Of each list over recursion, by cost, mean over seeds: one row a build, reading and density."""
-    cell = ["build", "reading", "density"]
-    rows = rows.assign(cost=rows.n_v + price * rows.n_p)
-    wide = rows.pivot_table(index=[*cell, "seed"], columns="strategy", values="cost")
-    ratios = wide[["separation-list", "deferred"]].rdiv(wide.recursive, axis=0)
-    return ratios.groupby(level=cell).mean()
+    return nine_bunnies.saved_by_cost(rows, price).groupby(level=["build", "reading", "density"]).mean()
 
 
 @quotes("talk", RESULTS,
@@ -27,7 +23,6 @@ def speedups(rows, price):
 def talk(record):
     rows = records.read(record)
     records.wrong_answers(rows)
-    rows = rows.groupby(["build", "reading", "density", "seed", "strategy"], as_index=False)[["n_v", "n_p"]].mean()
     tests, low, high = (speedups(rows, price) for price in (0, *PRICES))
     published = nine_bunnies.PUBLISHED.mean()
 
