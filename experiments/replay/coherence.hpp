@@ -4,9 +4,8 @@
 /// Three measures, all of pairs that are near (whose roots could not be told apart in this frame or
 /// the one before):
 ///
-///   survival   kept / entries: the share of the recursive front that is still there in the next
-///   frame stillness  still_runs / near_runs: how often nothing of it had to be descended, which is
-///   what
+///   survival   kept / entries: the share of the recursive front that is there in the next frame
+///   stillness  still_runs / near_runs: how often nothing of it had to be descended, which is what
 ///              the talk's lists predict from
 ///   motion     how far the two bodies can have moved relative to each other since the frame before
 ///              (translations plus 2 sin(angle / 2) radius), in units of a leaf's size, and as a

@@ -122,7 +122,7 @@ class Writer {
                numbers(axis_and_angle(p + 3)) + "\"";
     }
     text_ += ">\n<Shape>\n<Appearance><Material DEF=\"colour" + id + "\" diffuseColor=\"" +
-             numbers(colour(0, body)) + "\"/></Appearance>\n";
+             numbers(colour(body, trace_.frames > 0 && touches(0, body))) + "\"/></Appearance>\n";
     const std::size_t mesh = body % meshes_.size();
     if (body == mesh)
       add_mesh(mesh);
@@ -153,15 +153,15 @@ class Writer {
     }
     return false;
   }
-  std::array<double, 3> colour(std::size_t frame, std::size_t body) const {
-    return trace_.frames > 0 && touches(frame, body) ? touching_colour : colour_of(body);
+  static std::array<double, 3> colour(std::size_t body, bool touches) {
+    return touches ? touching_colour : colour_of(body);
   }
 
   /// The interpolators of what changes; a body that rests, or never changes its colour, has none.
   void add_motion(std::size_t body) {
     const std::string id = std::to_string(body);
     std::vector<double> keys, places, turns, colour_keys, colours;
-    bool moves = false;
+    bool moves = false, touches_now = false;
     const double last = static_cast<double>(std::max<std::size_t>(trace_.frames, 2) - 1);
     for (std::size_t frame = 0; frame < trace_.frames; ++frame) {
       const double *p = pose(frame, body), key = static_cast<double>(frame) / last;
@@ -170,15 +170,16 @@ class Writer {
       places.insert(places.end(), p, p + 3);
       const auto turn = axis_and_angle(p + 3);
       turns.insert(turns.end(), turn.begin(), turn.end());
-      const bool first = frame == 0,
-                 changes = !first && touches(frame, body) != touches(frame - 1, body);
-      if (!first && !changes) continue;
-      // Twice at one key: a step, not a blend.
-      for (const std::size_t at : changes ? std::vector{frame - 1, frame} : std::vector{frame}) {
-        const auto shown = colour(at, body);
+      const bool touched = touches_now;
+      touches_now = touches(frame, body);
+      const auto show = [&](bool touching) {
+        const auto shown = colour(body, touching);
         colour_keys.push_back(key);
         colours.insert(colours.end(), shown.begin(), shown.end());
-      }
+      };
+      // Two colours at one key are a step, not a blend.
+      if (frame > 0 && touches_now != touched) show(touched);
+      if (frame == 0 || touches_now != touched) show(touches_now);
     }
     if (moves) {
       add_interpolator("Position", "place" + id, keys, places, "body" + id, "translation");

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// How one volume of a body is compared with siblings of another, which lie as their mesh does.
 ///
-///   FrameChange                   what takes one body's frame to the other's: once a pair of
-///   bodies One                    one volume seen from there: one N_u compared(one, ...)     which
-///   lanes it is apart from, and in which order the rest are worth
+///   FrameChange            what takes one body's frame to the other's: once a pair of bodies
+///   One                    one volume seen from there: one N_u
+///   compared(one, ...)     which lanes it is apart from, and in which order the rest are worth
 ///                          looking at, the likeliest to touch first
 ///   gaps(one, ...)         how far it is from each lane, at least
 ///

@@ -4,10 +4,10 @@
 ///
 /// A traversal that finds two bodies apart has compared volumes that are apart, and the least of
 /// their gaps is one of the bodies unless triangles had to be looked at. Until the bodies can have
-/// come nearer by that much the answer stays, and costs one comparison: of a deadline with the ways
-/// that they have gone since the first frame (MovingBody::displacement_bound). Where ways are long
-/// because bodies jitter or go together, the bound between reference poses is looked at before the
-/// pair is. Bodies that touch are looked at where they did, first.
+/// come nearer by that much the answer stays, and costs one comparison: of a deadline with the
+/// displacements since the first frame (MovingBody::displacement_bound). Where displacements are
+/// long because bodies jitter or go together, the bound between reference poses is looked at before
+/// the pair is. Bodies that touch are looked at where they did, first.
 ///
 /// Bodies that were apart twice, but hardly, get a front (WideFront), of which those entries are
 /// looked at again whose deadlines have passed. Where most have, there is none for a while: four
@@ -52,8 +52,8 @@ class MeasuringGap {
   static constexpr bool measures = true;
 
   /// A front that is not complete is written anew.
-  void begin(WideFront* front, double way) {
-    front_ = front, way_ = way;
+  void begin(WideFront* front, double displacement) {
+    front_ = front, displacement_ = displacement;
     sweeps_ = front && front->is_complete(), swept_ = false, due_ = 0;
     if (front && !sweeps_) front->clear();
     least_ = S(std::numeric_limits<float>::infinity()), touched_.reset();
@@ -63,7 +63,7 @@ class MeasuringGap {
   bool sweeps() const { return sweeps_; }
   bool swept() const { return swept_; }
   WideFront& sweep() { return swept_ = true, *front_; }
-  double way() const { return way_; }
+  double displacement() const { return displacement_; }
   bool front() const { return front_; }
   std::size_t due() const { return due_; }
 
@@ -121,16 +121,17 @@ class MeasuringGap {
   }
 
  private:
-  /// Sums of ways are rounded here and where they are compared.
+  /// Sums of displacements are rounded here and where they are compared.
   double deadline_of(float gap) const {
     if (!(gap > 0)) return WideFront::passed;
-    return (way_ + gap * (1 - 32.0 * unit_roundoff<float>)) * (1 - 8 * unit_roundoff<double>);
+    return (displacement_ + gap * (1 - 32.0 * unit_roundoff<float>)) *
+           (1 - 8 * unit_roundoff<double>);
   }
 
   S least_, last_;
   std::optional<NodePair> touched_;
   WideFront* front_ = nullptr;
-  double way_ = 0;
+  double displacement_ = 0;
   std::size_t due_ = 0;
   bool sweeps_ = false, swept_ = false;
 };
@@ -145,7 +146,7 @@ class WideMargins {
 
   void add_body(const MeshBall& ball, double reach) {
     bodies_.emplace_back(HierarchyExtent{ball.centre, ball.radius, reach, 0});
-    ways_.push_back(0), steps_.push_back(0), reaches_.push_back(0), epochs_.push_back(0);
+    displacements_.push_back(0), steps_.push_back(0), reaches_.push_back(0), epochs_.push_back(0);
   }
   void resize(std::size_t pairs) { answers_.resize(pairs), kept_.resize(pairs); }
 
@@ -161,9 +162,9 @@ class WideMargins {
       Followed& body = bodies_[i];
       steps_[i] = 0;
       if (!body.place(poses[i])) continue;
-      const double way = body.displacement_bound();
-      steps_[i] = way - ways_[i];
-      ways_[i] = way, epochs_[i] = body.epoch();
+      const double displacement = body.displacement_bound();
+      steps_[i] = displacement - displacements_[i];
+      displacements_[i] = displacement, epochs_[i] = body.epoch();
       const ReferencePose& at = body.reference_pose();
       // A matrix stretches by its defect at most.
       reaches_[i] =
@@ -175,7 +176,7 @@ class WideMargins {
   template <class Query>
   bool stays(std::size_t p, const ObjectPair& pair) const {
     const Answer& answer = answers_[p];
-    return ways_[pair.i] + ways_[pair.j] < answer.until ||
+    return displacements_[pair.i] + displacements_[pair.j] < answer.until ||
            (says_all<Query> && epochs(pair) == answer.epochs);
   }
   /// Whether that is so by the bound between reference poses.
@@ -214,7 +215,9 @@ class WideMargins {
     if (kept.pause > 0) return --kept.pause, nullptr;
     return kept.was_apart ? &kept.front : nullptr;
   }
-  double way(const ObjectPair& pair) const { return ways_[pair.i] + ways_[pair.j]; }
+  double displacement(const ObjectPair& pair) const {
+    return displacements_[pair.i] + displacements_[pair.j];
+  }
 
   /// Gives a query that was not asked the answer of the last one.
   template <class Query>
@@ -260,7 +263,7 @@ class WideMargins {
       }
       if (worn || front.overgrown()) return front.clear();
       const double earliest = front.earliest();
-      if (earliest > way(pair)) answer.until = earliest;
+      if (earliest > displacement(pair)) answer.until = earliest;
       return;
     }
     // Less would hardly last until the next frame.
@@ -281,7 +284,7 @@ class WideMargins {
   static constexpr int shortest_pause = 4, longest_pause = 256;  // traversals without a front
 
   struct Answer {
-    double until = unknown;  ///< as a sum of ways; negative where only rest keeps it
+    double until = unknown;  ///< as a sum of displacements; negative where only rest keeps it
     std::uint32_t epochs = 0;
     bool touching = false;
   };
@@ -305,14 +308,15 @@ class WideMargins {
   /// Changes whenever one of the bodies moves.
   std::uint32_t epochs(const ObjectPair& pair) const { return epochs_[pair.i] + epochs_[pair.j]; }
 
-  /// The bodies are `gap` apart. Sums of ways are rounded here and where they are compared.
+  /// The bodies are `gap` apart. Sums of displacements are rounded here and where they are
+  /// compared.
   void hold(std::size_t p, const ObjectPair& pair, double gap) {
-    const double way = ways_[pair.i] + ways_[pair.j];
-    answers_[p].until = (way + gap) * (1 - 8 * unit_roundoff<double>);
+    const double displacement = displacements_[pair.i] + displacements_[pair.j];
+    answers_[p].until = (displacement + gap) * (1 - 8 * unit_roundoff<double>);
   }
 
   std::vector<Followed> bodies_;
-  std::vector<double> ways_, steps_, reaches_;
+  std::vector<double> displacements_, steps_, reaches_;
   std::vector<std::uint32_t> epochs_;
   std::vector<Answer> answers_;
   std::vector<Kept> kept_;

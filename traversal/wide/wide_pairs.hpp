@@ -53,8 +53,8 @@ class WidePairs {
   template <class Counter, class Ask, class Take>
   void frame(std::span<const Pose> poses, Counter& counter, Ask&& ask, Take&& take) {
     using Query = std::remove_cvref_t<decltype(ask(0))>;
-    if constexpr (Memory::remembers) return frame_from_memory<Query>(poses, counter, ask, take);
     if (!placed_) origin_ = middle_of(poses), placed_ = true;
+    if constexpr (Memory::remembers) return frame_from_memory<Query>(poses, counter, ask, take);
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       place(bodies_[i], poses[i], origin_);
       centres_[i] = poses[i](balls_[i].centre);
@@ -103,7 +103,6 @@ class WidePairs {
   /// Bodies are placed when one of their pairs has to be looked at.
   template <class Query, class Counter, class Ask, class Take>
   void frame_from_memory(std::span<const Pose> poses, Counter& counter, Ask& ask, Take& take) {
-    if (!placed_) origin_ = middle_of(poses), placed_ = true;
     poses_ = poses;
     memory_.template move<Query>(poses);
     std::size_t due = 0;
@@ -149,7 +148,7 @@ class WidePairs {
       if constexpr (Measure::measures)
         running[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter,
                              memory_.template touched<Query>(pair[slot]), memory_.front(pair[slot]),
-                             memory_.way(pairs_[pair[slot]]));
+                             memory_.displacement(pairs_[pair[slot]]));
       else
         running[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter);
     };

@@ -70,9 +70,9 @@ class WideTraversal {
   /// are known to be apart by is in `front`, if that is complete; else it is written there.
   void begin(Body& a, Body& b, Query query, Counter& counter,
              const std::optional<NodePair>& touched, WideFront* front,
-             double way) requires(Measure::measures) {
+             double displacement) requires(Measure::measures) {
     begin(a, b, std::move(query), counter);
-    measure_.begin(front, way);
+    measure_.begin(front, displacement);
     if (measure_.sweeps()) {
       frontier_.clear();
     } else if (touched) {
@@ -129,7 +129,7 @@ class WideTraversal {
     WideFront& front = measure_.sweep();
     const std::size_t size = front.size();  // what is added needs no second look
     for (std::size_t i = 0; i < size; ++i) {
-      if (front.deadline(i) > measure_.way()) continue;
+      if (front.deadline(i) > measure_.displacement()) continue;
       const WideFront::Entry entry = front[i];
       if (!entry.triangle)
         step(entry.pair, i);

@@ -38,7 +38,6 @@ class FollowedBlocks {
 
   /// Whether the candidates are good for another frame.
   bool goes_on() const { return few_moved_ || age_ < horizon_; }
-  bool few_moved() const { return few_moved_; }
   /// Whether boxes have gone on as they did.
   bool steady() const { return steady_; }
   /// The most frames that fat boxes may be made for.
