@@ -6,8 +6,10 @@
 #include <random>
 
 #include "experiments/peers/triangle_oracle.hpp"
+#include "experiments/replay/registry.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/posed_triangles.hpp"
+#include "traversal/primitives/precisions.hpp"
 
 namespace bvlab {
 namespace {
@@ -283,6 +285,23 @@ std::vector<std::uint8_t> truth_of(const StressCase& stress) {
                                   posed_triangles(stress.meshes[1], poses[1])));
   }
   return truth;
+}
+
+std::vector<Variant> stressed_variants() {
+  std::vector<Variant> variants;
+  const auto add = [&](const char* tree, const std::string& volume, const std::string& strategy) {
+    Precisions::for_each([&]<class P>(std::type_identity<P>) {
+      Variant variant;
+      variant.tree = tree, variant.volume = volume, variant.strategy = strategy;
+      variant.precision = P::name;
+      variants.push_back(std::move(variant));
+    });
+  };
+  for (const auto& volume : volumes())
+    for (const auto& strategy : strategies()) add("binary", volume.name, strategy.name);
+  for (const auto& volume : wide_volumes())
+    for (const char* strategy : {"recursive", "margins"}) add("wide", volume.name, strategy);
+  return variants;
 }
 
 }  // namespace bvlab
