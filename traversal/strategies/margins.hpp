@@ -26,7 +26,7 @@
 #include <limits>
 #include <string_view>
 
-#include "traversal/fronts.hpp"
+#include "traversal/strategies/margin_sweep.hpp"
 
 namespace bvlab {
 
@@ -50,7 +50,7 @@ class Margins {
       quiet_until_ = front_.hits().front().deadline;
       return {};
     }
-    const TraversalStatistics statistics = pair.from_front(KeptMargins{{}, front_, clock_, step_});
+    const TraversalStatistics statistics = pair.from_front(MarginSweep(front_, clock_, step_));
     account(statistics);
     remember(query);
     return statistics;
