@@ -125,9 +125,12 @@ class SeparatingDirections {
 
  private:
   struct alignas(64) Body {
-    float rotation[9];  // row by row
-    float centre[3], slack, reach;
-    std::int32_t map;
+    float rotation[9] = {};  // row by row
+    float centre[3] = {};
+    // Nothing is told of a body before it stands.
+    float slack = std::numeric_limits<float>::infinity();
+    float reach = std::numeric_limits<float>::infinity();
+    std::int32_t map = 0;
     float unused = 0;
   };
   static_assert(sizeof(Body) == 64);
