@@ -11,6 +11,7 @@
 #include "experiments/files/totals.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
+#include "experiments/replay/coherence.hpp"
 #include "experiments/replay/predict.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 
@@ -44,14 +45,21 @@ std::string lines(const Rows& rows, const char* format) {
   return text;
 }
 
-Totals totals_of(const Arguments& arguments, const Trace& trace, const Rows& rows) {
+/// The survival is null where no pair was near another.
+Totals totals_of(const Arguments& arguments, const Trace& trace, const CoherenceSums& coherence,
+                 const Rows& rows) {
   Totals totals;
   totals.set("frames", trace.frames)
       .set("objects", trace.objects)
       .set("pairs", trace.pairs())
       .set("volume", arguments.variant.volume)
       .set("query", arguments.variant.query);
-  if (!rows.empty()) totals.set("fastest", fastest(rows)->strategy);
+  if (coherence.entries > 0)
+    totals.set("survival",
+               static_cast<double>(coherence.kept) / static_cast<double>(coherence.entries));
+  else
+    totals.set("survival", nullptr);
+  totals.set("fastest", fastest(rows)->strategy);
   Totals strategies;
   for (const Predicted& row : rows) {
     Totals each;
@@ -76,7 +84,10 @@ void run(const Arguments& arguments) {
   const Rows rows = predict(meshes, trace, arguments.variant, arguments.options);
   if (!arguments.csv.empty())
     write_whole(arguments.csv, "strategy,n_v,n_p,seconds\n" + lines(rows, "%s,%.0f,%.0f,%.9g\n"));
-  if (!arguments.json.empty()) write_totals(totals_of(arguments, trace, rows), arguments.json);
+  if (!arguments.json.empty()) {
+    const CoherenceSums sums = coherence(meshes, trace, arguments.variant);
+    write_totals(totals_of(arguments, trace, sums, rows), arguments.json);
+  }
   if (!arguments.csv.empty() || !arguments.json.empty()) return;
   std::printf("%-16s %14s %14s %12s\n%s", "strategy", "n_v", "n_p", "seconds",
               lines(rows, "%-16s %14.0f %14.0f %12.6f\n").c_str());
