@@ -128,6 +128,8 @@ class ShareOf final : public Share {
   void play() override {
     const auto start = Clock::now();
     std::vector<Pose> poses(trace_.objects);
+    auto last = start;
+    if (options_.keep_frame_seconds) frame_seconds_.reserve(trace_.frames);
     for (std::size_t frame = 0; frame < trace_.frames; ++frame) {
       trace_.poses(frame, poses);
       engine_.frame(
@@ -143,6 +145,11 @@ class ShareOf final : public Share {
         result_.series[frame] = {counter_.n_u, counter_.n_v, counter_.n_p, front, answers_.hits()};
       if (options_.see_front) see_fronts(frame);
       if (frame == 0) first_seconds_ = seconds_since(start);
+      if (options_.keep_frame_seconds) {
+        const auto now = Clock::now();
+        frame_seconds_.push_back(std::chrono::duration<double>(now - last).count());
+        last = now;
+      }
     }
   }
 
@@ -152,6 +159,9 @@ class ShareOf final : public Share {
     result.considered += counter_.considered;
     result.front += entries_;
     result.hits += answers_.hits();
+    result.frame_seconds.resize(frame_seconds_.size());
+    for (std::size_t frame = 0; frame < frame_seconds_.size(); ++frame)
+      result.frame_seconds[frame] = std::max(result.frame_seconds[frame], frame_seconds_[frame]);
     answers_.hand_over(result);
   }
 
@@ -170,6 +180,7 @@ class ShareOf final : public Share {
   Answers<Query> answers_;
   Counter counter_;
   double entries_ = 0, first_seconds_ = 0;
+  std::vector<double> frame_seconds_;
 };
 
 /// All the fronts that a strategy may start from.
