@@ -28,6 +28,14 @@ class Front : public FrontDefaults {
     witnessed_ = false;
   }
 
+  /// Starts from what another front has come to, its witness first.
+  template <class Other>
+  void restart_from(const Other& front) {
+    entries_ = front.entries();
+    witnessed_ = false;
+    if (front.witnessed()) bring_forward(front.witness());
+  }
+
   void clear() { entries_.clear(); }
 
   template <class Traversal>

@@ -78,14 +78,6 @@ class Adaptive {
  private:
   enum class Use : std::uint8_t { roots, list, margins };
 
-  struct List : Front {
-    void restart_from(const MarginFront& front) {
-      entries_ = front.entries();
-      witnessed_ = false;
-      if (front.witnessed()) bring_forward(front.witness());
-    }
-  };
-
   /// What recursion over both nodes costs beside a rebuild, by these prices: fewer tests in larger
   /// batches, and no front to write.
   static constexpr double both_over_rebuild = 0.85;
@@ -333,7 +325,7 @@ class Adaptive {
   double list_failed_at_ = 0, margins_failed_at_ = 0;  // steps
   int list_wait_ = first_wait, margins_wait_ = first_wait;
   double distance_ = 0;
-  List list_;
+  Front list_;
   Margins margins_;
 };
 
