@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "hierarchies/build/topology.hpp"
@@ -86,18 +87,24 @@ class Collapsing {
     double cost = 0;
     std::uint32_t left = 0, right = 0;  ///< how many below its children; 0: it is one itself
   };
-  Cut& cut(std::uint32_t b, std::uint32_t roots) { return cuts_[b * fan_out_ + roots - 1]; }
+  /// A leaf is one, however many there may be.
+  Cut& cut(std::uint32_t b, std::uint32_t roots) {
+    return cuts_[places_[b] + (leaf_[b] ? 0 : roots - 1)];
+  }
 
   /// Children stand behind their parents.
   void find_least_costs(std::uint32_t fan_out, std::uint32_t leaf_size) {
-    fan_out_ = fan_out;
-    cuts_.assign(binary_.nodes.size() * fan_out, {});
-    for (auto b = static_cast<std::uint32_t>(binary_.nodes.size()); b-- > 0;) {
+    const auto n = static_cast<std::uint32_t>(binary_.nodes.size());
+    std::size_t needed = 0;
+    for (std::uint32_t b = 0; b < n; ++b) {
+      places_.push_back(needed), leaf_.push_back(is_leaf(b, leaf_size));
+      needed += leaf_[b] ? 1 : fan_out;
+    }
+    cuts_.resize(needed);
+    for (std::uint32_t b = n; b-- > 0;) {
       cut(b, 1) = {surface_[b]};
-      const bool leaf = is_leaf(b, leaf_size);
-      for (std::uint32_t roots = 2; roots <= fan_out; ++roots)
-        cut(b, roots) = leaf ? cut(b, 1) : shared(b, roots);
-      if (leaf) continue;
+      if (leaf_[b]) continue;
+      for (std::uint32_t roots = 2; roots <= fan_out; ++roots) cut(b, roots) = shared(b, roots);
       cut(b, 1).cost += cut(b, fan_out).cost;
       for (std::uint32_t roots = 2; roots <= fan_out; ++roots)
         if (cut(b, roots - 1).cost < cut(b, roots).cost) cut(b, roots) = cut(b, roots - 1);
@@ -128,7 +135,8 @@ class Collapsing {
   const Topology& binary_;
   std::vector<double> surface_;
   std::vector<std::uint32_t> begin_, end_;
-  std::uint32_t fan_out_ = 0;
+  std::vector<bool> leaf_;
+  std::vector<std::size_t> places_;  // in cuts_
   std::vector<Cut> cuts_;
 };
 
