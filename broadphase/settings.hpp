@@ -15,10 +15,15 @@ enum class Coherence { off, on };
 /// Whether the pairs that began and ended are reported besides all pairs.
 enum class Changes { unreported, reported };
 
+/// How ends are sorted from scratch: by the digits of their keys, O(n), or by comparing them,
+/// O(n log n), as was usual when the seed was written.
+enum class Sort { radix, comparison };
+
 struct MethodSettings {
   Coherence coherence = Coherence::on;
   Changes changes = Changes::unreported;
   int threads = 1;
+  Sort sort = Sort::radix;      ///< of `hash`, the sweeps and `sort-and-sweep`
   std::uint32_t cutoff = 1000;  ///< where `hybrid` stops dividing and scans
 };
 

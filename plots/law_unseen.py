@@ -101,8 +101,11 @@ class Runs:
     first: int
 
 
-def read(record):
+def read(record, setting="setting"):
+    """Runs of two lengths of the same seeds; `setting` is the column whose other seeds are a source."""
     rows = law.read(record)
+    if setting in rows:
+        rows["setting"] = rows[setting]
     lengths = sorted(rows.frames.unique()) if "setting" in rows and "seed" in rows else []
     if len(lengths) != 2:
         raise Refused(f"{record}: has to have settings, seeds, and runs of two lengths")

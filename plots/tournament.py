@@ -1,8 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ours beside other libraries in each cell of the narrow-phase record: how many times as fast, with intervals.
+"""Ours beside other libraries in each cell of a record: how many times as fast, with intervals.
 
 usage: tournament.py RECORD
+
+Records of the narrow phase (a cell is a kind of motion and a mesh) and of boxes (a set, a number and a motion). Where
+several builds ran it, a method is told from itself by its program: "recommended, one-lane".
 
 Each side is one configuration that was fixed before the runs. A ratio is the mean over seeds of a pair's time with the
 other library, over the same with ours; a seed's time is the median of its repetitions. Intervals: 95 % by bootstrap,
@@ -18,20 +21,39 @@ import pandas as pd
 import records
 
 PLACES = ["work", "polygons"]
+BOX_PLACES = ["set", "count", "motion"]
 DRAWS = 1000
 
 
 def read(record):
+    """Rows with the times of a pair, or of a frame of boxes: `ns` in the steady state, `cold_ns` in the first frame,
+    `tail_ns` in the slowest of a hundred frames, where that was measured."""
     rows = records.read(record)
     wrong = records.wrong_answers(rows)
     records.say_left_out(rows[wrong].method, "where their answers differ")
-    return rows[~wrong].assign(ns=rows.later_ns / rows.later_pairs)
+    rows = rows[~wrong]
+    if "set" in rows:
+        rows = rows[rows.frame_ns > 0]
+        rows = rows.assign(ns=rows.frame_ns, cold_ns=rows.first_ns, tail_ns=rows.get("p99_ns", np.nan))
+    else:
+        each = rows.pairs / rows.frames
+        rows = rows.assign(ns=rows.later_ns / rows.later_pairs, cold_ns=rows.first_ns / each,
+                           tail_ns=rows.get("p99_ns", np.nan) / each)
+    if "program" in rows:
+        rows = rows.assign(method=rows.method + ", " + rows.program)
+    return rows
 
 
-def times(rows, place, method):
-    """Nanoseconds a pair: a row for each seed, a column for each repetition."""
-    part = rows[(rows[PLACES] == pd.Series(dict(zip(PLACES, place)))).all(axis=1) & (rows.method == method)]
-    return part.pivot_table(index="seed", columns="repetition", values="ns").dropna(axis=1)
+def places_of(rows):
+    """The columns that tell cells apart."""
+    return BOX_PLACES if "set" in rows else PLACES
+
+
+def times(rows, place, method, column="ns"):
+    """Nanoseconds: a row for each seed, a column for each repetition."""
+    names = places_of(rows)
+    part = rows[(rows[names] == pd.Series(dict(zip(names, place)))).all(axis=1) & (rows.method == method)]
+    return part.pivot_table(index="seed", columns="repetition", values=column).dropna(axis=1)
 
 
 def mean_time(table):
@@ -54,18 +76,18 @@ def ratio(theirs, ours):
     return mean_time(theirs) / mean_time(ours), low, high
 
 
-def tournament(rows, ours, theirs):
-    """One row a cell: our nanoseconds a pair, who is the fastest of `theirs`, and how many times as long that takes."""
-    lines = []
-    for place in rows[PLACES].drop_duplicates().itertuples(index=False, name=None):
-        table = times(rows, place, ours)
-        others = {method: t for method in theirs if (t := times(rows, place, method)).size}
+def tournament(rows, ours, theirs, column="ns"):
+    """One row a cell: our nanoseconds, who is the fastest of `theirs`, and how many times as long that takes."""
+    lines, names = [], places_of(rows)
+    for place in rows[names].drop_duplicates().itertuples(index=False, name=None):
+        table = times(rows, place, ours, column)
+        others = {method: t for method in theirs if (t := times(rows, place, method, column)).size}
         if not table.size or not others:
             continue
         mean = {method: mean_time(t.to_numpy()) for method, t in others.items()}
         fastest = min(mean, key=mean.get)
         lines.append((*place, mean_time(table.to_numpy()), fastest, mean[fastest], *ratio(others[fastest], table)))
-    return pd.DataFrame(lines, columns=[*PLACES, "ours_ns", "fastest", "fastest_ns", "ratio", "low", "high"])
+    return pd.DataFrame(lines, columns=[*names, "ours_ns", "fastest", "fastest_ns", "ratio", "low", "high"])
 
 
 def main():
@@ -74,14 +96,15 @@ def main():
     rows = read(parser.parse_args().record)
     peers = list(dict.fromkeys(rows[rows.peer != ""].method))
     coherent = [method for method in peers if "coherent" in method]
+    fresh = [method for method in peers if method not in coherent]
+    measures = {"ns": "steady state", "cold_ns": "first frame", "tail_ns": "the slowest frame in a hundred"}
     for ours in dict.fromkeys(rows[rows.peer == ""].method):
-        fresh = [method for method in peers if method not in coherent]
-        print(f"{ours}, beside {', '.join(fresh)}:")
-        print(tournament(rows, ours, fresh).round(2).to_string(index=False))
-        if coherent:
-            print(f"\n{ours}, beside {', '.join(coherent)}:")
-            print(tournament(rows, ours, coherent).round(2).to_string(index=False))
-        print()
+        for column, name in measures.items():
+            for theirs in (fresh, coherent):
+                table = tournament(rows, ours, theirs, column)
+                if len(table) and rows[column].notna().any():
+                    print(f"{ours}, beside {', '.join(theirs)}; {name}:")
+                    print(table.round(2).to_string(index=False), "\n")
 
 
 if __name__ == "__main__":

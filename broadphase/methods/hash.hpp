@@ -20,7 +20,7 @@ class Hash {
   static constexpr std::string_view description =
       "hashed voxels of average size, each scanned along x";
 
-  explicit Hash(const MethodSettings&) : sorted_(Coherence::off) {}
+  explicit Hash(const MethodSettings& settings) : sorted_(Coherence::off, settings.sort) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {
     pairs_.clear();

@@ -23,7 +23,7 @@ class SortAndSweep {
       "sorted along one axis, swept with vector comparisons";
 
   explicit SortAndSweep(const MethodSettings& settings)
-      : coherence_(settings.coherence), sorted_(settings.coherence) {}
+      : coherence_(settings.coherence), sorted_(settings.coherence, settings.sort) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {
     if (coherence_ == Coherence::off || boxes.size() != count_) axis_ = sparsest_axis(boxes);

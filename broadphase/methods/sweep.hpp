@@ -16,7 +16,7 @@ class Sweep {
  public:
   using Scalar = T;
 
-  explicit Sweep(const MethodSettings& settings) : ends_(settings.coherence) {}
+  explicit Sweep(const MethodSettings& settings) : ends_(settings.coherence, settings.sort) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {
     pairs_.clear();

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The boxes in the order of one coordinate. Without coherence a radix sort, O(n); with it the
-/// order of the last frame repaired by insertion sort, O(n + swaps) (BibTeX: cohen1995icollide),
-/// given up for the radix sort once the swaps cost more than that.
+/// The boxes in the order of one coordinate. Without coherence a sort from scratch, by radix or by
+/// comparison (see Sort); with it the order of the last frame repaired by insertion sort,
+/// O(n + swaps) (BibTeX: cohen1995icollide), given up for the other sort once the swaps cost more
+/// than that.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "broadphase/settings.hpp"
@@ -17,9 +19,10 @@ class SortedEnds {
   using Key = decltype(sort_key(T{}));
   using Item = Keyed<Key>;
 
-  explicit SortedEnds(Coherence coherence) : coherence_(coherence) {}
+  SortedEnds(Coherence coherence, Sort sort) : coherence_(coherence), sort_(sort) {}
 
-  /// Sorts 0 .. count-1 by `coordinate(k)`; equal ones stay in the order they had.
+  /// Sorts 0 .. count-1 by `coordinate(k)`; equal ones stay in the order they had, or, after a sort
+  /// by comparison, stand by their numbers.
   template <class Coordinate>
   std::span<const Item> operator()(std::uint32_t count, Coordinate&& coordinate) {
     const bool repair = coherence_ == Coherence::on && items_.size() == count;
@@ -28,13 +31,20 @@ class SortedEnds {
       for (std::uint32_t k = 0; k < count; ++k) items_[k].id = k;
     }
     for (auto& item : items_) item.key = sort_key(coordinate(item.id));
-    if (!repair || !repaired()) radix_sort(items_, spare_);
+    if (!repair || !repaired()) sort();
     return items_;
   }
 
   std::size_t bytes() const { return (items_.capacity() + spare_.capacity()) * sizeof(Item); }
 
  private:
+  void sort() {
+    if (sort_ == Sort::radix) return radix_sort(items_, spare_);
+    std::sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) {
+      return a.key < b.key || (a.key == b.key && a.id < b.id);
+    });
+  }
+
   /// False, with the items in some order, once there were sixteen swaps an item.
   bool repaired() {
     std::size_t swaps_left = 16 * items_.size();
@@ -55,6 +65,7 @@ class SortedEnds {
   }
 
   Coherence coherence_;
+  Sort sort_;
   std::vector<Item> items_, spare_;
 };
 

@@ -177,8 +177,8 @@ class Reader {
     std::set<std::string> result;
     for (auto&& each : *list) {
       const auto name = each.value_exact<std::string>();
-      if (!name || (*name != "coherence" && *name != "best rebuilds"))
-        fail(each.source(), "measures: there are coherence, best rebuilds");
+      if (!name || (*name != "coherence" && *name != "best rebuilds" && *name != "frames"))
+        fail(each.source(), "measures: there are best rebuilds, coherence, frames");
       result.insert(*name);
     }
     return result;

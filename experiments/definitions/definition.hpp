@@ -6,10 +6,11 @@
 ///     description = "one line"
 ///     repetitions = 3                # timed runs of each cell, interleaved
 ///     measures = ["coherence", "best rebuilds"]   # beside the rest, see coherence.hpp
+///     measures = ["frames"]          # times of single frames: p99_ns
 ///
-///     [parameters]                   # see `bvlab list parameters`; what is not set has its default
-///     mesh = "bunny"
-///     configuration = "recommended"  # sets volume, tree, strategy, build, fit and leaf_size
+///     [parameters]                   # see `bvlab list parameters`; what is not set has its
+///     default mesh = "bunny" configuration = "recommended"  # sets volume, tree, strategy, build,
+///     fit and leaf_size
 ///
 ///     [[axis]]                       # one parameter
 ///     name = "seed"

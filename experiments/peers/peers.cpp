@@ -20,8 +20,10 @@ namespace {
 constexpr std::string_view all_three = "touching contacts distance", yes_or_no = "touching",
                            meeting = "touching contacts";
 
-// The libraries are Debian's, compiled for plain x86-64 (-O2); what they have in headers is
-// compiled as we are. Settings are the libraries' own, but for what a description names.
+// The libraries are Debian's, compiled for plain x86-64 (-O2), or those of BVLAB_PEERS, compiled as
+// we are; a record's machine.json says which. What they have in headers is compiled as we are, but
+// for FCL's, which are as the library is. Settings are the libraries' own, but for what a
+// description names.
 constexpr Peer list[] = {
 #if BVLAB_FCL
     {"fcl-obb", "FCL 0.7: oriented boxes, recursive", meeting, replay_fcl<FclModel::obb>},

@@ -84,11 +84,17 @@ class PeerPlay {
   void each_pair(const Ask& ask) {
     std::vector<Pose> poses(trace_.objects);
     start_ = Clock::now();
+    double last = 0;
     for (std::size_t frame = 0; frame < trace_.frames; ++frame) {
       trace_.poses(frame, poses);
       for (std::size_t i = 0; i < poses.size(); ++i) world_.place(i, poses[i]);
       for (const auto& pair : pairs_) ask(frame, pair);
       if (frame == 0) result_.first_seconds = since_start();
+      if (options_.keep_frame_seconds) {
+        const double now = since_start();
+        result_.frame_seconds.push_back(now - last);
+        last = now;
+      }
     }
     result_.seconds = since_start();
   }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// FCL's pipeline: its dynamic tree of boxes in front, updated for the bodies that moved, and its
-/// trees of oriented boxes behind. It keeps no answers, so every pair is asked in every frame.
+/// trees of oriented boxes behind. It keeps no answers, so every pair is asked in every frame; or
+/// its user keeps them, as its callback lets one: then only pairs of which a body moved are asked.
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/collision_object.h>
+
+#include <unordered_set>
 
 #include "experiments/peers/world_peers.hpp"
 
@@ -13,6 +16,7 @@ namespace {
 
 using Object = fcl::CollisionObjectd;
 
+template <FclPairs which>
 class FclWorld final : public WorldEngine {
  public:
   FclWorld(std::span<const TriangleMesh> meshes, std::size_t objects) {
@@ -30,12 +34,14 @@ class FclWorld final : public WorldEngine {
       objects_.push_back(std::make_unique<Object>(models[i % models.size()]));
       objects_[i]->setUserData(reinterpret_cast<void*>(i));
     }
+    has_moved_.resize(objects, true);
   }
 
   void move(std::uint32_t object, const Pose& pose) override {
     objects_[object]->setTransform(pose.rotation, pose.translation);
     objects_[object]->computeAABB();
     moved_.push_back(objects_[object].get());
+    has_moved_[object] = true;
   }
 
   void update() override {
@@ -49,21 +55,33 @@ class FclWorld final : public WorldEngine {
       registered_ = true;
     }
     moved_.clear();
+    if constexpr (which == FclPairs::moved) {
+      touched_.clear();
+      for (const auto& pair : touching_) touched_.insert(key(pair));
+    }
     touching_.clear();
     manager_.collide(this, [](Object* a, Object* b, void* self) {
       static_cast<FclWorld*>(self)->ask(a, b);
       return false;
     });
+    has_moved_.assign(has_moved_.size(), false);
   }
 
   std::span<const ObjectPair> touching() override { return touching_; }
 
  private:
+  static std::uint64_t key(const ObjectPair& pair) { return std::uint64_t{pair.i} << 32 | pair.j; }
+
   void ask(Object* a, Object* b) {
+    const auto [i, j] = std::minmax({index(a), index(b)});
+    if constexpr (which == FclPairs::moved)
+      if (!has_moved_[i] && !has_moved_[j]) {
+        if (touched_.contains(key({i, j}))) touching_.push_back({i, j});
+        return;
+      }
     const fcl::CollisionRequestd request(1, false);
     fcl::CollisionResultd result;
     if (fcl::collide(a, b, request, result) == 0) return;
-    const auto [i, j] = std::minmax({index(a), index(b)});
     touching_.push_back({i, j});
   }
   static std::uint32_t index(const Object* object) {
@@ -74,14 +92,21 @@ class FclWorld final : public WorldEngine {
   fcl::DynamicAABBTreeCollisionManagerd manager_;
   std::vector<Object*> moved_;
   std::vector<ObjectPair> touching_;
+  std::vector<bool> has_moved_;
+  std::unordered_set<std::uint64_t> touched_;  ///< in the last frame
   bool registered_ = false;
 };
 
 }  // namespace
 
+template <FclPairs which>
 std::unique_ptr<WorldEngine> make_fcl_world(std::span<const TriangleMesh> meshes,
                                             std::size_t objects) {
-  return std::make_unique<FclWorld>(meshes, objects);
+  return std::make_unique<FclWorld<which>>(meshes, objects);
 }
+template std::unique_ptr<WorldEngine> make_fcl_world<FclPairs::all>(std::span<const TriangleMesh>,
+                                                                    std::size_t);
+template std::unique_ptr<WorldEngine> make_fcl_world<FclPairs::moved>(std::span<const TriangleMesh>,
+                                                                      std::size_t);
 
 }  // namespace bvlab

@@ -14,7 +14,8 @@ struct Entry {
 
 const std::vector<Entry> list {
 #if BVLAB_FCL
-  {"fcl-world", make_fcl_world},  // dynamic tree of boxes, OBB trees
+  {"fcl-world", make_fcl_world<FclPairs::all>},              // dynamic tree of boxes, OBB trees
+      {"fcl-world-moved", make_fcl_world<FclPairs::moved>},  // of pairs at rest the last answer
 #endif
 #if BVLAB_BULLET
       {"bullet-world", make_bullet_world},  // dynamic trees of boxes, GImpact

@@ -21,6 +21,9 @@ bool is_world_peer(std::string_view name);
 std::string world_peer_names();
 
 // One translation unit a library.
+/// Which pairs that are near FCL is asked about in a frame: all, or those of which a body moved.
+enum class FclPairs { all, moved };
+template <FclPairs which>
 std::unique_ptr<WorldEngine> make_fcl_world(std::span<const TriangleMesh> meshes,
                                             std::size_t objects);
 std::unique_ptr<WorldEngine> make_bullet_world(std::span<const TriangleMesh> meshes,

@@ -41,6 +41,10 @@ function(bvlab_entry out type header)
   string(REGEX REPLACE "<.*" "" id "${type}")
   string(REGEX REPLACE "([a-z0-9])([A-Z])" "\\1_\\2" id "${id}")
   string(TOLOWER "${id}" id)
+  # Over float is the rule; the same over double is another entry.
+  if(type MATCHES "<double>")
+    string(APPEND id "_double")
+  endif()
   set(${out} "${type}|${id}|${header}" PARENT_SCOPE)
 endfunction()
 

@@ -9,15 +9,15 @@
 #include <memory>
 
 #include "experiments/replay/any_bodies.hpp"
-#include "experiments/replay/box_methods.hpp"
 #include "experiments/replay/play_entry.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/replay_shares.hpp"
 #include "experiments/replay/strategy_text.hpp"
+#include "experiments/replay/touching_world.hpp"
 #include "experiments/replay/triangle_test.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
-#include "traversal/world_of.hpp"
+#include "traversal/strategy_pairs.hpp"
 
 namespace bvlab {
 
@@ -128,6 +128,8 @@ class ShareOf final : public Share {
   void play() override {
     const auto start = Clock::now();
     std::vector<Pose> poses(trace_.objects);
+    auto last = start;
+    if (options_.keep_frame_seconds) frame_seconds_.reserve(trace_.frames);
     for (std::size_t frame = 0; frame < trace_.frames; ++frame) {
       trace_.poses(frame, poses);
       engine_.frame(
@@ -143,6 +145,11 @@ class ShareOf final : public Share {
         result_.series[frame] = {counter_.n_u, counter_.n_v, counter_.n_p, front, answers_.hits()};
       if (options_.see_front) see_fronts(frame);
       if (frame == 0) first_seconds_ = seconds_since(start);
+      if (options_.keep_frame_seconds) {
+        const auto now = Clock::now();
+        frame_seconds_.push_back(std::chrono::duration<double>(now - last).count());
+        last = now;
+      }
     }
   }
 
@@ -152,6 +159,9 @@ class ShareOf final : public Share {
     result.considered += counter_.considered;
     result.front += entries_;
     result.hits += answers_.hits();
+    result.frame_seconds.resize(frame_seconds_.size());
+    for (std::size_t frame = 0; frame < frame_seconds_.size(); ++frame)
+      result.frame_seconds[frame] = std::max(result.frame_seconds[frame], frame_seconds_[frame]);
     answers_.hand_over(result);
   }
 
@@ -170,12 +180,32 @@ class ShareOf final : public Share {
   Answers<Query> answers_;
   Counter counter_;
   double entries_ = 0, first_seconds_ = 0;
+  std::vector<double> frame_seconds_;
 };
 
-template <class Query, class Counter>
-AnyBodies<Query, Counter> bodies_of(const VolumeEntry& volume, const AnyHierarchies& hierarchies,
-                                    std::size_t objects) {
-  return AnyBodies<Query, Counter>(loops_of<Query>(volume.name).bodies(hierarchies, objects));
+/// All the fronts that a strategy may start from.
+template <class Strategy, class List = Fronts>
+struct FrontsOf {
+  using type = Fronts;
+};
+template <class Strategy, class... Shared>
+requires requires { typename Strategy::OwnFronts; }
+struct FrontsOf<Strategy, TypeList<Shared...>> {
+  template <class... Own>
+  static TypeList<Shared..., Own...> with(TypeList<Own...>);
+  using type = decltype(with(typename Strategy::OwnFronts{}));
+};
+
+template <class Strategy, class Query, class Counter>
+using BodiesFor = AnyBodies<Query, Counter, typename FrontsOf<Strategy>::type>;
+
+template <class Strategy, class Query, class Counter>
+BodiesFor<Strategy, Query, Counter> bodies_for(const VolumeEntry& volume,
+                                               const AnyHierarchies& hierarchies,
+                                               std::size_t objects) {
+  return BodiesFor<Strategy, Query, Counter>(
+      loops_of<Query>(volume.name).bodies(hierarchies, objects),
+      [&](const std::type_info& front) { return own_loop<Query>(volume.name, front); });
 }
 
 /// `engine` says, for either way to count, how one is made over some pairs.
@@ -206,72 +236,28 @@ void play(const VolumeEntry& volume, const AnyHierarchies& hierarchies, const Tr
   const auto strategy = made_from<Strategy>(variant.strategy);
   const auto engine = [&]<class Counter>(std::type_identity<Counter>) {
     return [&](std::vector<ObjectPair> pairs) {
-      return AllPairsOf<AnyBodies<Query, Counter>, Strategy>(
-          bodies_of<Query, Counter>(volume, hierarchies, trace.objects), std::move(pairs),
-          strategy);
+      return AllPairsOf<BodiesFor<Strategy, Query, Counter>, Strategy>(
+          bodies_for<Strategy, Query, Counter>(volume, hierarchies, trace.objects),
+          std::move(pairs), strategy);
     };
   };
   play_over<Query>(engine, trace, variant, options, result);
 }
 
-/// The broad phase of whole scenes, compiled once for all strategies.
-class NearBoxes {
- public:
-  explicit NearBoxes(const MethodSettings& settings)
-      : method_(make_method<float>("auto", settings)) {}
-  std::span<const Pair> overlapping(Boxes<float> boxes) { return method_->overlapping(boxes); }
-  PairChanges changes() const { return method_->changes(); }
-
- private:
-  std::unique_ptr<AnyMethod<float>> method_;
-};
-
-/// A whole scene that says which pairs touch.
-template <class Strategy, class Query>
-class TouchingWorld final : public WorldEngine {
- public:
-  TouchingWorld(const VolumeEntry& volume, std::unique_ptr<AnyHierarchies> hierarchies,
-                std::size_t objects, const Variant& variant)
-      : hierarchies_(std::move(hierarchies)),
-        world_(bodies_of<Query, NotCounting>(volume, *hierarchies_, objects),
-               made_from<Strategy>(variant.strategy)),
-        how_{triangle_test(variant.precision), 0} {}
-
-  void move(std::uint32_t object, const Pose& pose) override { world_.move(object, pose); }
-
-  void update() override {
-    NotCounting counter;
-    world_.update(
-        counter, [&](const ObjectPair&) { return Query::asked(how_); },
-        [&](std::uint32_t slot, const ObjectPair& pair, const Query& query) {
-          touching_.put(slot, pair, query.answer());
-        },
-        [&](std::uint32_t slot) { touching_.drop(slot); });
-  }
-
-  std::span<const ObjectPair> touching() override { return touching_.pairs(); }
-  std::size_t near() const override { return world_.near(); }
-  std::size_t asked() const override { return world_.asked(); }
-
- private:
-  std::unique_ptr<AnyHierarchies> hierarchies_;
-  WorldOf<AnyBodies<Query, NotCounting>, Strategy, NearBoxes> world_;
-  TouchingPairs touching_;
-  QueryOptions how_;
-};
-
 /// Null where the query is no matter of yes or no.
 template <class Strategy, class Query>
 std::unique_ptr<WorldEngine> world(const VolumeEntry& volume,
                                    std::unique_ptr<AnyHierarchies> hierarchies, std::size_t objects,
-                                   const Variant& variant) {
-  if constexpr (requires(const Query& query) {
-                  { query.answer() } -> std::same_as<bool>;
-                })
-    return std::make_unique<TouchingWorld<Strategy, Query>>(volume, std::move(hierarchies), objects,
-                                                            variant);
-  else
+                                   const Variant& variant, int threads) {
+  using Pairs = StrategyPairs<BodiesFor<Strategy, Query, NotCounting>, Strategy>;
+  if constexpr (SaysYesOrNo<Query>) {
+    Pairs pairs(bodies_for<Strategy, Query, NotCounting>(volume, *hierarchies, objects),
+                made_from<Strategy>(variant.strategy));
+    return std::make_unique<TouchingWorld<Pairs, Query, std::unique_ptr<AnyHierarchies>>>(
+        std::move(hierarchies), std::move(pairs), variant, threads);
+  } else {
     return nullptr;
+  }
 }
 
 }  // namespace detail

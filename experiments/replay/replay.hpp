@@ -33,8 +33,9 @@ struct Variant {
 struct ReplayOptions {
   Count count = Count::off;
   unsigned threads = 1;
-  bool keep_answers = true;  ///< fill `touching`, `contacts` or `distances`
-  bool keep_series = false;  ///< fill `series`
+  bool keep_answers = true;         ///< fill `touching`, `contacts` or `distances`
+  bool keep_series = false;         ///< fill `series`
+  bool keep_frame_seconds = false;  ///< fill `frame_seconds`: a reading of the clock in each frame
   /// Called after every frame, for every pair, with what the strategy keeps of it, if it does.
   std::function<void(std::size_t frame, std::size_t pair, std::span<const NodePair>)> see_front;
 };
@@ -56,6 +57,7 @@ struct ReplayResult {
   std::vector<double> distances;       ///< (frames, pairs)
   std::vector<std::array<std::uint32_t, 5>> contacts;  ///< frame, i, j, triangle of i, of j; sorted
   std::vector<FrameCounts> series;                     ///< one for each frame
+  std::vector<double> frame_seconds;  ///< of each frame, where asked for; of threads the longest
 };
 
 /// Object i uses mesh i mod meshes.size(). Throws Unusable for unknown names.

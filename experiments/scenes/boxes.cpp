@@ -91,7 +91,8 @@ std::vector<std::string> box_set_names() {
           "mixed",  "elongated",     "flock",    "pile",          "triangles"};
 }
 std::vector<std::string> box_motion_names() {
-  return {"still", "drift", "rigid", "breathe", "part", "teleport"};
+  return {"still",      "drift",   "rigid",  "breathe", "part",
+          "accelerate", "reverse", "jitter", "teleport"};
 }
 
 std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count, unsigned seed) {
@@ -142,11 +143,11 @@ BoxMotion::BoxMotion(std::string motion, double displacement, const std::string&
       displacement_(static_cast<float>(displacement)),
       start_(boxes),
       boxes_(std::move(boxes)),
-      random_(seed + 1) {
+      random_(seed + 1),
+      jitter_(seed + 3) {
   if (const auto known = box_motion_names();
       std::find(known.begin(), known.end(), motion_) == known.end())
-    throw Unusable("motion " + motion_ +
-                   ": unknown; there are still, drift, rigid, breathe, part, teleport");
+    throw Unusable("motion " + motion_ + ": unknown");
   Maker make(seed + 2);
   const std::size_t every = motion_ == "part" ? 100 : set == "pile" && motion_ == "drift" ? 50 : 1;
   for (std::size_t k = 0; k < boxes_.size(); ++k) {
@@ -162,8 +163,20 @@ void BoxMotion::step() {
   ++frame_;
   if (motion_ == "still") return;
   if (motion_ == "teleport") return std::shuffle(boxes_.begin(), boxes_.end(), random_);
+  constexpr int frames_to_speed = 8, frames_to_reversal = 4;
+  // From rest to a steady speed and beyond; and to and fro.
+  const float speed = motion_ == "accelerate" ? static_cast<float>(frame_) / frames_to_speed
+                      : motion_ == "reverse" && (frame_ - 1) / frames_to_reversal % 2 == 1 ? -1.0f
+                                                                                           : 1.0f;
   for (const std::size_t k : movers_)
-    if (motion_ == "breathe") {
+    if (motion_ == "jitter") {
+      for (int axis = 0; axis < 3; ++axis) {
+        const float extent = start_[k].hi[axis] - start_[k].lo[axis];
+        const float to_one = static_cast<float>(jitter_() >> 8) * 0x1p-24f;
+        const float by = (2 * to_one - 1) * displacement_ * extent;
+        boxes_[k].lo[axis] = start_[k].lo[axis] + by, boxes_[k].hi[axis] = start_[k].hi[axis] + by;
+      }
+    } else if (motion_ == "breathe") {
       const std::size_t axis = k % 3;
       Box<float>& box = boxes_[k];
       const float extent = start_[k].hi[axis] - start_[k].lo[axis];
@@ -171,15 +184,15 @@ void BoxMotion::step() {
           start_[k].hi[axis] +
           extent * 0.5f * std::abs(std::sin(static_cast<float>(frame_) * displacement_ * 2));
     } else {
-      drift(k);
+      drift(k, speed);
     }
 }
 
-void BoxMotion::drift(std::size_t k) {
+void BoxMotion::drift(std::size_t k, float speed) {
   Box<float>& box = boxes_[k];
   for (int axis = 0; axis < 3; ++axis) {
     const float extent = start_[k].hi[axis] - start_[k].lo[axis];
-    float by = velocity_[k][static_cast<std::size_t>(axis)] * displacement_ * extent;
+    float by = velocity_[k][static_cast<std::size_t>(axis)] * displacement_ * extent * speed;
     if (std::abs(box.lo[axis] + by - start_[k].lo[axis]) > 5 * extent)
       velocity_[k][static_cast<std::size_t>(axis)] *= -1, by = -by;
     box.lo[axis] += by;

@@ -29,6 +29,10 @@ std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count,
 ///   rigid     all by the same translation;
 ///   breathe   boxes grow and shrink along one axis each;
 ///   part      one box in a hundred drifts;
+///   accelerate  as drift, from rest, faster by an eighth of that in every frame;
+///   reverse   as drift, but all turn round after every fourth frame;
+///   jitter    every box stands somewhere within `displacement` of its size from its start, anew in
+///             every frame;
 ///   teleport  every box takes the place of another.
 class BoxMotion {
  public:
@@ -38,14 +42,15 @@ class BoxMotion {
   void step();
 
  private:
-  void drift(std::size_t k);
+  /// With `speed` times the velocity it has.
+  void drift(std::size_t k, float speed);
 
   std::string motion_;
   float displacement_;
   std::vector<Box<float>> start_, boxes_;
   std::vector<std::array<float, 3>> velocity_;
   std::vector<std::size_t> movers_;
-  std::mt19937 random_;
+  std::mt19937 random_, jitter_;
   int frame_ = 0;
 };
 

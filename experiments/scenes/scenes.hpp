@@ -5,11 +5,12 @@
 #include "experiments/scenes/pile.hpp"
 #include "experiments/scenes/planner.hpp"
 #include "experiments/scenes/random_walk.hpp"
+#include "experiments/scenes/recorded.hpp"
 #include "experiments/scenes/tori.hpp"
 #include "hierarchies/geometry/type_list.hpp"
 
 namespace bvlab {
 
-using Scenes = TypeList<RandomWalk, Planner, Pile, Tori>;
+using Scenes = TypeList<RandomWalk, Planner, Pile, Tori, Recorded>;
 
 }  // namespace bvlab

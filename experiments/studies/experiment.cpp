@@ -16,6 +16,8 @@
 #include "experiments/replay/coherence.hpp"
 #include "experiments/replay/replay.hpp"
 #include "experiments/studies/cells.hpp"
+#include "experiments/studies/clocks.hpp"
+#include "experiments/studies/percentile.hpp"
 #include "experiments/studies/side_by_side.hpp"
 
 namespace bvlab {
@@ -23,6 +25,19 @@ namespace {
 
 std::string nanoseconds(double seconds) {
   return std::to_string(static_cast<std::int64_t>(seconds * 1e9 + 0.5));
+}
+
+std::string three_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", value);
+  return text;
+}
+
+/// Of all frames but the first; empty where frames were not timed.
+std::string p99(const ReplayResult& result) {
+  const auto& all = result.frame_seconds;
+  if (all.size() < 2) return {};
+  return nanoseconds(percentile({all.begin() + 1, all.end()}, 0.99));
 }
 
 /// Labels and parameters: what a row begins with.
@@ -73,7 +88,8 @@ class Experiment {
         cells_(cells_with_answers(definition)),
         rows_(record / (definition.name + ".csv"),
               columns({"repetition", "time_ns", "first_ns", "build_ns", "pairs", "hits",
-                       "differing", "n_u", "n_v", "n_p", "front", "node", "alone"})),
+                       "differing", "n_u", "n_v", "n_p", "front", "node", "alone",
+                       "wall_per_processor", "p99_ns"})),
         frames_(record / (definition.name + ".frames.csv"),
                 axis_columns({"frame", "n_u", "n_v", "n_p", "front", "hits"})),
         disagreements_(record / (definition.name + ".disagreements.csv"),
@@ -113,6 +129,11 @@ class Experiment {
 
  private:
   bool is_timed() const { return options_.measured == Measured::counts_and_times; }
+
+  bool measures_coherence() const {
+    return definition_.measures.contains("coherence") ||
+           definition_.measures.contains("best rebuilds");
+  }
 
   /// Times that are absent would pass for finished.
   void check_measured(const std::filesystem::path& record) const {
@@ -171,7 +192,7 @@ class Experiment {
     if (found.cells.empty()) return found;
     const Prepared ready = prepared(*found.cells[0]);
     count(ready, found, threads);
-    if (!definition_.measures.empty()) measure_coherence(ready, found, threads);
+    if (measures_coherence()) measure_coherence(ready, found, threads);
     if (is_timed())
       time(ready, found, first_ + trace);
     else
@@ -240,18 +261,22 @@ class Experiment {
   void time(const Prepared& ready, Found& found, std::size_t trace) {
     ReplayOptions options;
     options.keep_answers = false;
+    options.keep_frame_seconds = definition_.measures.contains("frames");
     std::mt19937_64 random(20260101 + trace);
     std::vector<std::size_t> order(found.cells.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     for (unsigned repetition = 0; repetition < definition_.repetitions; ++repetition) {
       std::shuffle(order.begin(), order.end(), random);
       for (const auto i : order) {
-        const ReplayResult timed = answered(ready, *found.cells[i], options);
-        found.rows.push_back(row_of(ready, found, i, repetition, &timed));
+        const auto run = undisturbed([&] { return answered(ready, *found.cells[i], options); });
+        Row row = row_of(ready, found, i, repetition, &run.result);
+        row[row.size() - 2] = three_digits(run.wall_per_processor);
+        row.back() = p99(run.result);
+        found.rows.push_back(std::move(row));
       }
     }
     const std::string alone = neighbours_.alone();
-    for (Row& row : found.rows) row.back() = alone;
+    for (Row& row : found.rows) row[row.size() - 3] = alone;
   }
 
   /// Without times where nothing was timed.
@@ -267,13 +292,13 @@ class Experiment {
     const auto time = [&](double ReplayResult::*seconds) {
       return timed ? nanoseconds(timed->*seconds) : std::string();
     };
-    for (auto& field :
-         {std::to_string(repetition), time(&ReplayResult::seconds),
-          time(&ReplayResult::first_seconds), time(&ReplayResult::build_seconds),
-          std::to_string(ready.trace.pairs() * ready.trace.frames),
-          std::to_string(timed ? timed->hits : count.hits), std::to_string(found.differing[i]),
-          counts(count.n_u), counts(count.n_v), counts(count.n_p),
-          ours ? std::to_string(count.front) : std::string(), node_, std::string()})
+    for (auto& field : {std::to_string(repetition), time(&ReplayResult::seconds),
+                        time(&ReplayResult::first_seconds), time(&ReplayResult::build_seconds),
+                        std::to_string(ready.trace.pairs() * ready.trace.frames),
+                        std::to_string(timed ? timed->hits : count.hits),
+                        std::to_string(found.differing[i]), counts(count.n_u), counts(count.n_v),
+                        counts(count.n_p), ours ? std::to_string(count.front) : std::string(),
+                        node_, std::string(), std::string(), std::string()})
       row.push_back(field);
     return row;
   }
@@ -287,7 +312,7 @@ class Experiment {
       coherence_.add(std::move(row));
     }
     for (auto& row : found.rows) rows_.add(std::move(row));
-    if (!definition_.measures.empty()) coherence_.save();
+    if (measures_coherence()) coherence_.save();
     if (definition_.has_series) frames_.save();
     if (!disagreements_.rows().empty()) disagreements_.save();
     rows_.save();

@@ -8,6 +8,7 @@
 #include "experiments/peers/triangle_oracle.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
+#include "experiments/scenes/posed_triangles.hpp"
 #include "traversal/primitives/precisions.hpp"
 
 namespace bvlab {
@@ -260,15 +261,6 @@ struct Box {
     return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
   }
 };
-
-std::vector<Triangle> posed_triangles(const TriangleMesh& mesh, const Pose& pose) {
-  std::vector<Triangle> triangles;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    triangles.push_back(mesh.corners(t));
-    for (auto& corner : triangles.back()) corner = pose(corner);
-  }
-  return triangles;
-}
 
 bool share_a_point(const std::vector<Triangle>& a, const std::vector<Triangle>& b) {
   std::vector<Box> boxes(b.begin(), b.end());

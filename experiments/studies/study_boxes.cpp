@@ -3,11 +3,10 @@
 /// and displacement all variants run the same frames, in an order drawn anew for each repetition,
 /// and every frame's pair set is compared with the reference's by count and by a sum of hashes.
 /// A frame's time is the mean over all but the first, since some methods save work up for later
-/// frames. Processor time, which neighbours on the machine disturb less, stands beside that of the
-/// wall clock; `bytes` is the heap that a method holds after its last frame.
+/// frames; beside it stand the median and the 99th percentile. A run that something else disturbed
+/// is made again. Processor time, which neighbours on the machine disturb less, stands beside that
+/// of the wall clock; `bytes` is the heap that a method holds after its last frame.
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 #include <random>
 #include <set>
 
@@ -16,6 +15,8 @@
 #include "experiments/peers/boxes_peers.hpp"
 #include "experiments/replay/box_methods.hpp"
 #include "experiments/scenes/boxes.hpp"
+#include "experiments/studies/clocks.hpp"
+#include "experiments/studies/percentile.hpp"
 #include "experiments/studies/study.hpp"
 
 namespace bvlab {
@@ -27,10 +28,13 @@ struct Case {
   std::string set, motion;
   std::size_t count;
   double displacement;
-  Row key() const { return {set, std::to_string(count), motion, text_of(displacement)}; }
+  unsigned seed;
+  Row key() const {
+    return {set, std::to_string(count), motion, text_of(displacement), std::to_string(seed)};
+  }
 };
 struct Variant {
-  std::string method, coherent, changes;
+  std::string method, coherent, changes, sort;
   int threads;
 };
 struct Answer {
@@ -39,7 +43,7 @@ struct Answer {
 };
 struct Outcome {
   std::vector<Answer> answers;
-  double first_ns = 0, frame_ns = 0, middle_ns = 0, wall_ns = 0, events = 0;
+  double first_ns = 0, frame_ns = 0, middle_ns = 0, p99_ns = 0, wall_ns = 0, events = 0;
   std::size_t bytes = 0;
   bool slow = false;
 };
@@ -50,7 +54,6 @@ struct Settings {
   std::size_t reference = 0;
   int frames = 0;
   double limit_ns = 0;
-  unsigned seed = 1;
 };
 
 Settings settings_of(const StudyDefinition& definition) {
@@ -76,12 +79,16 @@ Settings settings_of(const StudyDefinition& definition) {
       throw Unusable(definition.file, "displacements must lie between 0 and 1e6");
   const auto motions = definition.strings("motions", {"drift"});
   for (const auto& motion : motions) known("motions", motion, box_motion_names());
+  std::vector<unsigned> seeds;
+  for (const double seed : definition.numbers("seed", {1}))
+    seeds.push_back(static_cast<unsigned>(whole("seed", seed, 1e9)));
   for (const auto& set : definition.strings("sets", box_set_names())) {
     known("sets", set, box_set_names());
     for (const double count : counts)
       for (const auto& motion : motions)
         for (const double displacement : displacements)
-          s.cases.push_back({set, motion, whole("counts", count, 1e8), displacement});
+          for (const unsigned seed : seeds)
+            s.cases.push_back({set, motion, whole("counts", count, 1e8), displacement, seed});
   }
   const auto coherent = definition.strings("coherent", {"on"});
   for (const auto& each : coherent) known("coherent", each, {"on", "off"});
@@ -89,17 +96,21 @@ Settings settings_of(const StudyDefinition& definition) {
   for (const auto& each : changes) known("changes", each, {"on", "off"});
   std::vector<std::string> method_names;
   for (const auto* method : method_entries()) method_names.emplace_back(method->name);
+  const auto sorts = definition.strings("sorts", {"radix"});
+  for (const auto& each : sorts) known("sorts", each, {"radix", "comparison"});
   const auto threads = definition.numbers("threads", {1});
   for (const auto& method : definition.strings("methods", method_names)) {
     known("methods", method, method_names);
     for (const auto& c : coherent)
       for (const auto& reported : changes)
-        for (const double t : threads)
-          s.variants.push_back({method, c, reported, static_cast<int>(whole("threads", t, 1024))});
+        for (const auto& sort : sorts)
+          for (const double t : threads)
+            s.variants.push_back(
+                {method, c, reported, sort, static_cast<int>(whole("threads", t, 1024))});
   }
   for (const auto& peer : definition.strings("peers", {})) {
     known("peers", peer, box_peer_names());
-    s.variants.push_back({peer, "on", "off", peer == "cgal-parallel" ? 2 : 1});
+    s.variants.push_back({peer, "on", "off", "", peer == "cgal-parallel" ? 2 : 1});
   }
   const std::string reference = definition.strings("reference", {s.variants.back().method}).at(0);
   while (s.reference < s.variants.size() && s.variants[s.reference].method != reference)
@@ -108,21 +119,12 @@ Settings settings_of(const StudyDefinition& definition) {
     throw Unusable(definition.file, "reference: " + reference + " is not among methods and peers");
   s.frames = static_cast<int>(whole("frames", definition.number("frames", 10), 1e6));
   s.limit_ns = 1e9 * definition.number("seconds_a_frame", 1);
-  s.seed = static_cast<unsigned>(whole("seed", definition.number("seed", 1), 1e9));
   return s;
 }
 void check_settings(const StudyDefinition& definition) { settings_of(definition); }
 
-double processor_ns() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
-}
-double wall_ns() {
-  return std::chrono::duration<double, std::nano>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
+double processor_ns() { return 1e9 * processor_seconds(); }
+double wall_ns() { return 1e9 * wall_seconds(); }
 double mean(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value;
@@ -154,6 +156,7 @@ class Player {
     MethodSettings settings;
     settings.coherence = variant.coherent == "on" ? Coherence::on : Coherence::off;
     settings.changes = variant.changes == "on" ? Changes::reported : Changes::unreported;
+    settings.sort = variant.sort == "comparison" ? Sort::comparison : Sort::radix;
     settings.threads = variant.threads;
     method_ = make_method<float>(variant.method, settings);
   }
@@ -192,6 +195,7 @@ Outcome play(const Variant& variant, const Frames& frames, double limit_ns) {
   const std::size_t now = heap_bytes();
   outcome.bytes = now > heap ? now - heap : 0;
   outcome.frame_ns = mean(later), outcome.middle_ns = median(later);
+  outcome.p99_ns = percentile(later, 0.99);
   outcome.wall_ns = mean(wall), outcome.events = mean(events);
   return outcome;
 }
@@ -203,10 +207,11 @@ class BoxStudy {
       : settings_(settings_of(definition)),
         repetitions_(definition.repetitions),
         record_(definition, folder,
-                {"set", "count", "motion", "displacement", "boxes", "method", "coherent", "changes",
-                 "threads", "repetition", "frames", "overlaps", "events", "differing", "first_ns",
-                 "frame_ns", "middle_ns", "wall_ns", "bytes"},
-                4, progress) {}
+                {"set",       "count",    "motion",  "displacement", "seed",     "boxes",
+                 "method",    "coherent", "changes", "sort",         "threads",  "repetition",
+                 "frames",    "overlaps", "events",  "differing",    "first_ns", "frame_ns",
+                 "middle_ns", "p99_ns",   "wall_ns", "bytes"},
+                5, progress) {}
 
   void run() {
     std::size_t done = 0;
@@ -219,8 +224,7 @@ class BoxStudy {
  private:
   void run_case(const Case& c) {
     Frames frames;
-    BoxMotion motion(c.motion, c.displacement, c.set, make_box_set(c.set, c.count, settings_.seed),
-                     settings_.seed);
+    BoxMotion motion(c.motion, c.displacement, c.set, make_box_set(c.set, c.count, c.seed), c.seed);
     for (int f = 0; f < settings_.frames; ++f, motion.step()) frames.push_back(motion.boxes());
     std::vector<Answer> reference;
     for (unsigned repetition = 0; repetition < repetitions_; ++repetition) {
@@ -232,8 +236,9 @@ class BoxStudy {
         std::swap(*std::find(order.begin(), order.end(), settings_.reference), order[0]);
       for (const std::size_t k : order) {
         if (slow_.contains(slow_key(k, c)) && k != settings_.reference) continue;
-        const Outcome outcome = play(settings_.variants[k], frames,
-                                     k == settings_.reference ? 1e18 : settings_.limit_ns);
+        const double limit_ns = k == settings_.reference ? 1e18 : settings_.limit_ns;
+        const Outcome outcome =
+            undisturbed([&] { return play(settings_.variants[k], frames, limit_ns); }).result;
         if (outcome.slow) slow_.insert(slow_key(k, c));
         if (reference.empty()) reference = outcome.answers;
         add_row(c, k, repetition, frames, outcome, reference);
@@ -257,12 +262,12 @@ class BoxStudy {
     };
     Row row = c.key();
     for (auto& field :
-         {std::to_string(frames[0].size()), v.method, v.coherent, v.changes,
+         {std::to_string(frames[0].size()), v.method, v.coherent, v.changes, v.sort,
           std::to_string(v.threads), std::to_string(repetition),
           std::to_string(outcome.answers.size()), std::to_string(outcome.answers.back().pairs),
           whole(outcome.events), std::to_string(differing), whole(outcome.first_ns),
-          whole(outcome.frame_ns), whole(outcome.middle_ns), whole(outcome.wall_ns),
-          std::to_string(outcome.bytes)})
+          whole(outcome.frame_ns), whole(outcome.middle_ns), whole(outcome.p99_ns),
+          whole(outcome.wall_ns), std::to_string(outcome.bytes)})
       row.push_back(field);
     record_.add(std::move(row));
   }

@@ -9,13 +9,22 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
-#include <experimental/simd>
 #include <limits>
 #include <type_traits>
 
+#ifdef BVLAB_ONE_LANE
+#include "hierarchies/geometry/one_lane.hpp"
+#else
+#include <experimental/simd>
+#endif
+
 namespace bvlab {
 
+#ifdef BVLAB_ONE_LANE
+namespace stdx = one_lane;
+#else
 namespace stdx = std::experimental;
+#endif
 
 /// W values of type T in vector registers. Keep to one register (`native_width`): GCC 12 at -O3
 /// takes comparisons of sixteen doubles, which fill two, for true where they are not.

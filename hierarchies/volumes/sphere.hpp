@@ -19,7 +19,7 @@ namespace bvlab {
 
 template <Scalar S>
 struct Sphere {
-  static constexpr std::string_view name = "sphere";
+  static constexpr std::string_view name = sizeof(Element<S>) == 8 ? "sphere-double" : "sphere";
   static constexpr std::string_view description =
       "ball; smallest around the points or around two others (Quinlan 1994)";
   using scalar = S;

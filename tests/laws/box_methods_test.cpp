@@ -41,9 +41,9 @@ class BoxMethod : public ::testing::Test {
   using Contact = typename ContactOf<M>::type;
   static_assert(BroadPhaseMethod<M>);
 
-  static MethodSettings settings(Coherence coherence) {
+  static MethodSettings settings(Coherence coherence, Sort sort = Sort::radix) {
     MethodSettings s;
-    s.coherence = coherence;
+    s.coherence = coherence, s.sort = sort;
     s.changes = Changes::reported;
     s.cutoff = 8;  // so that small frames are divided
     return s;
@@ -81,8 +81,10 @@ TYPED_TEST_P(BoxMethod, EveryCaseFromScratch) {
 }
 
 TYPED_TEST_P(BoxMethod, OneMethodThroughEveryCase) {
-  for (const Coherence coherence : {Coherence::off, Coherence::on}) {
-    TypeParam method(this->settings(coherence));
+  for (const auto& [coherence, sort] :
+       {std::pair{Coherence::off, Sort::radix}, std::pair{Coherence::on, Sort::radix},
+        std::pair{Coherence::off, Sort::comparison}, std::pair{Coherence::on, Sort::comparison}}) {
+    TypeParam method(this->settings(coherence, sort));
     std::vector<Pair> before;
     for (unsigned seed = 1; seed <= 2; ++seed)
       for (const auto& [name, boxes] : BoxMaker<typename TypeParam::Scalar>(seed).cases(100)) {

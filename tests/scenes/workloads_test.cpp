@@ -5,10 +5,12 @@
 
 #include <Eigen/Geometry>
 
+#include "experiments/files/unusable.hpp"
+#include "experiments/replay/touches_any.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/pile.hpp"
 #include "experiments/scenes/planner.hpp"
-#include "experiments/replay/touches_any.hpp"
+#include "experiments/scenes/recorded.hpp"
 
 namespace bvlab {
 namespace {
@@ -108,6 +110,28 @@ TEST(Pile, FallsMeetsAndComesToRest) {
     for (std::size_t j = 0; j < i; ++j)
       EXPECT_GT((centre(trace, 1499, i, extents[0]) - centre(trace, 1499, j, extents[0])).norm(),
                 1.8 * ball);
+}
+
+TEST(Recorded, IsTheFirstOfAFile) {
+  const auto path = std::filesystem::temp_directory_path() / "bvlab-recorded-test.npy";
+  const std::size_t shape[] = {3, 2, 7};
+  std::vector<double> values(3 * 2 * 7);
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = static_cast<double>(k + 1);
+  write_npy<double>(path, shape, values);
+  Recorded scene;
+  scene.trace = path.string(), scene.objects = 1, scene.frames = 2;
+  const auto part = scene.generate({}, {});
+  EXPECT_EQ(part.shape, std::vector<std::size_t>({2, 1, 7}));
+  std::vector<double> first(values.begin(), values.begin() + 7);
+  first.insert(first.end(), values.begin() + 14, values.begin() + 21);
+  EXPECT_EQ(part.data, first);
+  scene.frames = 4;
+  EXPECT_THROW(scene.generate({}, {}), Unusable);
+  scene.frames = 2, scene.objects = 3;
+  EXPECT_THROW(scene.generate({}, {}), Unusable);
+  scene.trace = "";
+  EXPECT_THROW(scene.generate({}, {}), Unusable);
+  std::filesystem::remove(path);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SWEEP = ROOT / "experiments" / "sweep"
 BVLAB = os.environ.get("BVLAB", str(ROOT / "build/release/bvlab"))
-TIMES = ["time_ns", "first_ns", "build_ns", "alone"]
+TIMES = ["time_ns", "first_ns", "build_ns", "alone", "wall_per_processor"]
 PARTS = 6
 
 # Names that need quotes, a series, coherence, and more than one repetition.

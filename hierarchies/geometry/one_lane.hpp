@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Batches without vector registers: the lanes of one are computed one after the other. In place of
+/// std::experimental::simd where BVLAB_ONE_LANE is defined, so that a measurement shows what is
+/// algorithm and what is width; only what the engine uses of it. Compile with
+/// -fno-tree-vectorize -fno-tree-slp-vectorize, or the compiler fills registers again.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+
+namespace bvlab::one_lane {
+
+struct element_aligned_tag {};
+struct vector_aligned_tag {};
+inline constexpr element_aligned_tag element_aligned{};
+inline constexpr vector_aligned_tag vector_aligned{};
+
+template <class Tag>
+concept Alignment =
+    std::is_same_v<Tag, element_aligned_tag> || std::is_same_v<Tag, vector_aligned_tag>;
+
+namespace simd_abi {
+template <int W>
+struct lanes {
+  static constexpr int width = W;
+};
+template <class, int W>
+using deduce_t = lanes<W>;
+}  // namespace simd_abi
+
+/// Calls f(0), f(1), ... f(W - 1), each index a constant.
+template <int W, class F>
+[[gnu::always_inline]] constexpr void each_lane(F&& f) {
+  [&]<int... i>(std::integer_sequence<int, i...>) { (f(std::integral_constant<int, i>()), ...); }
+  (std::make_integer_sequence<int, W>());
+}
+
+template <class T, class Abi>
+class simd_mask {
+ public:
+  static constexpr int W = Abi::width;
+  simd_mask() = default;
+  explicit simd_mask(bool all) { lane_.fill(all); }
+  static constexpr std::size_t size() { return W; }
+
+  bool operator[](std::size_t i) const { return lane_[i]; }
+  bool& operator[](std::size_t i) { return lane_[i]; }
+  std::bitset<W> __to_bitset() const {
+    unsigned long long bits = 0;
+    each_lane<W>([&](auto i) { bits |= static_cast<unsigned long long>(lane_[i]) << i; });
+    return bits;
+  }
+
+  friend simd_mask operator&&(const simd_mask& a, const simd_mask& b) {
+    return of([&](auto i) { return a.lane_[i] & b.lane_[i]; });
+  }
+  friend simd_mask operator||(const simd_mask& a, const simd_mask& b) {
+    return of([&](auto i) { return a.lane_[i] | b.lane_[i]; });
+  }
+  friend simd_mask operator&(const simd_mask& a, const simd_mask& b) { return a && b; }
+  friend simd_mask operator|(const simd_mask& a, const simd_mask& b) { return a || b; }
+  friend simd_mask operator^(const simd_mask& a, const simd_mask& b) { return a != b; }
+  friend simd_mask operator!=(const simd_mask& a, const simd_mask& b) {
+    return of([&](auto i) { return a.lane_[i] != b.lane_[i]; });
+  }
+  friend simd_mask operator==(const simd_mask& a, const simd_mask& b) {
+    return of([&](auto i) { return a.lane_[i] == b.lane_[i]; });
+  }
+  simd_mask operator!() const {
+    return of([&](auto i) { return !lane_[i]; });
+  }
+  simd_mask& operator&=(const simd_mask& b) { return *this = *this && b; }
+  simd_mask& operator|=(const simd_mask& b) { return *this = *this || b; }
+
+  template <class F>
+  [[gnu::always_inline]] static simd_mask of(F&& f) {
+    simd_mask mask;
+    each_lane<W>([&](auto i) { mask.lane_[i] = f(i); });
+    return mask;
+  }
+
+ private:
+  std::array<bool, W> lane_;
+};
+
+template <class T, class Abi = simd_abi::lanes<1>>
+class alignas(sizeof(T) * Abi::width) simd {
+ public:
+  static constexpr int W = Abi::width;
+  using value_type = T;
+  using abi_type = Abi;
+  using mask_type = simd_mask<T, Abi>;
+
+  simd() = default;
+  template <class N>
+  requires std::is_arithmetic_v<N> simd(N all) { lane_.fill(static_cast<T>(all)); }
+  template <class F>
+  requires requires(F f) { f(std::integral_constant<std::size_t, 0>()); }
+  explicit simd(F&& f) {
+    each_lane<W>([&](auto i) {
+      lane_[i] =
+          static_cast<T>(f(std::integral_constant<std::size_t, static_cast<std::size_t>(i())>()));
+    });
+  }
+  template <Alignment Tag>
+  simd(const T* from, Tag tag) {
+    copy_from(from, tag);
+  }
+  static constexpr std::size_t size() { return W; }
+
+  T operator[](std::size_t i) const { return lane_[i]; }
+  T& operator[](std::size_t i) { return lane_[i]; }
+  template <Alignment Tag>
+  void copy_from(const T* from, Tag) {
+    each_lane<W>([&](auto i) { lane_[i] = from[i]; });
+  }
+  template <Alignment Tag>
+  void copy_to(T* to, Tag) const {
+    each_lane<W>([&](auto i) { to[i] = lane_[i]; });
+  }
+
+  simd operator-() const {
+    return of([&](auto i) { return -lane_[i]; });
+  }
+  friend simd operator+(const simd& a, const simd& b) {
+    return of([&](auto i) { return a.lane_[i] + b.lane_[i]; });
+  }
+  friend simd operator-(const simd& a, const simd& b) {
+    return of([&](auto i) { return a.lane_[i] - b.lane_[i]; });
+  }
+  friend simd operator*(const simd& a, const simd& b) {
+    return of([&](auto i) { return a.lane_[i] * b.lane_[i]; });
+  }
+  friend simd operator/(const simd& a, const simd& b) {
+    return of([&](auto i) { return a.lane_[i] / b.lane_[i]; });
+  }
+  simd& operator+=(const simd& b) { return *this = *this + b; }
+  simd& operator-=(const simd& b) { return *this = *this - b; }
+  simd& operator*=(const simd& b) { return *this = *this * b; }
+  simd& operator/=(const simd& b) { return *this = *this / b; }
+
+  friend mask_type operator<(const simd& a, const simd& b) {
+    return mask_type::of([&](auto i) { return a.lane_[i] < b.lane_[i]; });
+  }
+  friend mask_type operator<=(const simd& a, const simd& b) {
+    return mask_type::of([&](auto i) { return a.lane_[i] <= b.lane_[i]; });
+  }
+  friend mask_type operator>(const simd& a, const simd& b) { return b < a; }
+  friend mask_type operator>=(const simd& a, const simd& b) { return b <= a; }
+  friend mask_type operator==(const simd& a, const simd& b) {
+    return mask_type::of([&](auto i) { return a.lane_[i] == b.lane_[i]; });
+  }
+  friend mask_type operator!=(const simd& a, const simd& b) {
+    return mask_type::of([&](auto i) { return a.lane_[i] != b.lane_[i]; });
+  }
+
+  template <class F>
+  [[gnu::always_inline]] static simd of(F&& f) {
+    simd x;
+    each_lane<W>([&](auto i) { x.lane_[i] = f(i); });
+    return x;
+  }
+
+ private:
+  std::array<T, W> lane_;
+};
+
+template <class T, class Abi>
+simd<T, Abi> abs(const simd<T, Abi>& x) {
+  return simd<T, Abi>::of([&](auto i) { return std::abs(x[i]); });
+}
+template <class T, class Abi>
+simd<T, Abi> sqrt(const simd<T, Abi>& x) {
+  return simd<T, Abi>::of([&](auto i) { return std::sqrt(x[i]); });
+}
+/// As std::min and std::max have it where one is no number.
+template <class T, class Abi>
+simd<T, Abi> min(const simd<T, Abi>& a, const simd<T, Abi>& b) {
+  return simd<T, Abi>::of([&](auto i) { return std::min(a[i], b[i]); });
+}
+template <class T, class Abi>
+simd<T, Abi> max(const simd<T, Abi>& a, const simd<T, Abi>& b) {
+  return simd<T, Abi>::of([&](auto i) { return std::max(a[i], b[i]); });
+}
+
+template <class T>
+using native_simd = simd<T>;
+
+template <class S>
+inline constexpr bool is_simd_v = false;
+template <class T, class Abi>
+inline constexpr bool is_simd_v<simd<T, Abi>> = true;
+
+/// `where(mask, x) = y` assigns the lanes whose bits are set.
+template <class T, class Abi>
+class Where {
+ public:
+  Where(const simd_mask<T, Abi>& mask, simd<T, Abi>& value) : mask_(mask), value_(value) {}
+  void operator=(const simd<T, Abi>& other) {
+    each_lane<Abi::width>(
+        [&](auto i) { value_[i] = mask_[i] ? other[i] : std::as_const(value_)[i]; });
+  }
+
+ private:
+  const simd_mask<T, Abi>& mask_;
+  simd<T, Abi>& value_;
+};
+template <class T, class Abi>
+Where<T, Abi> where(const simd_mask<T, Abi>& mask, simd<T, Abi>& value) {
+  return {mask, value};
+}
+
+template <class T, class Abi>
+bool all_of(const simd_mask<T, Abi>& mask) {
+  return mask.__to_bitset().all();
+}
+template <class T, class Abi>
+bool any_of(const simd_mask<T, Abi>& mask) {
+  return mask.__to_bitset().any();
+}
+template <class T, class Abi>
+T hmin(const simd<T, Abi>& x) {
+  T least = x[0];
+  each_lane<Abi::width>([&](auto i) { least = std::min(least, x[i]); });
+  return least;
+}
+template <class T, class Abi>
+T hmax(const simd<T, Abi>& x) {
+  T most = x[0];
+  each_lane<Abi::width>([&](auto i) { most = std::max(most, x[i]); });
+  return most;
+}
+
+}  // namespace bvlab::one_lane
