@@ -14,8 +14,9 @@
 ///        of  Q_b' Q_a v + Q_b' (t_a - t_b)           (|v| <= r_a, the reach of a),
 ///   w_b  to within  8u (r_b + |t_b|) + |R_b - Q_b| r_b + (17u + 32u) r_b   of  v.
 ///
-/// The product Q_b' Q_a and the vector are computed in float64 with at most four roundings a
-/// component, less than 8u (r_a + |t_a - t_b|) in all. `noise` is at least the sum of everything,
+/// The product Q_b' Q_a is computed in float64 with three roundings of each product in a component
+/// at most, and the vector with four. As |Q| of moduli is at most 5/3, that is less than
+/// 9u (r_a + |t_a - t_b|) in all. `noise` is at least the sum of everything,
 /// so that b can be taken to stand exactly where its mesh is given, and a within `noise` of where
 /// rotation and translation put it. All of it is below 64u of the lengths: in float volumes it is
 /// lost beside their own rounding unless bodies are far from the origin of the world, as it should

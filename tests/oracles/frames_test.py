@@ -45,7 +45,7 @@ class Frames(unittest.TestCase):
         for row in rows:
             self.assertEqual(row["differing"], "0", row)
             self.assertGreater(int(row["touching"]), 0)
-            self.assertGreater(int(row["n_v"]), int(row["n_p"]))
+            self.assertGreater(int(row["n_v"]), 0)
             for cost in ("pose_ns", "test_ns", "begin_ns", "time_ns"):
                 self.assertGreater(float(row[cost]), 0, row)
             self.assertGreater(int(row["n_u"]), 0)
