@@ -183,3 +183,38 @@ def closest_features(record):
 
 
 stated(RESULTS, "what the definition sets", "hulls of 80 to 8000 faces", "off by more than 1e-12", "(Klosowski 1998)")
+
+
+@quotes("frames", RESULTS,
+        "the other body's frame poses {posed:.2f} of the volumes that the world does, a node at a time, at {dearer:.1f} times the price of "
+        "one among sixteen siblings",
+        "boxes along the axes make {aabb:.2f} of the world's tests there and K-DOPs {kdops:.2f}",
+        "a pair takes {slab:.2f} of the world's time with slab-boxes ({slab_relative:.1f} ns a test there, {slab_world:.1f} here), {aabbs:.2f} with boxes "
+        "along the axes and {others:.2f} with the others",
+        "Sixteen children a node take {sixteen:.2f} of the time of two and {eight:.2f} of that of eight",
+        "The fastest is the slab-box in the other body's frame, {best:.2f} us")
+def frames(record):
+    rows = records.read(record)
+    records.wrong_answers(rows)
+    cell = ["mesh", "side", "volume", "fan_out", "frame"]
+    middle = rows.assign(us=rows.time_ns / rows.pairs / 1e3).groupby(cell)[["n_u", "n_v", "us", "pose_ns", "test_ns"]].median().unstack()
+    wide = middle.xs(16, level="fan_out")
+    ratio = {of: wide[of].relative / wide[of].world for of in ("n_u", "n_v", "us", "pose_ns")}
+
+    def only(what, volumes):
+        return what[what.index.get_level_values("volume").isin(volumes)]
+    kdops, rigid = ["kdop14", "kdop18", "kdop26"], ["sphere", "obb", "rss", "shell"]
+    claim((only(ratio["n_v"], ["aabb", *kdops]) < 1).all(), "what is bound along axes makes fewer tests in the other body's frame")
+    claim((only(ratio["n_v"], rigid) - 1).abs().max() < 0.01, "what turns with its body is tested as often in both frames")
+    test = only(wide.test_ns, ["slab-box"])
+    us = middle.us.stack()
+    claim(all(at[2] == "slab-box" and at[4] == "relative" for at in us.groupby(["mesh", "side"]).idxmin()),
+          "slab-boxes in the other body's frame are fastest")
+    by_fan_out = us.unstack("fan_out")
+    return {"posed": Interval(ratio["n_u"]), "dearer": Interval(only(ratio["pose_ns"], ["aabb", *kdops, *rigid])),
+            "aabb": Interval(only(ratio["n_v"], ["aabb"])), "kdops": Interval(only(ratio["n_v"], kdops)),
+            "slab_relative": Interval(test.relative), "slab_world": Interval(test.world),
+            "slab": Interval(only(ratio["us"], ["slab-box"])), "aabbs": Interval(only(ratio["us"], ["aabb"])),
+            "others": Interval(only(ratio["us"], [*kdops, *rigid])),
+            "sixteen": (by_fan_out[16] / by_fan_out[2]).median(), "eight": (by_fan_out[16] / by_fan_out[8]).median(),
+            "best": Interval(us.groupby(["mesh", "side"]).min())}
