@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// `bvlab predict`: what each strategy would cost on a trace, and which is the fastest.
+/// `bvlab predict`: what each strategy would cost on a trace.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -27,10 +27,12 @@ struct Arguments {
 
 using Rows = std::vector<Predicted>;
 
-Rows::const_iterator fastest(const Rows& rows) {
-  return std::min_element(rows.begin(), rows.end(), [](const Predicted& a, const Predicted& b) {
-    return a.seconds < b.seconds;
-  });
+/// Of recursion and lists: margins, which stand last, are predicted too low to be compared.
+std::string fastest(const Rows& rows) {
+  const auto least = std::min_element(
+      rows.begin(), rows.end() - 1,
+      [](const Predicted& a, const Predicted& b) { return a.seconds < b.seconds; });
+  return std::string(least->strategy);
 }
 
 /// By `format`, of the strategy, n_v, n_p and seconds.
@@ -59,7 +61,7 @@ Totals totals_of(const Arguments& arguments, const Trace& trace, const Coherence
                static_cast<double>(coherence.kept) / static_cast<double>(coherence.entries));
   else
     totals.set("survival", nullptr);
-  totals.set("fastest", fastest(rows)->strategy);
+  totals.set("fastest_of_recursion_and_lists", fastest(rows));
   Totals strategies;
   for (const Predicted& row : rows) {
     Totals each;
@@ -91,7 +93,7 @@ void run(const Arguments& arguments) {
   if (!arguments.csv.empty() || !arguments.json.empty()) return;
   std::printf("%-16s %14s %14s %12s\n%s", "strategy", "n_v", "n_p", "seconds",
               lines(rows, "%-16s %14.0f %14.0f %12.6f\n").c_str());
-  std::printf("fastest: %s\n", std::string(fastest(rows)->strategy).c_str());
+  std::printf("fastest of recursion and lists: %s\n", fastest(rows).c_str());
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 ///
 /// Margins: of the same fronts the gaps are measured, and an entry of gap g comes up in every
 /// (g / step)-th run. That leaves out rebuilds and what is opened later, and is too little: by a
-/// half where most of the front survives, by more below. So `margins` is named the fastest too often.
+/// half where most of the front survives, by more below: not to be compared with the others.
 #pragma once
 
 #include <cstddef>

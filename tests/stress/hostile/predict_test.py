@@ -64,8 +64,8 @@ class Predict(ProgramTest):
         with open(self.folder / "said.csv", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual([line.split()[:3] for line in table[1:-1]], [[r["strategy"], r["n_v"], r["n_p"]] for r in rows])
-        fastest = min(rows, key=lambda row: float(row["seconds"]))["strategy"]
-        self.assertEqual(table[-1], f"fastest: {fastest}")
+        fastest = min((row for row in rows if row["strategy"] != "margins"), key=lambda row: float(row["seconds"]))["strategy"]
+        self.assertEqual(table[-1], f"fastest of recursion and lists: {fastest}")
         self.assertTrue(all(KEYS < set(row) for row in rows))
 
     def test_unusable(self):
