@@ -15,15 +15,15 @@ SOURCE, BUILD = map(pathlib.Path, sys.argv[1:3])
 LISTS = ["hierarchies/volumes.hpp", "traversal/strategies.hpp", "traversal/queries.hpp", "broadphase/broadphase.hpp"]
 
 
-def ninja(*arguments):
-    done = subprocess.run(["ninja", "-C", BUILD, "-t", *arguments], check=True, capture_output=True, text=True)
+def ninja(tree, *arguments):
+    done = subprocess.run(["ninja", "-C", tree, "-t", *arguments], check=True, capture_output=True, text=True)
     return done.stdout
 
 
 def dependents():
     """Of each list the objects and precompiled headers that include it."""
     found, target = {name: set() for name in LISTS}, None
-    for line in ninja("deps").splitlines():
+    for line in ninja(BUILD, "deps").splitlines():
         if heading := re.match(r"(\S.*): #deps", line):
             target = heading[1]
         for name in LISTS:
@@ -33,9 +33,8 @@ def dependents():
 
 
 def objects_of_program(tree):
-    """Those that bvlab is linked from, by the build file."""
-    text = (tree / "build.ninja").read_text()
-    return set(re.findall(r"^build (experiments/\S+\.o):", text, re.M))
+    """Those that bvlab is linked from."""
+    return {path for path in ninja(tree, "inputs", "bvlab").split() if re.fullmatch(r"experiments/\S+\.o", path)}
 
 
 def configured(folder):
