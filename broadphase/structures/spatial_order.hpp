@@ -114,18 +114,18 @@ class SpatialOrder {
                   });
   }
 
-  static Summary summary(Boxes<T> boxes, Threads& threads) {
-    std::vector<Tally> tallies(threads.count());
+  Summary summary(Boxes<T> boxes, Threads& threads) {
+    tallies_.assign(threads.count(), Tally());
     for_stretches(boxes, threads, [&](std::size_t begin, std::size_t end, std::size_t worker) {
       // Of its own while it is written to.
-      Tally tally = tallies[worker];
+      Tally tally = tallies_[worker];
       for_blocks(boxes, begin, end,
                  [&](const Block<T>& block, std::size_t, std::size_t) { tally.add(block); });
-      tallies[worker] = tally;
+      tallies_[worker] = tally;
     });
-    Summary all = tallies[0].sum();
-    for (std::size_t k = 1; k < tallies.size(); ++k) {
-      const Summary other = tallies[k].sum();
+    Summary all = tallies_[0].sum();
+    for (std::size_t k = 1; k < tallies_.size(); ++k) {
+      const Summary other = tallies_[k].sum();
       for (int axis = 0; axis < 3; ++axis) {
         all.lo[axis] = std::min(all.lo[axis], other.lo[axis]);
         all.hi[axis] = std::max(all.hi[axis], other.hi[axis]);
@@ -142,15 +142,15 @@ class SpatialOrder {
     if (all.most <= 8 * all.least) return;
     const int small = exponent(spacing(all, boxes.size()));
     kinds_.resize(boxes.size());
-    std::vector<std::array<std::uint8_t, exponents * shapes>> seen(threads.count());
+    seen_.assign(threads.count(), {});
     for_stretches(boxes, threads, [&](std::size_t begin, std::size_t end, std::size_t worker) {
       for (std::size_t k = begin; k < end; ++k) {
         kinds_[k] = static_cast<std::uint16_t>(kind(boxes[k], small));
-        seen[worker][kinds_[k]] = 1;
+        seen_[worker][kinds_[k]] = 1;
       }
     });
-    auto& used = seen[0];
-    for (const auto& other : seen)
+    auto& used = seen_[0];
+    for (const auto& other : seen_)
       for (std::size_t k = 0; k < used.size(); ++k) used[k] |= other[k];
     // From the largest size down, three powers of two to a class.
     classes_ = 0;
@@ -316,6 +316,8 @@ class SpatialOrder {
   std::vector<std::pair<std::size_t, std::size_t>> runs_;
   std::array<std::uint32_t, exponents * shapes> class_of_{};
   std::uint32_t classes_ = 1;
+  std::vector<Tally> tallies_;                                      // of each thread
+  std::vector<std::array<std::uint8_t, exponents * shapes>> seen_;  // by each thread
   LargeVector<std::uint16_t> kinds_;  ///< of each box, where there are classes
 };
 
