@@ -188,6 +188,11 @@ simd<T, Abi> max(const simd<T, Abi>& a, const simd<T, Abi>& b) {
   return simd<T, Abi>::of([&](auto i) { return std::max(a[i], b[i]); });
 }
 
+template <class To, class T, class Abi>
+To static_simd_cast(const simd<T, Abi>& x) {
+  return To::of([&](auto i) { return static_cast<typename To::value_type>(x[i]); });
+}
+
 template <class T>
 using native_simd = simd<T>;
 
