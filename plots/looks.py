@@ -42,6 +42,10 @@ STYLES = {
     "kdop26": dict(color="#238b45", marker=">", linestyle=":", hatch="xx"),
     "rss": dict(color="#8c6bb1", marker="D", linestyle="--", hatch="oo"),
     "shell": dict(color="#fdae6b", marker="P", linestyle=":", hatch="++"),
+    "slab-box": dict(color="#a50f15", marker="h", linestyle="-", hatch="||"),
+    # Where they are compared.
+    "world": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
+    "relative": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
     # How K-DOPs are posed.
     "realigned": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
     "corners": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),

@@ -8,7 +8,9 @@ CALLED = {
     "time_ns": "time", "first_ns": "time of the first frame", "later_ns": "time",
     "build_ns": "time to build", "frame_ns": "time a frame", "ns_per_frame": "time a frame",
     "ns_per_call": "time a call",
-    "pose_ns": "time to pose a volume", "wall_ns": "wall time a frame", "middle_ns": "median time of a frame",
+    "pose_ns": "time to pose a volume", "test_ns": "time to test two volumes", "fan_out": "children a node",
+    "begin_ns": "time before a pair's first volume", "shared_bytes": "memory that bodies share",
+    "wall_ns": "wall time a frame", "middle_ns": "median time of a frame",
     "n_u": "volumes posed", "n_v": "volume tests", "n_p": "triangle tests", "front": "entries of the front",
     "objects": "bodies", "degrees": "rotation a frame", "step": "translation a frame", "side": "side of the cube",
     "displacement": "displacement a frame, of a box's size", "offset": "distance from the origin",
@@ -32,7 +34,8 @@ UNITS = {"ns": "ns", "us": "us", "ms": "ms", "seconds": "s", "bytes": "B"}  # by
 UNIT_OF = {"degrees": "°", "bytes": "B", "ns_per_frame": "ns", "ns_per_call": "ns"}
 LENGTHS = {"body": "radii", "leaf": "leaf sizes"}  # what is written behind a length of a definition
 VALUES = {"polygons": "{} polygons", "objects": "{} bodies", "count": "{} boxes", "boxes": "{} boxes",
-          "degrees": "{}°", "step": "{} radii", "threads": "{} threads", "k": "K = {}", "leaf_size": "leaves of {}"}
+          "degrees": "{}°", "step": "{} radii", "threads": "{} threads", "k": "K = {}", "leaf_size": "leaves of {}",
+          "fan_out": "{} children"}
 SWITCHES = {("coherent", "on"): "coherent", ("coherent", "off"): "from scratch", ("changes", "on"): "changes reported",
             ("changes", "off"): "changes not reported"}
 

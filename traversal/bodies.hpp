@@ -70,7 +70,9 @@ class Bodies {
 
   template <class Query, class Counter>
   BodyPair<B, V, Query, Counter> pair(const ObjectPair& pair, Query& query, Counter& counter) {
-    return {bodies_[pair.i], bodies_[pair.j], query, counter, workspace_};
+    // Pairs without a body in common may be asked by several threads.
+    static thread_local Workspace workspace;
+    return {bodies_[pair.i], bodies_[pair.j], query, counter, workspace};
   }
 
   /// For each p of `fresh`, whether the query culls the roots of `pairs[p]`, into `apart[p]`. Most
@@ -103,7 +105,6 @@ class Bodies {
   std::vector<Body<V>> bodies_;
   std::vector<Posed<V>> roots_;       // of all bodies, side by side
   std::vector<std::uint8_t> wanted_;  // for each body, whether its root is tested
-  Workspace workspace_;
 };
 
 }  // namespace bvlab

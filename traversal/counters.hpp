@@ -20,6 +20,10 @@ struct Counting {
   void primitives(std::uint64_t pairs) { n_p += pairs; }
   /// A pair of bodies has been asked; so much had been tested before.
   void asked(std::uint64_t before) { considered += n_v + n_p != before; }
+  /// What another thread counted.
+  void add(const Counting& other) {
+    n_u += other.n_u, n_v += other.n_v, n_p += other.n_p, considered += other.considered;
+  }
 };
 
 /// Compiles to nothing.
@@ -31,6 +35,7 @@ struct NotCounting {
   void tested(std::uint64_t) {}
   void primitives(std::uint64_t) {}
   void asked(std::uint64_t) {}
+  void add(const NotCounting&) {}
 };
 
 }  // namespace bvlab

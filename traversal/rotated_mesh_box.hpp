@@ -53,7 +53,7 @@ class RotatedMeshBox {
     for (int i = 0; i < 3; ++i) {
       const auto [lo, hi] = along({pose.rotation(i, 0), pose.rotation(i, 1), pose.rotation(i, 2)},
                                   pose.translation[i], origin[i]);
-      const float below = -rounded_up<float>(-lo), above = rounded_up<float>(hi);
+      const float below = -beyond(-lo), above = beyond(hi);
       // Written so that what is not a number counts as everywhere.
       const bool sound = below >= -most && above <= most && below <= above;
       box.lo[i] = sound ? below : -most;
@@ -67,27 +67,40 @@ class RotatedMeshBox {
     double lo, hi;
   };
 
+  /// A float above x, by less than two steps where it is large enough; what is no number stays
+  /// none. A step is at most 2^-23 of a number, so that the sum ends at the next float or above.
+  static float beyond(double x) {
+    const float y = static_cast<float>(x);
+    return y + (std::abs(y) * std::numeric_limits<float>::epsilon() +
+                std::numeric_limits<float>::min());
+  }
+
   static constexpr int at(int x, int y, int z) { return (x + 1) * 9 + (y + 1) * 3 + (z + 1); }
 
   Interval along(const std::array<double, 3>& n, double translation, double origin) const {
     constexpr int weight[3] = {9, 3, 1};
     const double size[3] = {std::abs(n[0]), std::abs(n[1]), std::abs(n[2])};
-    int large = 0, middle = 1, small = 2;
-    if (size[large] < size[middle]) std::swap(large, middle);
-    if (size[middle] < size[small]) std::swap(middle, small);
-    if (size[large] < size[middle]) std::swap(large, middle);
+    // Without a branch, for what is largest is anybody's guess.
     const auto step = [&](int axis) { return n[axis] < 0 ? -weight[axis] : weight[axis]; };
-    const int face = step(large), edge = face + step(middle), corner = edge + step(small);
-    const double x = size[large] - size[middle], y = size[middle] - size[small], z = size[small];
+    const int steps[3] = {step(0), step(1), step(2)};
+    const bool second = size[1] > size[0];
+    const double more = second ? size[1] : size[0], less = second ? size[0] : size[1];
+    const int of_more = second ? steps[1] : steps[0], of_less = second ? steps[0] : steps[1];
+    const bool third = size[2] > more, last = size[2] < less;
+    const double large = third ? size[2] : more, small = last ? size[2] : less;
+    const double middle = third ? more : last ? less : size[2];
+    const int face = third ? steps[2] : of_more, corner = steps[0] + steps[1] + steps[2];
+    const int edge = corner - (last ? steps[2] : of_less);
+    const double x = large - middle, y = middle - small, z = small;
     constexpr int none = at(0, 0, 0);
     const auto reached = [&](int sign) {
       return (x * support_[none + sign * face] + y * support_[none + sign * edge]) +
              z * support_[none + sign * corner];
     };
     const double offset = translation - origin;
-    const double slack = 32 * unit_roundoff<double> *
-                             (size[large] * reach_ + std::abs(translation) + std::abs(origin)) +
-                         std::numeric_limits<double>::min();
+    const double slack =
+        32 * unit_roundoff<double> * (large * reach_ + std::abs(translation) + std::abs(origin)) +
+        std::numeric_limits<double>::min();
     return {offset - reached(-1) - slack, offset + reached(1) + slack};
   }
 

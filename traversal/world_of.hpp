@@ -1,199 +1,121 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Many bodies, of which only pairs that are near each other are asked, and only when one of the
-/// two has moved: a broad phase over the bodies' boxes in front, a strategy for each pair that it
-/// reports, forgotten when the pair parts.
+/// two has moved: a broad phase over the bodies' boxes in front (NearPairs), and behind it pairs
+/// that remember what they want of their last answers, forgotten when the pair parts.
 ///
-/// A frame costs O(m + q) plus what the broad phase takes, for m bodies that moved and q pairs near
-/// them; what stays costs nothing, and what nobody came near is not even made: a body gets room for
-/// its posed volumes when the first pair asks for it.
+/// What stays costs nothing, and what nobody came near is not even made.
 ///
-/// Pairs stand in slots. A pair keeps its slot from the frame in which its boxes meet to the one in
-/// which they part; slots are used again.
+/// With several threads the broad phase, the bodies that moved and the pairs are shared; answers,
+/// contacts and counts are the same for any number of them.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <span>
-#include <unordered_map>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "broadphase/settings.hpp"
-#include "hierarchies/geometry/morton.hpp"
-#include "traversal/bodies.hpp"
-#include "traversal/rotated_mesh_box.hpp"
+#include "traversal/near_pairs.hpp"
 
 namespace bvlab {
 
-/// Over any kind of bodies: `Bodies` or what offers the same. Method is a broad phase over float
-/// boxes that reports changes.
-template <class BodySet, class Strategy, class Method>
+/// Pairs are StrategyPairs, WidePairs, or what offers the same:
+///   size(), mesh(i)                     of bodies
+///   put(slot, pair), drop(slot)         a pair that is to be asked from now on, or no more
+///   begin<Query>(movers, poses, origin, threads)  of a frame: who has moved; poses are of all
+///   stand(i)                                      for each of them, on any thread
+///   ask(slots, worker, counter, ask, take)        asks some of the pairs, as one of the threads
+///   front_size(slot)
+/// Method is a broad phase over float boxes that reports changes.
+template <class Pairs, class Method>
 class WorldOf {
  public:
-  /// `bodies` makes the BodySet.
-  template <class Made>
-  WorldOf(Made&& bodies, const Strategy& strategy)
-      : bodies_(std::forward<Made>(bodies)),
-        prototype_(strategy),
-        method_(MethodSettings{.changes = Changes::reported}),
-        poses_(bodies_.size()),
-        boxes_(bodies_.size()),
-        neighbours_(bodies_.size()),
-        moved_(bodies_.size(), Moved::no) {
-    std::unordered_map<const TriangleMesh*, std::uint32_t> known;
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      const auto [at, fresh] = known.try_emplace(&bodies_.mesh(i), known.size());
-      if (fresh) mesh_boxes_.emplace_back(bodies_.mesh(i));
-      box_of_.push_back(at->second);
-    }
-  }
+  explicit WorldOf(Pairs pairs, int threads = 1)
+      : pairs_(std::move(pairs)),
+        near_(pairs_.size(), threads,
+              [this](std::size_t i) -> const TriangleMesh& { return pairs_.mesh(i); }) {}
 
-  /// Says where a body is from now on. Before the first update every body needs a pose.
-  void move(std::uint32_t object, const Pose& pose) {
-    if (placed_ && poses_[object] == pose) return;
-    poses_[object] = pose;
-    if (moved_[object] == Moved::no) movers_.push_back(object);
-    moved_[object] = Moved::yes;
-  }
+  /// Says where a body is from now on. A body that never was moved is not in the scene.
+  void move(std::uint32_t object, const Pose& pose) { near_.move(object, pose); }
+  /// Takes a body out of the scene until it is moved again.
+  void take_out(std::uint32_t object) { near_.take_out(object); }
 
   /// Asks every pair whose boxes meet and of which a body has moved since the last update:
-  /// `ask(pair)` makes the query, `take(slot, pair, query)` gets it back with its answer. All other
-  /// pairs have the answers they had. `leave(slot)` is told before of pairs whose boxes have
-  /// parted: nothing of the two bodies meets.
+  /// `ask(pair)` makes the query, `take(slot, pair, query)` gets it back with its answer, in any
+  /// order. All other pairs have the answers they had. `leave(slot)` is told before of pairs whose
+  /// boxes have parted: nothing of the two bodies meets.
+  ///
+  /// A slot is a pair's as long as its boxes meet. With one thread, up to two queries are asked
+  /// before the first of them is taken; with more, all of them are, `ask` is called on any thread,
+  /// for several pairs at once, and may be given the slot, too: `ask(pair, slot)`. `take` and
+  /// `leave` are called on the caller's.
   template <class Counter, class Ask, class Take, class Leave>
   void update(Counter& counter, Ask&& ask, Take&& take, Leave&& leave) {
-    if (!placed_) origin_ = middle_of(poses_);
-    placed_ = true;
-    for (const auto i : movers_) boxes_[i] = mesh_boxes_[box_of_[i]](poses_[i], origin_);
-    if (!movers_.empty()) find_near(leave);
-    order_movers();
-    asked_ = 0;
-    for (const auto i : movers_) {
-      for (const auto& [other, slot] : neighbours_[i]) {
-        // A pair of which both have moved is asked once.
-        if (moved_[other] == Moved::done) continue;
-        const ObjectPair& pair = near_[slot].pair;
-        auto query = ask(pair);
-        for (const auto k : {pair.i, pair.j}) bodies_.move(k, poses_[k], origin_);
-        near_[slot].strategy.run(bodies_.pair(pair, query, counter));
-        take(slot, pair, query);
-        ++asked_;
-      }
-      moved_[i] = Moved::done;
-    }
-    for (const auto i : movers_) moved_[i] = Moved::no;
-    movers_.clear();
+    const auto make = [&ask](std::uint32_t slot, const ObjectPair& pair) {
+      if constexpr (std::is_invocable_v<Ask&, const ObjectPair&, std::uint32_t>)
+        return ask(pair, slot);
+      else
+        return ask(pair);
+    };
+    using Query = std::remove_cvref_t<decltype(make(0, ObjectPair()))>;
+    pairs_.template begin<Query>(near_.movers(), near_.poses(), near_.origin(), near_.threads());
+    near_.update([&](std::uint32_t i) { pairs_.stand(i); },
+                 [&](std::uint32_t slot, const ObjectPair& pair) { pairs_.put(slot, pair); },
+                 [&](std::uint32_t slot) { leave(slot), pairs_.drop(slot); });
+    if (near_.threads().count() == 1)
+      pairs_.ask(near_.due(), 0, counter, make, take);
+    else
+      ask_in_parts<Query>(counter, make, take);
+    asked_ = near_.due().size();
+    near_.settle();
   }
 
-  std::size_t objects() const { return bodies_.size(); }
+  std::size_t objects() const { return pairs_.size(); }
   /// Pairs whose boxes meet.
-  std::size_t near() const { return near_.size() - free_.size(); }
+  std::size_t near() const { return near_.size(); }
   /// Pairs that the last update asked.
   std::size_t asked() const { return asked_; }
   /// The entries of all fronts together; looks at every pair.
   std::size_t front_size() const {
     std::size_t sum = 0;
-    for (const auto& each : near_)
-      if (each.taken) sum += each.strategy.front_size();
+    for (std::uint32_t slot = 0; slot < near_.slots(); ++slot)
+      if (near_.taken(slot)) sum += pairs_.front_size(slot);
     return sum;
   }
 
  private:
-  enum class Moved : std::uint8_t { no, yes, done };  ///< done: its pairs have been asked
-  struct Near {
-    ObjectPair pair;
-    std::uint32_t place_of_i, place_of_j;  ///< in the lists of neighbours
-    bool taken;
-    Strategy strategy;
-  };
-  struct Neighbour {
-    std::uint32_t other, slot;
-  };
+  /// So many pairs that to hand them over costs nothing beside asking them.
+  static constexpr std::size_t part_size = 64;
 
-  /// Neighbours one after the other: what one pair has posed is still in the cache when the next
-  /// one asks for it.
-  void order_movers() {
-    Eigen::AlignedBox3d all;
-    for (const auto i : movers_) all.extend(poses_[i].translation);
-    ordered_.clear();
-    for (const auto i : movers_) ordered_.emplace_back(morton_code(poses_[i].translation, all), i);
-    std::sort(ordered_.begin(), ordered_.end());
-    std::transform(ordered_.begin(), ordered_.end(), movers_.begin(),
-                   [](const auto& coded) { return coded.second; });
-  }
-
-  template <class Leave>
-  void find_near(Leave&& leave) {
-    method_.overlapping(boxes_);
-    const PairChanges changes = method_.changes();
-    for (const auto& [i, j] : changes.ended) {
-      const std::uint32_t slot = slot_of(i, j);
-      leave(slot);
-      part(slot);
+  template <class Query, class Counter, class Make, class Take>
+  void ask_in_parts(Counter& counter, Make& make, Take& take) {
+    const auto due = near_.due();
+    const std::size_t parts = (due.size() + part_size - 1) / part_size;
+    struct alignas(128) Part {  // written to by one thread, beside another's
+      std::vector<std::pair<std::uint32_t, Query>> answered;
+      Counter counter;
+    };
+    std::vector<Part> all(parts);
+    near_.threads().share(parts, [&](std::size_t k, std::size_t worker) {
+      Part& part = all[k];
+      const auto slots =
+          due.subspan(k * part_size, std::min(part_size, due.size() - k * part_size));
+      part.answered.reserve(slots.size());
+      pairs_.ask(slots, worker, part.counter, make,
+                 [&](std::uint32_t slot, const ObjectPair&, const Query& query) {
+                   part.answered.emplace_back(slot, query);
+                 });
+    });
+    for (const Part& part : all) {
+      for (const auto& [slot, query] : part.answered) take(slot, near_.pair(slot), query);
+      counter.add(part.counter);
     }
-    for (const auto& [i, j] : changes.began) meet({i, j});
   }
 
-  void meet(const ObjectPair& pair) {
-    auto &of_i = neighbours_[pair.i], &of_j = neighbours_[pair.j];
-    const Near fresh{pair, static_cast<std::uint32_t>(of_i.size()),
-                     static_cast<std::uint32_t>(of_j.size()), true, prototype_};
-    std::uint32_t slot = static_cast<std::uint32_t>(near_.size());
-    if (free_.empty()) {
-      near_.push_back(fresh);
-    } else {
-      slot = free_.back();
-      free_.pop_back();
-      near_[slot] = fresh;
-    }
-    of_i.push_back({pair.j, slot});
-    of_j.push_back({pair.i, slot});
-  }
-
-  std::uint32_t slot_of(std::uint32_t i, std::uint32_t j) const {
-    const bool i_has_fewer = neighbours_[i].size() <= neighbours_[j].size();
-    const auto& few = neighbours_[i_has_fewer ? i : j];
-    const std::uint32_t other = i_has_fewer ? j : i;
-    return std::find_if(few.begin(), few.end(), [&](const auto& n) { return n.other == other; })
-        ->slot;
-  }
-
-  void part(std::uint32_t slot) {
-    Near& gone = near_[slot];
-    remove(gone.pair.i, gone.place_of_i);
-    remove(gone.pair.j, gone.place_of_j);
-    gone.taken = false;
-    gone.strategy = prototype_;
-    free_.push_back(slot);
-  }
-
-  /// The last one of the body's neighbours takes the place.
-  void remove(std::uint32_t object, std::uint32_t place) {
-    auto& list = neighbours_[object];
-    list[place] = list.back();
-    list.pop_back();
-    if (place == list.size()) return;
-    Near& moved = near_[list[place].slot];
-    (moved.pair.i == object ? moved.place_of_i : moved.place_of_j) = place;
-  }
-
-  BodySet bodies_;
-  Strategy prototype_;
-  Method method_;
-  std::vector<RotatedMeshBox> mesh_boxes_;  // one for each mesh
-  std::vector<std::uint32_t> box_of_;       // which of them is a body's
-  std::vector<Pose> poses_;
-  std::vector<Box<float>> boxes_;
-  std::vector<std::vector<Neighbour>> neighbours_;
-  std::vector<Near> near_;
-  std::vector<std::uint32_t> free_;                               // slots that no pair has
-  std::vector<std::uint32_t> movers_;                             // since the last update
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> ordered_;  // they, with their codes
-  std::vector<Moved> moved_;
-  Vec3<double> origin_ = Vec3<double>::Zero();
+  Pairs pairs_;
+  NearPairs<Method> near_;
   std::size_t asked_ = 0;
-  bool placed_ = false;
 };
 
 /// Which pairs touch, as a list that changes only where answers do.

@@ -9,6 +9,8 @@
 
 #include "broadphase/structures/block.hpp"
 #include "broadphase/structures/radix_sort.hpp"
+#include "hierarchies/geometry/large_vector.hpp"
+#include "hierarchies/geometry/threads.hpp"
 
 namespace bvlab {
 
@@ -83,35 +85,33 @@ class BlockTree {
   }
 
   /// Fills the leaves with the boxes in this order; then the levels above.
-  void build(std::span<const Keyed<std::uint32_t>> order, Boxes<T> boxes) {
-    resize_leaves(static_cast<std::uint32_t>((order.size() + block_width - 1) / block_width));
-    for (std::size_t k = 0; k < order.size(); ++k) ids_[k] = order[k].id;
+  void build(std::span<const Keyed<std::uint32_t>> order, Boxes<T> boxes, Threads& threads) {
+    resize_levels((order.size() + block_width - 1) / block_width);
     std::fill(ids_.begin() + static_cast<std::ptrdiff_t>(order.size()), ids_.end(), no_box);
-    for (std::uint32_t k = 0; k < leaves(); ++k) {
-      gather(leaf(k), ids(k), boxes);
-      set_leaf_bounds(k, bounds(leaf(k)));
-    }
+    // Whole blocks of leaves, so that no two threads write to the same bounds.
+    constexpr std::uint32_t stretch = 16 * block_width;
+    threads.share((leaves() + stretch - 1) / stretch, [&](std::size_t part, std::size_t) {
+      const auto first = static_cast<std::uint32_t>(part) * stretch;
+      const std::uint32_t last = std::min(first + stretch, leaves());
+      for (std::size_t k = std::size_t{first} * block_width;
+           k < std::min(std::size_t{last} * block_width, order.size()); ++k)
+        ids_[k] = order[k].id;
+      for (std::uint32_t k = first; k < last; ++k) {
+        gather(leaf(k), ids(k), boxes);
+        set_leaf_bounds(k, bounds(leaf(k)));
+      }
+    });
     refit_above();
   }
 
   /// Makes room for that many leaves; new ones are empty.
   void resize_leaves(std::uint32_t count) {
-    std::size_t depth = 2;
-    for (std::size_t nodes = blocks_over(count); nodes > 1; nodes = blocks_over(nodes)) ++depth;
-    if (levels_.size() < depth) levels_.resize(depth);
-    depth_ = depth;
-    Block<T> empty;
-    for (int lane = 0; lane < block_width; ++lane) empty.put(lane, nowhere<T>());
-    std::size_t nodes = count;
-    for (std::size_t level = 0; level < depth; ++level, nodes = blocks_over(nodes)) {
-      const std::size_t had = levels_[level].size();
-      levels_[level].resize(nodes, empty);
-      // Lanes past the last child must overlap nothing, whatever stood there.
-      if (level > 0 && nodes > 0 && nodes <= had)
-        for (std::size_t lane = children_of_last(level); lane < block_width; ++lane)
-          levels_[level].back().put(static_cast<int>(lane), nowhere<T>());
-    }
-    ids_.resize(std::size_t{count} * block_width, no_box);
+    const std::size_t had = leaves();
+    resize_levels(count);
+    for (std::size_t k = had; k < count; ++k) levels_[0][k] = empty_block();
+    std::fill(
+        ids_.begin() + static_cast<std::ptrdiff_t>(std::min(had, std::size_t{count}) * block_width),
+        ids_.end(), no_box);
   }
 
   /// Recomputes every level above the leaves' bounds.
@@ -127,6 +127,24 @@ class BlockTree {
   template <class Visit>
   void join(Visit&& visit) const {
     if (leaves() > 0) join_self(depth_ - 1, 0, visit);
+  }
+
+  /// Two blocks of leaves whose bounds overlap, or one with itself.
+  struct Part {
+    std::uint32_t a, b;
+  };
+  /// What the join consists of, in its order.
+  void join_parts(std::vector<Part>& parts) const {
+    parts.clear();
+    const auto add = [&](std::uint32_t a, std::uint32_t b) { parts.push_back({a, b}); };
+    if (leaves() > 0) join_self<1>(depth_ - 1, 0, add);
+  }
+  template <class Visit>
+  void join(const Part& part, Visit&& visit) const {
+    if (part.a == part.b)
+      join_self(1, part.a, visit);
+    else
+      join_two(1, part.a, part.b, visit);
   }
 
   /// Calls visit(k) for every leaf whose bounds overlap `box`.
@@ -148,26 +166,50 @@ class BlockTree {
   std::size_t children_of_last(std::size_t level) const {
     return levels_[level - 1].size() - (levels_[level].size() - 1) * block_width;
   }
+  static Block<T> empty_block() {
+    Block<T> empty;
+    for (int lane = 0; lane < block_width; ++lane) empty.put(lane, nowhere<T>());
+    return empty;
+  }
 
-  template <class Visit>
+  /// What new leaves and their ids are is left open; blocks above them are empty.
+  void resize_levels(std::size_t count) {
+    std::size_t depth = 2;
+    for (std::size_t nodes = blocks_over(count); nodes > 1; nodes = blocks_over(nodes)) ++depth;
+    if (levels_.size() < depth) levels_.resize(depth);
+    depth_ = depth;
+    levels_[0].resize(count);
+    std::size_t nodes = blocks_over(count);
+    for (std::size_t level = 1; level < depth; ++level, nodes = blocks_over(nodes)) {
+      const std::size_t had = levels_[level].size();
+      levels_[level].resize(nodes, empty_block());
+      // Lanes past the last child must overlap nothing, whatever stood there.
+      if (nodes > 0 && nodes <= had)
+        for (std::size_t lane = children_of_last(level); lane < block_width; ++lane)
+          levels_[level].back().put(static_cast<int>(lane), nowhere<T>());
+    }
+    ids_.resize(count * block_width);
+  }
+
+  template <std::size_t kDown = 0, class Visit>
   void join_self(std::size_t level, std::uint32_t a, Visit& visit) const {
-    if (level == 0) return visit(a, a);
+    if (level == kDown) return visit(a, a);
     const Block<T>& block = levels_[level][a];
     const std::size_t first = std::size_t{a} * block_width;
     const std::size_t count = std::min<std::size_t>(block_width, levels_[level - 1].size() - first);
     for (std::size_t k = 0; k < count; ++k) {
-      join_self(level - 1, static_cast<std::uint32_t>(first + k), visit);
+      join_self<kDown>(level - 1, static_cast<std::uint32_t>(first + k), visit);
       LaneMask others =
           overlapping_lanes<Closed>(block, block.box(static_cast<int>(k))) & (all_lanes << (k + 1));
       for (; others; others &= others - 1)
-        join_two(level - 1, static_cast<std::uint32_t>(first + k),
-                 static_cast<std::uint32_t>(first) + std::countr_zero(others), visit);
+        join_two<kDown>(level - 1, static_cast<std::uint32_t>(first + k),
+                        static_cast<std::uint32_t>(first) + std::countr_zero(others), visit);
     }
   }
 
-  template <class Visit>
+  template <std::size_t kDown = 0, class Visit>
   void join_two(std::size_t level, std::uint32_t a, std::uint32_t b, Visit& visit) const {
-    if (level == 0) return visit(a, b);
+    if (level == kDown) return visit(a, b);
     const Block<T>& left = levels_[level][a];
     const Block<T>& right = levels_[level][b];
     LaneMask rows =
@@ -176,8 +218,8 @@ class BlockTree {
       const int row = std::countr_zero(rows);
       LaneMask others = overlapping_lanes<Closed>(right, left.box(row));
       for (; others; others &= others - 1)
-        join_two(level - 1, a * block_width + row, b * block_width + std::countr_zero(others),
-                 visit);
+        join_two<kDown>(level - 1, a * block_width + row,
+                        b * block_width + std::countr_zero(others), visit);
     }
   }
 
@@ -193,10 +235,10 @@ class BlockTree {
     }
   }
 
-  std::vector<std::vector<Block<T>>>
+  std::vector<LargeVector<Block<T>>>
       levels_;  ///< [0] the leaves; the one at depth_ - 1 has one block
   std::size_t depth_ = 0;
-  std::vector<std::uint32_t> ids_;  ///< sixteen to a leaf
+  LargeVector<std::uint32_t> ids_;  ///< sixteen to a leaf
 };
 
 }  // namespace bvlab

@@ -33,8 +33,8 @@ class CandidatePairs {
   /// while neither places nor links are known.
   PairList& list() { return candidates_; }
 
-  std::vector<Row<T>>& rows() { return rows_; }
-  const std::vector<Row<T>>& rows() const { return rows_; }
+  LargeVector<Row<T>>& rows() { return rows_; }
+  const LargeVector<Row<T>>& rows() const { return rows_; }
 
   /// `a` and `b` are slots with these box indices; the pair must not be there yet.
   void add(std::uint32_t a, std::uint32_t id_a, std::uint32_t b, std::uint32_t id_b) {
@@ -158,12 +158,12 @@ class CandidatePairs {
     links_[2 * std::size_t{c} + 1] = std::exchange(heads_[candidate.j], 2 * c + 1);
   }
 
-  std::vector<Row<T>> rows_;
+  LargeVector<Row<T>> rows_;
   PairList candidates_;
   bool places_known_ = false, linked_ = false;
-  std::vector<std::uint32_t> places_;   ///< of each candidate in the list
-  std::vector<std::uint32_t> origins_;  ///< of each place: its candidate
-  std::vector<std::uint32_t> heads_, links_;
+  LargeVector<std::uint32_t> places_;   ///< of each candidate in the list
+  LargeVector<std::uint32_t> origins_;  ///< of each place: its candidate
+  LargeVector<std::uint32_t> heads_, links_;
 };
 
 }  // namespace bvlab

@@ -38,7 +38,7 @@ class LastFrame {
   std::size_t bytes() const { return boxes_.capacity() * sizeof(Box<T>); }
 
  private:
-  std::vector<Box<T>> boxes_;
+  LargeVector<Box<T>> boxes_;
   bool known_ = false;
 };
 

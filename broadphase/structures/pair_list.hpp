@@ -1,36 +1,58 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A growing array of pairs that is never initialised before it is written: `std::vector` would
 /// clear every page once more than needed. Room is asked for in blocks, so that the loop that
-/// finds pairs writes without looking.
+/// finds pairs writes without looking. Where it is known how much of that loop is done, the array
+/// grows at once to what it is likely to need: pages that are never written cost nothing.
 #pragma once
 
 #include <algorithm>
 #include <cstring>
-#include <memory>
 #include <span>
+#include <utility>
 
 #include "broadphase/box.hpp"
+#include "hierarchies/geometry/large_vector.hpp"
 
 namespace bvlab {
 
 class PairList {
  public:
+  PairList() = default;
+  PairList(PairList&& other) noexcept
+      : pairs_(std::exchange(other.pairs_, nullptr)),
+        size_(std::exchange(other.size_, 0)),
+        capacity_(std::exchange(other.capacity_, 0)) {}
+  PairList& operator=(PairList&& other) noexcept {
+    std::swap(pairs_, other.pairs_), std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+    return *this;
+  }
+  ~PairList() {
+    if (pairs_) LargeAllocator<Pair>().deallocate(pairs_, capacity_);
+  }
+
   void clear() { size_ = 0; }
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   std::size_t capacity() const { return capacity_; }
-  Pair* data() { return pairs_.get(); }
+  Pair* data() { return pairs_; }
   Pair& operator[](std::size_t k) { return pairs_[k]; }
   const Pair& operator[](std::size_t k) const { return pairs_[k]; }
-  std::span<const Pair> view() const { return {pairs_.get(), size_}; }
+  std::span<const Pair> view() const { return {pairs_, size_}; }
 
   /// Where the next pairs go: there is room for `more` of them.
   Pair* room_for(std::size_t more) {
-    if (size_ + more > capacity_) grow(size_ + more);
-    return pairs_.get() + size_;
+    if (size_ + more > capacity_) grow(std::max(size_ + more, capacity_ + capacity_ / 2));
+    return pairs_ + size_;
+  }
+  /// The same, where `done` of `all` parts of the work are done.
+  Pair* room_for(std::size_t more, std::size_t done, std::size_t all) {
+    if (size_ + more > capacity_) [[unlikely]]
+      grow_by_share(size_ + more, static_cast<double>(done) / static_cast<double>(all));
+    return pairs_ + size_;
   }
   /// Everything before `end`, which lies in the last room given, is in the list now.
-  void end_at(const Pair* end) { size_ = static_cast<std::size_t>(end - pairs_.get()); }
+  void end_at(const Pair* end) { size_ = static_cast<std::size_t>(end - pairs_); }
   void resize_down(std::size_t size) { size_ = size; }
 
   void push(Pair pair) {
@@ -43,15 +65,21 @@ class PairList {
   }
 
  private:
-  void grow(std::size_t least) {
-    const std::size_t capacity = std::max(least, capacity_ + capacity_ / 2);
-    auto pairs = std::make_unique_for_overwrite<Pair[]>(capacity);
-    if (size_) std::memcpy(pairs.get(), pairs_.get(), size_ * sizeof(Pair));
-    pairs_ = std::move(pairs);
-    capacity_ = capacity;
+  /// An eighth more than what was done lets expect; a start is no more than a hint.
+  void grow_by_share(std::size_t least, double done) {
+    const double expected = done > 0 ? 1.125 * static_cast<double>(size_) / done : 0;
+    const double most = 16.0 * static_cast<double>(std::max(capacity_, least));
+    grow(std::max(
+        {least, capacity_ + capacity_ / 2, static_cast<std::size_t>(std::min(expected, most))}));
+  }
+  void grow(std::size_t capacity) {
+    Pair* const pairs = LargeAllocator<Pair>().allocate(capacity);
+    if (size_) std::memcpy(pairs, pairs_, size_ * sizeof(Pair));
+    if (pairs_) LargeAllocator<Pair>().deallocate(pairs_, capacity_);
+    pairs_ = pairs, capacity_ = capacity;
   }
 
-  std::unique_ptr<Pair[]> pairs_;
+  Pair* pairs_ = nullptr;
   std::size_t size_ = 0;
   std::size_t capacity_ = 0;
 };

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "hierarchies/geometry/threads.hpp"
+
 namespace bvlab {
 
 /// Orders as `x` does: the bits of a positive number grow with it, those of a negative one shrink.
@@ -43,9 +45,9 @@ void insertion_sort(std::span<Keyed<Key>> items) {
 
 /// Sorts `items` by the lowest `bits` of their keys, above which there is nothing, using `spare`
 /// for room.
-template <class Key>
-void radix_sort(std::vector<Keyed<Key>>& items, std::vector<Keyed<Key>>& spare,
-                int bits = 8 * sizeof(Key)) {
+template <class Key, class Allocator>
+void radix_sort(std::vector<Keyed<Key>, Allocator>& items,
+                std::vector<Keyed<Key>, Allocator>& spare, int bits = 8 * sizeof(Key)) {
   if (items.size() < 64) return insertion_sort(std::span(items));
   constexpr int widest = 11, most_passes = (8 * sizeof(Key) + widest - 1) / widest;
   const int passes = (bits + widest - 1) / widest, digit = (bits + passes - 1) / passes;
@@ -65,6 +67,42 @@ void radix_sort(std::vector<Keyed<Key>>& items, std::vector<Keyed<Key>>& spare,
     Keyed<Key>* to = spare.data();
     for (std::size_t k = 0; k < items.size(); ++k)
       to[count[(from[k].key >> shift) & low]++] = from[k];
+    std::swap(items, spare);
+  }
+}
+
+/// The same, in the same order, by several threads where there are many items: each counts and
+/// moves a part of them.
+template <class Key, class Allocator>
+void radix_sort(std::vector<Keyed<Key>, Allocator>& items,
+                std::vector<Keyed<Key>, Allocator>& spare, int bits, Threads& threads) {
+  const std::size_t parts = threads.count();
+  if (parts == 1 || items.size() < (1u << 15)) return radix_sort(items, spare, bits);
+  constexpr int widest = 11;
+  const int passes = (bits + widest - 1) / widest, digit = (bits + passes - 1) / passes;
+  const Key low = (Key{1} << digit) - 1;
+  using Counts = std::array<std::uint32_t, 1 << widest>;
+  std::vector<Counts> counts(parts);  // of each part of the items
+  spare.resize(items.size());
+  const auto first = [&](std::size_t part) { return items.size() * part / parts; };
+  for (int pass = 0; pass < passes; ++pass) {
+    const int shift = digit * pass;
+    threads.share(parts, [&](std::size_t part, std::size_t) {
+      Counts& count = counts[part];
+      std::fill_n(count.begin(), low + 1, 0u);
+      for (std::size_t k = first(part); k < first(part + 1); ++k)
+        ++count[(items[k].key >> shift) & low];
+    });
+    std::uint32_t sum = 0;
+    for (std::size_t value = 0; value <= low; ++value)
+      for (Counts& count : counts) sum += std::exchange(count[value], sum);
+    threads.share(parts, [&](std::size_t part, std::size_t) {
+      Counts& count = counts[part];
+      const Keyed<Key>* from = items.data();
+      Keyed<Key>* to = spare.data();
+      for (std::size_t k = first(part); k < first(part + 1); ++k)
+        to[count[(from[k].key >> shift) & low]++] = from[k];
+    });
     std::swap(items, spare);
   }
 }

@@ -12,6 +12,8 @@
 
 #include "broadphase/structures/block.hpp"
 #include "broadphase/structures/radix_sort.hpp"
+#include "hierarchies/geometry/large_vector.hpp"
+#include "hierarchies/geometry/threads.hpp"
 
 namespace bvlab {
 
@@ -21,19 +23,24 @@ class SpatialOrder {
   using Item = Keyed<std::uint32_t>;
 
   /// The indices of the boxes in their order, as the `id` of each item; valid until the next call.
-  std::span<const Item> operator()(Boxes<T> boxes) {
+  std::span<const Item> operator()(Boxes<T> boxes, Threads& threads) {
     items_.resize(boxes.size());
     if (boxes.empty()) return {};
-    const Summary all = summary(boxes);
-    classify(boxes, all);
+    const Summary all = summary(boxes, threads);
+    classify(boxes, all, threads);
     const int class_bits = std::bit_width(classes_ - 1u);
     // A hundred cells to a box: few share one, and the rest are ordered again.
     const int enough = (std::bit_width(boxes.size()) + 7 + 2) / 3;
     const int digits = std::min({10, (32 - class_bits) / 3, enough});
-    make_keys(boxes, Cells(all, digits));
-    radix_sort(items_, spare_, std::max(1, 3 * digits + class_bits));
+    make_keys(boxes, Cells(all, digits), threads);
+    radix_sort(items_, spare_, std::max(1, 3 * digits + class_bits), threads);
     refine(boxes);
     return items_;
+  }
+
+  std::span<const Item> operator()(Boxes<T> boxes) {
+    Threads alone;
+    return (*this)(boxes, alone);
   }
 
   std::uint32_t classes() const { return classes_; }
@@ -81,39 +88,70 @@ class SpatialOrder {
     }
   };
 
-  /// Calls visit(block, first, count) for every sixteen boxes of the frame; lanes past the last
-  /// repeat it.
+  /// Calls visit(block, first, count) for every sixteen boxes of the frame from `begin` to `end`,
+  /// where `begin` is a multiple of sixteen; lanes past the last repeat it.
   template <class Visit>
-  static void for_blocks(Boxes<T> boxes, Visit&& visit) {
+  static void for_blocks(Boxes<T> boxes, std::size_t begin, std::size_t end, Visit&& visit) {
     Block<T> block;
-    std::size_t first = 0;
-    for (; first + block_width <= boxes.size(); first += block_width) {
+    std::size_t first = begin;
+    for (; first + block_width <= end; first += block_width) {
       load(block, boxes.data() + first);
       visit(block, first, std::size_t{block_width});
     }
-    if (first == boxes.size()) return;
+    if (first == end) return;
     for (int lane = 0; lane < block_width; ++lane)
-      block.put(lane, boxes[std::min(first + lane, boxes.size() - 1)]);
-    visit(block, first, boxes.size() - first);
+      block.put(lane, boxes[std::min(first + lane, end - 1)]);
+    visit(block, first, end - first);
   }
-  static Summary summary(Boxes<T> boxes) {
-    Tally tally;
-    for_blocks(boxes, [&](const Block<T>& block, std::size_t, std::size_t) { tally.add(block); });
-    return tally.sum();
+
+  /// Calls work(begin, end, worker) for parts of the boxes, on all threads.
+  static constexpr std::size_t stretch = 4096;
+  template <class Work>
+  static void for_stretches(Boxes<T> boxes, Threads& threads, const Work& work) {
+    threads.share((boxes.size() + stretch - 1) / stretch,
+                  [&](std::size_t part, std::size_t worker) {
+                    work(part * stretch, std::min((part + 1) * stretch, boxes.size()), worker);
+                  });
+  }
+
+  static Summary summary(Boxes<T> boxes, Threads& threads) {
+    std::vector<Tally> tallies(threads.count());
+    for_stretches(boxes, threads, [&](std::size_t begin, std::size_t end, std::size_t worker) {
+      // Of its own while it is written to.
+      Tally tally = tallies[worker];
+      for_blocks(boxes, begin, end,
+                 [&](const Block<T>& block, std::size_t, std::size_t) { tally.add(block); });
+      tallies[worker] = tally;
+    });
+    Summary all = tallies[0].sum();
+    for (std::size_t k = 1; k < tallies.size(); ++k) {
+      const Summary other = tallies[k].sum();
+      for (int axis = 0; axis < 3; ++axis) {
+        all.lo[axis] = std::min(all.lo[axis], other.lo[axis]);
+        all.hi[axis] = std::max(all.hi[axis], other.hi[axis]);
+      }
+      all.least = std::min(all.least, other.least), all.most = std::max(all.most, other.most);
+    }
+    return all;
   }
 
   /// Finds the classes in use and numbers them; one where all boxes are about alike. Boxes smaller
   /// than the distance to their neighbours are all of one class: their size does not widen a leaf.
-  void classify(Boxes<T> boxes, const Summary& all) {
+  void classify(Boxes<T> boxes, const Summary& all, Threads& threads) {
     classes_ = 1;
     if (all.most <= 8 * all.least) return;
     const int small = exponent(spacing(all, boxes.size()));
     kinds_.resize(boxes.size());
-    std::array<std::uint8_t, exponents * shapes> used{};
-    for (std::size_t k = 0; k < boxes.size(); ++k) {
-      kinds_[k] = static_cast<std::uint16_t>(kind(boxes[k], small));
-      used[kinds_[k]] = 1;
-    }
+    std::vector<std::array<std::uint8_t, exponents * shapes>> seen(threads.count());
+    for_stretches(boxes, threads, [&](std::size_t begin, std::size_t end, std::size_t worker) {
+      for (std::size_t k = begin; k < end; ++k) {
+        kinds_[k] = static_cast<std::uint16_t>(kind(boxes[k], small));
+        seen[worker][kinds_[k]] = 1;
+      }
+    });
+    auto& used = seen[0];
+    for (const auto& other : seen)
+      for (std::size_t k = 0; k < used.size(); ++k) used[k] |= other[k];
     // From the largest size down, three powers of two to a class.
     classes_ = 0;
     for (int top = exponents - 1; top >= 0; --top) {
@@ -206,8 +244,13 @@ class SpatialOrder {
     }
   };
 
-  void make_keys(Boxes<T> boxes, const Cells& cells) {
-    for_blocks(boxes, [&](const Block<T>& block, std::size_t first, std::size_t count) {
+  void make_keys(Boxes<T> boxes, const Cells& cells, Threads& threads) {
+    for_stretches(boxes, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+      make_keys(boxes, begin, end, cells);
+    });
+  }
+  void make_keys(Boxes<T> boxes, std::size_t begin, std::size_t end, const Cells& cells) {
+    for_blocks(boxes, begin, end, [&](const Block<T>& block, std::size_t first, std::size_t count) {
       std::uint32_t key[block_width];
       cells.keys(block, key);
       if (classes_ > 1)
@@ -269,11 +312,11 @@ class SpatialOrder {
     }
   }
 
-  std::vector<Item> items_, spare_;
+  LargeVector<Item> items_, spare_;
   std::vector<std::pair<std::size_t, std::size_t>> runs_;
   std::array<std::uint32_t, exponents * shapes> class_of_{};
   std::uint32_t classes_ = 1;
-  std::vector<std::uint16_t> kinds_;  ///< of each box, where there are classes
+  LargeVector<std::uint16_t> kinds_;  ///< of each box, where there are classes
 };
 
 }  // namespace bvlab

@@ -14,6 +14,7 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/box_methods.hpp"
 #include "hierarchies/geometry/scalar.hpp"
+#include "hierarchies/geometry/threads.hpp"
 #include "traversal/primitives/precisions.hpp"
 
 namespace bvlab {
@@ -98,7 +99,12 @@ Found find(const Arguments& arguments, const Array<T>& trace) {
   return found;
 }
 
-void run(const Arguments& arguments) {
+void run(Arguments arguments) {
+  if (arguments.threads > 1 && !Threads::available) {
+    std::fprintf(stderr, "--threads %d: there is one thread, for TBB was not found\n",
+                 arguments.threads);
+    arguments.threads = 1;
+  }
   make_method<float>(arguments.method,
                      MethodSettings{});  // refuses an unknown name before the file is read
   if (!Precisions::with(arguments.precision, [](auto) {}))

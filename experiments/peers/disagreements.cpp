@@ -8,6 +8,7 @@
 
 #include "experiments/peers/triangle_oracle.hpp"
 #include "experiments/replay/triangle_test.hpp"
+#include "experiments/scenes/posed_triangles.hpp"
 #include "traversal/all_pairs.hpp"
 
 namespace bvlab {
@@ -22,24 +23,6 @@ bool exactly_touching(const Triangle& a, const Triangle& b) {
 #endif
 }
 
-std::vector<Triangle> posed_triangles(const TriangleMesh& mesh, const Pose& pose) {
-  std::vector<Triangle> triangles;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    triangles.push_back(mesh.corners(t));
-    for (auto& corner : triangles.back()) corner = pose(corner);
-  }
-  return triangles;
-}
-
-bool boxes_overlap(const Triangle& a, const Triangle& b) {
-  for (int d = 0; d < 3; ++d) {
-    const auto [low_a, high_a] = std::minmax({a[0][d], a[1][d], a[2][d]});
-    const auto [low_b, high_b] = std::minmax({b[0][d], b[1][d], b[2][d]});
-    if (high_a < low_b || high_b < low_a) return false;
-  }
-  return true;
-}
-
 /// One frame's judge.
 class Judge {
  public:
@@ -52,7 +35,7 @@ class Judge {
     const auto a = of(i), b = of(j);
     return std::any_of(a.begin(), a.end(), [&](const Triangle& s) {
       return std::any_of(b.begin(), b.end(), [&](const Triangle& t) {
-        return boxes_overlap(s, t) && exactly_touching(s, t);
+        return boxes_meet(s, t) && exactly_touching(s, t);
       });
     });
   }

@@ -7,6 +7,7 @@
 #include "experiments/closest_features/closest_features.hpp"
 #include "experiments/peers/bullet.hpp"
 #include "experiments/peers/cgal.hpp"
+#include "experiments/peers/coal.hpp"
 #include "experiments/peers/embree.hpp"
 #include "experiments/peers/fcl.hpp"
 #include "experiments/peers/fcl_convex.hpp"
@@ -44,6 +45,13 @@ constexpr Peer list[] = {
      replay_fcl<FclModel::kdop18>},
     {"fcl-kdop24", "FCL 0.7: 24-DOPs; copies both meshes at every question", meeting,
      replay_fcl<FclModel::kdop24>},
+#endif
+#if BVLAB_COAL
+    {"coal-obb", "Coal 3.0: oriented boxes; touching is less than 1e-12 apart", meeting,
+     replay_coal<CoalModel::obb>},
+    {"coal-obbrss", "Coal 3.0: oriented boxes and swept rectangles; touching likewise", all_three,
+     replay_coal<CoalModel::obbrss>},
+    {"coal-rss", "Coal 3.0: swept rectangles", "distance", replay_coal<CoalModel::rss>},
 #endif
 #if BVLAB_BULLET
     {"bullet", "Bullet 3.24: GImpact, float32, margins 0; looks for all contacts", yes_or_no,
@@ -88,6 +96,9 @@ constexpr std::string_view absent[] = {
 #if !BVLAB_FCL
     "fcl-obb",    "fcl-obbrss",      "fcl-kios",   "fcl-rss", "fcl-aabb",
     "fcl-kdop16", "fcl-kdop18",      "fcl-kdop24", "fcl-gjk", "libccd-gjk",
+#endif
+#if !BVLAB_COAL
+    "coal-obb",   "coal-obbrss",     "coal-rss",
 #endif
 #if !BVLAB_BULLET
     "bullet",

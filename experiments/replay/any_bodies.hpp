@@ -79,7 +79,7 @@ class AnyPair {
   Counter& counter_;
 };
 
-/// The bodies, as `AllPairsOf` and `WorldOf` take them.
+/// The bodies, as `AllPairsOf` and `StrategyPairs` take them.
 template <class Query, class Counter>
 class AnyBodies {
  public:

@@ -9,15 +9,15 @@
 #include <memory>
 
 #include "experiments/replay/any_bodies.hpp"
-#include "experiments/replay/box_methods.hpp"
 #include "experiments/replay/play_entry.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/replay_shares.hpp"
 #include "experiments/replay/strategy_text.hpp"
+#include "experiments/replay/touching_world.hpp"
 #include "experiments/replay/triangle_test.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
-#include "traversal/world_of.hpp"
+#include "traversal/strategy_pairs.hpp"
 
 namespace bvlab {
 
@@ -225,64 +225,20 @@ void play(const VolumeEntry& volume, const AnyHierarchies& hierarchies, const Tr
   play_over<Query>(engine, trace, variant, options, result);
 }
 
-/// The broad phase of whole scenes, compiled once for all strategies.
-class NearBoxes {
- public:
-  explicit NearBoxes(const MethodSettings& settings)
-      : method_(make_method<float>("auto", settings)) {}
-  std::span<const Pair> overlapping(Boxes<float> boxes) { return method_->overlapping(boxes); }
-  PairChanges changes() const { return method_->changes(); }
-
- private:
-  std::unique_ptr<AnyMethod<float>> method_;
-};
-
-/// A whole scene that says which pairs touch.
-template <class Strategy, class Query>
-class TouchingWorld final : public WorldEngine {
- public:
-  TouchingWorld(const VolumeEntry& volume, std::unique_ptr<AnyHierarchies> hierarchies,
-                std::size_t objects, const Variant& variant)
-      : hierarchies_(std::move(hierarchies)),
-        world_(bodies_of<Query, NotCounting>(volume, *hierarchies_, objects),
-               made_from<Strategy>(variant.strategy)),
-        how_{triangle_test(variant.precision), 0} {}
-
-  void move(std::uint32_t object, const Pose& pose) override { world_.move(object, pose); }
-
-  void update() override {
-    NotCounting counter;
-    world_.update(
-        counter, [&](const ObjectPair&) { return Query::asked(how_); },
-        [&](std::uint32_t slot, const ObjectPair& pair, const Query& query) {
-          touching_.put(slot, pair, query.answer());
-        },
-        [&](std::uint32_t slot) { touching_.drop(slot); });
-  }
-
-  std::span<const ObjectPair> touching() override { return touching_.pairs(); }
-  std::size_t near() const override { return world_.near(); }
-  std::size_t asked() const override { return world_.asked(); }
-
- private:
-  std::unique_ptr<AnyHierarchies> hierarchies_;
-  WorldOf<AnyBodies<Query, NotCounting>, Strategy, NearBoxes> world_;
-  TouchingPairs touching_;
-  QueryOptions how_;
-};
-
 /// Null where the query is no matter of yes or no.
 template <class Strategy, class Query>
 std::unique_ptr<WorldEngine> world(const VolumeEntry& volume,
                                    std::unique_ptr<AnyHierarchies> hierarchies, std::size_t objects,
-                                   const Variant& variant) {
-  if constexpr (requires(const Query& query) {
-                  { query.answer() } -> std::same_as<bool>;
-                })
-    return std::make_unique<TouchingWorld<Strategy, Query>>(volume, std::move(hierarchies), objects,
-                                                            variant);
-  else
+                                   const Variant& variant, int threads) {
+  using Pairs = StrategyPairs<AnyBodies<Query, NotCounting>, Strategy>;
+  if constexpr (SaysYesOrNo<Query>) {
+    Pairs pairs(bodies_of<Query, NotCounting>(volume, *hierarchies, objects),
+                made_from<Strategy>(variant.strategy));
+    return std::make_unique<TouchingWorld<Pairs, Query, std::unique_ptr<AnyHierarchies>>>(
+        std::move(hierarchies), std::move(pairs), variant, threads);
+  } else {
     return nullptr;
+  }
 }
 
 }  // namespace detail

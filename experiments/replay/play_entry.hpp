@@ -22,7 +22,7 @@ struct PlayEntry {
   /// A whole scene of that strategy; null for a query that is not answered by yes or no.
   std::unique_ptr<WorldEngine> (*world)(const VolumeEntry& volume,
                                         std::unique_ptr<AnyHierarchies> hierarchies,
-                                        std::size_t objects, const Variant& variant);
+                                        std::size_t objects, const Variant& variant, int threads);
 };
 
 }  // namespace bvlab

@@ -87,12 +87,16 @@ BudgetedResult replay_budgeted(std::span<const TriangleMesh> meshes, const Trace
 }
 
 std::unique_ptr<WorldEngine> make_world(std::span<const TriangleMesh> meshes, std::size_t objects,
-                                        const Variant& variant) {
+                                        const Variant& variant, int threads) {
   check(variant);
-  need_binary(variant, "whole scenes");
-  const VolumeEntry& volume = volume_entry(variant.volume);
-  auto world = play_entry(name_of(variant.strategy), variant.query)
-                   .world(volume, volume.hierarchies(meshes, variant), objects, variant);
+  std::unique_ptr<WorldEngine> world;
+  if (variant.tree == "wide") {
+    world = wide_entry(variant.volume, variant.query).world(meshes, objects, variant, threads);
+  } else {
+    const VolumeEntry& volume = volume_entry(variant.volume);
+    world = play_entry(name_of(variant.strategy), variant.query)
+                .world(volume, volume.hierarchies(meshes, variant), objects, variant, threads);
+  }
   if (!world)
     throw Unusable("--query " + variant.query + ": whole scenes are asked yes or no alone");
   return world;

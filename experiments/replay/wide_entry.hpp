@@ -4,10 +4,12 @@
 /// lanes, every pair from the roots in every frame.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string_view>
 
 #include "experiments/replay/replay.hpp"
+#include "experiments/replay/world_frames.hpp"
 
 namespace bvlab {
 
@@ -17,6 +19,9 @@ struct WideEntry {
   /// Adds to the result, the time to build included.
   void (*play)(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
                const ReplayOptions& options, ReplayResult& result);
+  /// A whole scene; null for a query that is not answered by yes or no.
+  std::unique_ptr<WorldEngine> (*world)(std::span<const TriangleMesh> meshes, std::size_t objects,
+                                        const Variant& variant, int threads);
 };
 
 }  // namespace bvlab

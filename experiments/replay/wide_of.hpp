@@ -3,11 +3,13 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <type_traits>
 #include <vector>
 
 #include "experiments/replay/hierarchies_of.hpp"
 #include "experiments/replay/play.hpp"
+#include "experiments/replay/touching_world.hpp"
 #include "experiments/replay/wide_entry.hpp"
 #include "traversal/wide/wide_pairs.hpp"
 
@@ -19,43 +21,85 @@ namespace detail {
 template <class T>
 inline constexpr int native_fan_out = std::clamp(native_width<T>, 2, 16);
 
-template <BoundingVolume V, class Query>
-void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
-               const ReplayOptions& options, ReplayResult& result) {
-  constexpr int fan_out = native_fan_out<typename V::scalar>;
+template <BoundingVolume V>
+std::vector<WideHierarchy<V, native_fan_out<typename V::scalar>>> wide_hierarchies(
+    std::span<const TriangleMesh> meshes, const Variant& variant) {
   // Leaves are made while the tree is collapsed.
   Variant down_to_triangles = variant;
   down_to_triangles.leaf_size = 1;
-  const auto start = Clock::now();
-  std::vector<WideHierarchy<V, fan_out>> hierarchies;
+  std::vector<WideHierarchy<V, native_fan_out<typename V::scalar>>> hierarchies;
   hierarchies.reserve(meshes.size());
   for (const auto& mesh : meshes)
     hierarchies.emplace_back(mesh, topology_of(mesh, down_to_triangles), fit_of(variant),
                              variant.leaf_size);
-  result.build_seconds = seconds_since(start);
-  std::vector<WideShape<V, fan_out>> shapes;
-  for (std::size_t i = 0; i < trace.objects; ++i)
+  return hierarchies;
+}
+
+/// Object i uses mesh i mod the number of meshes.
+template <BoundingVolume V, int F>
+std::vector<WideShape<V, F>> wide_shapes(std::span<const TriangleMesh> meshes,
+                                         const std::vector<WideHierarchy<V, F>>& hierarchies,
+                                         std::size_t objects) {
+  std::vector<WideShape<V, F>> shapes;
+  for (std::size_t i = 0; i < objects; ++i)
     shapes.push_back({&meshes[i % meshes.size()], &hierarchies[i % meshes.size()]});
-  const auto with = [&]<class Memory>(std::type_identity<Memory>) {
+  return shapes;
+}
+
+/// Calls `with` with the type that is what the variant's strategy remembers.
+template <class With>
+auto with_memory(const Variant& variant, const With& with) {
+  if (variant.strategy == WideMargins::name) return with(std::type_identity<WideMargins>());
+  return with(std::type_identity<Forgetful>());
+}
+
+template <BoundingVolume V, class Query>
+void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
+               const ReplayOptions& options, ReplayResult& result) {
+  constexpr int fan_out = native_fan_out<typename V::scalar>;
+  const auto start = Clock::now();
+  const auto hierarchies = wide_hierarchies<V>(meshes, variant);
+  result.build_seconds = seconds_since(start);
+  const auto shapes = wide_shapes(meshes, hierarchies, trace.objects);
+  with_memory(variant, [&]<class Memory>(std::type_identity<Memory>) {
     const auto engine = [&](auto) {
       return [&](std::vector<ObjectPair> pairs) {
         return WidePairs<V, fan_out, RelativeFrame, Memory>(shapes, std::move(pairs));
       };
     };
     play_over<Query>(engine, trace, variant, options, result);
-  };
-  if (variant.strategy == WideMargins::name)
-    with(std::type_identity<WideMargins>());
-  else
-    with(std::type_identity<Forgetful>());
+  });
+}
+
+/// Null where the query is no matter of yes or no.
+template <BoundingVolume V, class Query>
+std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, std::size_t objects,
+                                        const Variant& variant, int threads) {
+  if constexpr (SaysYesOrNo<Query>) {
+    auto hierarchies = wide_hierarchies<V>(meshes, variant);
+    // Shapes point to what the vector holds, wherever that is moved.
+    const auto shapes = wide_shapes(meshes, hierarchies, objects);
+    return with_memory(
+        variant, [&]<class Memory>(std::type_identity<Memory>) -> std::unique_ptr<WorldEngine> {
+          using Pairs = WidePairs<V, native_fan_out<typename V::scalar>, RelativeFrame, Memory>;
+          return std::make_unique<TouchingWorld<Pairs, Query, decltype(hierarchies)>>(
+              std::move(hierarchies), Pairs(shapes), variant, threads);
+        });
+  } else {
+    return nullptr;
+  }
 }
 
 }  // namespace detail
 
 template <BoundingVolume V, class Query>
 constexpr WideEntry wide_of() {
-  return {V::name, V::description, Query::name, detail::native_fan_out<typename V::scalar>,
-          detail::play_wide<V, Query>};
+  return {V::name,
+          V::description,
+          Query::name,
+          detail::native_fan_out<typename V::scalar>,
+          detail::play_wide<V, Query>,
+          detail::wide_world<V, Query>};
 }
 
 }  // namespace bvlab

@@ -17,7 +17,7 @@ namespace bvlab {
 class WorldEngine {
  public:
   virtual ~WorldEngine() = default;
-  /// Every body is moved before the first update.
+  /// Every body is moved before the first update; ours may come later.
   virtual void move(std::uint32_t object, const Pose& pose) = 0;
   virtual void update() = 0;
   /// After `update`: the pairs that touch, i < j, in any order.
@@ -26,6 +26,9 @@ class WorldEngine {
   /// After `update`, where it is known: pairs whose boxes meet, pairs asked.
   virtual std::size_t near() const { return 0; }
   virtual std::size_t asked() const { return 0; }
+
+  /// Takes a body out of the scene until it is moved again; ours alone can.
+  virtual void take_out(std::uint32_t) {}
 };
 
 struct WorldRun {

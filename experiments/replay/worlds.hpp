@@ -8,9 +8,9 @@
 
 namespace bvlab {
 
-/// A World for the variant's volume and strategy, with the query `touching`; the meshes must
+/// A World for the variant's tree, volume and strategy, with the query `touching`; the meshes must
 /// outlive it. Throws Unusable for unknown names.
 std::unique_ptr<WorldEngine> make_world(std::span<const TriangleMesh> meshes, std::size_t objects,
-                                        const Variant& variant);
+                                        const Variant& variant, int threads = 1);
 
 }  // namespace bvlab

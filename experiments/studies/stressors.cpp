@@ -6,7 +6,10 @@
 #include <random>
 
 #include "experiments/peers/triangle_oracle.hpp"
+#include "experiments/replay/registry.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
+#include "experiments/scenes/posed_triangles.hpp"
+#include "traversal/primitives/precisions.hpp"
 
 namespace bvlab {
 namespace {
@@ -259,15 +262,6 @@ struct Box {
   }
 };
 
-std::vector<Triangle> posed_triangles(const TriangleMesh& mesh, const Pose& pose) {
-  std::vector<Triangle> triangles;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    triangles.push_back(mesh.corners(t));
-    for (auto& corner : triangles.back()) corner = pose(corner);
-  }
-  return triangles;
-}
-
 bool share_a_point(const std::vector<Triangle>& a, const std::vector<Triangle>& b) {
   std::vector<Box> boxes(b.begin(), b.end());
   for (const auto& s : a) {
@@ -291,6 +285,23 @@ std::vector<std::uint8_t> truth_of(const StressCase& stress) {
                                   posed_triangles(stress.meshes[1], poses[1])));
   }
   return truth;
+}
+
+std::vector<Variant> stressed_variants() {
+  std::vector<Variant> variants;
+  const auto add = [&](const char* tree, const std::string& volume, const std::string& strategy) {
+    Precisions::for_each([&]<class P>(std::type_identity<P>) {
+      Variant variant;
+      variant.tree = tree, variant.volume = volume, variant.strategy = strategy;
+      variant.precision = P::name;
+      variants.push_back(std::move(variant));
+    });
+  };
+  for (const auto& volume : volumes())
+    for (const auto& strategy : strategies()) add("binary", volume.name, strategy.name);
+  for (const auto& volume : wide_volumes())
+    for (const char* strategy : {"recursive", "margins"}) add("wide", volume.name, strategy);
+  return variants;
 }
 
 }  // namespace bvlab

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/replay/replay.hpp"
 #include "experiments/scenes/trace.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
@@ -32,5 +33,9 @@ std::span<const Stressor> stressors();
 /// Whether the surfaces share a point, frame by frame: every pair of triangles, for the vertices as
 /// `Pose` moves them, in rational numbers.
 std::vector<std::uint8_t> truth_of(const StressCase& stress);
+
+/// All that says whether bodies touch, at every precision: every volume and strategy over binary
+/// trees, posed into the world, and those over wide ones, in the other body's frame.
+std::vector<Variant> stressed_variants();
 
 }  // namespace bvlab

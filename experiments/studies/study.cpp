@@ -17,8 +17,9 @@ namespace {
 
 /// THE list of kinds.
 const StudyKind* const kinds[] = {&studies::boxes,     &studies::box_precision, &studies::budget,
-                                  &studies::distance,  &studies::posing,        &studies::stability,
-                                  &studies::tightness, &studies::triangles,     &studies::worlds};
+                                  &studies::distance,  &studies::frames,        &studies::memory,
+                                  &studies::posing,    &studies::stability,     &studies::tightness,
+                                  &studies::triangles, &studies::worlds};
 
 const StudyKind& kind_of(const StudyDefinition& definition) {
   std::string names;

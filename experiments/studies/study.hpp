@@ -80,6 +80,8 @@ extern const StudyKind box_precision;
 extern const StudyKind boxes;
 extern const StudyKind budget;
 extern const StudyKind distance;
+extern const StudyKind frames;
+extern const StudyKind memory;
 extern const StudyKind posing;
 extern const StudyKind stability;
 extern const StudyKind tightness;

@@ -6,12 +6,11 @@
 /// frames; beside it stand the median and the 99th percentile. A run that something else disturbed
 /// is made again. Processor time, which neighbours on the machine disturb less, stands beside that
 /// of the wall clock; `bytes` is the heap that a method holds after its last frame.
-#include <malloc.h>
-
 #include <algorithm>
 #include <random>
 #include <set>
 
+#include "experiments/files/heap_bytes.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/boxes_peers.hpp"
 #include "experiments/replay/box_methods.hpp"
@@ -136,10 +135,6 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
-}
-std::size_t heap_bytes() {
-  const auto info = mallinfo2();
-  return info.uordblks + info.hblkhd;
 }
 
 /// The same for the same set of pairs in any order.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The stability map: false answers to "do they touch" of every volume, strategy and precision, and
 /// of every peer, under every stressor. The truth is found by brute force in rational numbers.
+/// Volumes of wide trees (slab-box) are compared in the frame of one of the bodies, others in the
+/// world.
 #include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,10 +11,8 @@
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/peers.hpp"
-#include "experiments/replay/registry.hpp"
 #include "experiments/studies/stressors.hpp"
 #include "experiments/studies/study.hpp"
-#include "traversal/primitives/precisions.hpp"
 
 namespace bvlab {
 namespace {
@@ -99,15 +99,9 @@ class Map {
 
  private:
   void ours(const StressCase& stress) {
-    for (const auto& volume : volumes())
-      for (const auto& strategy : strategies())
-        Precisions::for_each([&]<class P>(std::type_identity<P>) {
-          Variant variant;
-          variant.volume = volume.name, variant.strategy = strategy.name;
-          variant.precision = P::name;
-          add("bvlab", variant.volume, variant.strategy, variant.precision,
-              replay(stress.meshes, stress.trace, variant, {}).touching);
-        });
+    for (const auto& variant : stressed_variants())
+      add("bvlab", variant.volume, variant.strategy, variant.precision,
+          replay(stress.meshes, stress.trace, variant, {}).touching);
   }
 
   void theirs(const StressCase& stress) {

@@ -8,18 +8,22 @@
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/world_peers.hpp"
+#include "experiments/replay/configurations.hpp"
 #include "experiments/replay/worlds.hpp"
 #include "experiments/scenes/extent.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/random_walk.hpp"
 #include "experiments/studies/study.hpp"
+#include "hierarchies/geometry/threads.hpp"
 
 namespace bvlab {
 namespace {
 
 struct Contestant {
   Variant variant;
-  std::string peer;  ///< empty: ours
+  std::string configuration;  ///< that the variant has by name; or empty
+  std::string peer;           ///< empty: ours
+  int threads = 1;
 };
 
 /// What all contestants are given.
@@ -70,6 +74,14 @@ Settings settings_of(const StudyDefinition& definition) {
           settings.scenes.push_back(
               {static_cast<std::size_t>(objects), room, moving, steps[k], degrees[k]});
         }
+  std::vector<int> threads;
+  for (const double each : definition.numbers("threads", {1})) {
+    if (!(each >= 1 && each <= 1024) || each != std::floor(each))
+      throw Unusable(definition.file, "threads must be whole numbers from 1 to 1024");
+    if (each > 1 && !Threads::available)
+      throw Unusable(definition.file, "threads: there is one, for TBB was not found");
+    threads.push_back(static_cast<int>(each));
+  }
   for (const auto& volume : definition.strings("volumes", {"sphere"}))
     for (const auto& strategy : definition.strings("strategies", {"recursive"})) {
       Variant variant;
@@ -78,12 +90,16 @@ Settings settings_of(const StudyDefinition& definition) {
       variant.fit = definition.strings("fit", {variant.fit}).at(0);
       variant.leaf_size = static_cast<std::uint32_t>(number("leaf_size", variant.leaf_size, 1, 64));
       check(variant);
-      settings.contestants.push_back({variant, ""});
+      for (const int each : threads) settings.contestants.push_back({variant, "", "", each});
     }
+  for (const auto& name : definition.strings("configurations", {})) {
+    const Variant variant = configured({}, name);
+    for (const int each : threads) settings.contestants.push_back({variant, name, "", each});
+  }
   for (const auto& peer : definition.strings("peers", {})) {
     if (!is_world_peer(peer))
       throw Unusable(definition.file, "peers: no '" + peer + "'; there are " + world_peer_names());
-    settings.contestants.push_back({{}, peer});
+    settings.contestants.push_back({{}, "", peer, 1});
   }
   return settings;
 }
@@ -117,7 +133,7 @@ WorldRun run_of(const Contestant& who, const TriangleMesh& mesh, const Trace& tr
                 Answers answers) {
   const auto start = std::chrono::steady_clock::now();
   const std::span meshes(&mesh, 1);
-  auto world = who.peer.empty() ? make_world(meshes, trace.objects, who.variant)
+  auto world = who.peer.empty() ? make_world(meshes, trace.objects, who.variant, who.threads)
                                 : make_world_peer(who.peer, meshes, trace.objects);
   const std::chrono::duration<double> built = std::chrono::steady_clock::now() - start;
   WorldRun run = play_frames(*world, trace, answers);
@@ -132,12 +148,12 @@ std::string nanoseconds(double seconds) {
 void run(const StudyDefinition& definition, const std::filesystem::path& folder,
          const Progress& progress) {
   const Settings settings = settings_of(definition);
-  StudyRecord record(
-      definition, folder,
-      {"objects",  "room",     "moving", "step",     "degrees", "mesh",       "polygons",
-       "frames",   "seed",     "volume", "strategy", "peer",    "repetition", "time_ns",
-       "first_ns", "build_ns", "moved",  "near",     "asked",   "touching",   "differing"},
-      9, progress);
+  StudyRecord record(definition, folder,
+                     {"objects",       "room",   "moving",  "step",       "degrees",  "mesh",
+                      "polygons",      "frames", "seed",    "volume",     "strategy", "tree",
+                      "configuration", "peer",   "threads", "repetition", "time_ns",  "first_ns",
+                      "build_ns",      "moved",  "near",    "asked",      "touching", "differing"},
+                     9, progress);
   const TriangleMesh mesh = named_mesh(settings.mesh, settings.polygons).mesh;
   std::mt19937_64 random(20260101);
   std::size_t done = 0;
@@ -170,8 +186,9 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
         const bool ours = who.peer.empty();
         Row row = key;
         for (const auto& field :
-             {ours ? who.variant.volume : "", ours ? who.variant.strategy : "", who.peer,
-              std::to_string(repetition), nanoseconds(timed.seconds),
+             {ours ? who.variant.volume : "", ours ? who.variant.strategy : "",
+              ours ? who.variant.tree : "", who.configuration, who.peer,
+              std::to_string(who.threads), std::to_string(repetition), nanoseconds(timed.seconds),
               nanoseconds(timed.first_seconds), nanoseconds(timed.build_seconds),
               std::to_string(timed.moved), ours ? std::to_string(timed.near) : "",
               ours ? std::to_string(timed.asked) : "", std::to_string(timed.touching),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/studies/wandering.hpp"
 
+#include "experiments/files/unusable.hpp"
 #include "experiments/replay/touches_any.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/named_mesh.hpp"
@@ -20,7 +21,9 @@ Wandering::Wandering(const StudyDefinition& definition)
 
 Wandering::Scene Wandering::scene(const std::string& name) const {
   Scene scene;
-  scene.meshes.push_back(named_mesh(name, polygons).mesh);
+  auto named = named_meshes(name, polygons);
+  if (named.size() != 1) throw Unusable(name + ": must be one mesh");
+  scene.meshes.push_back(std::move(named[0].mesh));
   const Extent extents[] = {extent_of(scene.meshes[0])};
   scene.radius = extents[0].radius;
   RandomWalk walk;

@@ -9,7 +9,7 @@
 namespace bvlab {
 
 struct Wandering {
-  std::vector<std::string> names;  ///< of meshes: one scene for each
+  std::vector<std::string> names;  ///< of meshes, or NAME:POLYGONS: one scene for each
   std::size_t polygons, objects, frames;
   std::uint64_t seed;
   double side, step, degrees;  ///< lengths in radii of the body

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "hierarchies/geometry/scalar.hpp"
@@ -15,19 +16,36 @@ namespace bvlab {
 
 namespace detail {
 
-/// Orthonormal to a few roundings, in rows, by decreasing spread; the identity where the covariance
-/// says nothing.
+/// Rows that are nearly orthonormal made so in long double, and rounded: each is off by u in length
+/// then, as volumes with axes rely on. Nothing where they are not nearly orthonormal.
+template <class = double>
+std::optional<Mat3<double>> orthonormalised(const Mat3<double>& rows) {
+  using Wide = Eigen::Matrix<long double, 3, 1>;
+  Wide a = rows.row(0).transpose().cast<long double>();
+  Wide b = rows.row(1).transpose().cast<long double>();
+  const auto near_unit = [](const Wide& v) { return std::abs(v.squaredNorm() - 1) < 0.1L; };
+  if (!near_unit(a)) return std::nullopt;
+  a /= std::sqrt(a.squaredNorm());
+  b -= a.dot(b) * a;
+  if (!near_unit(b)) return std::nullopt;
+  b /= std::sqrt(b.squaredNorm());
+  b -= a.dot(b) * a;
+  Mat3<double> result;
+  result.row(0) = a.cast<double>().transpose(), result.row(1) = b.cast<double>().transpose();
+  result.row(2) = a.cross(b).cast<double>().transpose();
+  return result;
+}
+
+/// In rows, by decreasing spread; the identity where the covariance says nothing.
 // Templates, so that only those who call them compile them.
 template <class = double>
 Mat3<double> axes_of(const Mat3<double>& covariance) {
   if (!covariance.allFinite()) return Mat3<double>::Identity();
   const Eigen::SelfAdjointEigenSolver<Mat3<double>> solver(covariance);
-  Vec3<double> a = solver.eigenvectors().col(2), b = solver.eigenvectors().col(1);
-  a.normalize();
-  b = (b - a.dot(b) * a).normalized();
-  Mat3<double> axes;
-  axes.row(0) = a, axes.row(1) = b, axes.row(2) = a.cross(b).normalized();
-  return axes.allFinite() ? axes : Mat3<double>::Identity();
+  Mat3<double> axes = Mat3<double>::Zero();
+  axes.row(0) = solver.eigenvectors().col(2).transpose();
+  axes.row(1) = solver.eigenvectors().col(1).transpose();
+  return orthonormalised(axes).value_or(Mat3<double>::Identity());
 }
 
 /// The largest coordinate's distance from `origin`, to scale by: squares must not overflow.

@@ -8,9 +8,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "hierarchies/geometry/principal_axes.hpp"
 #include "hierarchies/geometry/scalar.hpp"
 
 namespace bvlab {
@@ -18,6 +20,7 @@ namespace bvlab {
 namespace detail {
 
 /// In counterclockwise order, without points on edges but for rounding (Andrew's monotone chain).
+/// Points that are all the same are left twice.
 // Templates, so that only those who call them compile them.
 template <class = double>
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
@@ -58,21 +61,22 @@ Vec3<double> sides_along(const Mat3<double>& axes, std::span<const Vec3<double>>
   return high - low;
 }
 
-/// Turns the axes about the k-th of them.
+/// Turns the axes about the k-th of them; nothing where no edge says how far.
 template <class = double>
-Mat3<double> turned_about(int k, const Mat3<double>& axes, double height,
-                          std::span<const Vec3<double>> points) {
+std::optional<Mat3<double>> turned_about(int k, const Mat3<double>& axes, double height,
+                                         std::span<const Vec3<double>> points) {
   const int i = (k + 1) % 3, j = (k + 2) % 3;
   std::vector<Eigen::Vector2d> flat;
   flat.reserve(points.size());
   for (const auto& p : points) flat.emplace_back(axes.row(i).dot(p), axes.row(j).dot(p));
   const auto hull = convex_hull(std::move(flat));
   double least = std::numeric_limits<double>::infinity();
-  Eigen::Vector2d best(1, 0);
+  Eigen::Vector2d best(0, 0);
   for (std::size_t e = 0; e < hull.size(); ++e) {
     const Eigen::Vector2d along = (hull[(e + 1) % hull.size()] - hull[e]).normalized(),
                           across(-along.y(), along.x());
-    if (!along.allFinite()) continue;
+    // An edge without a length, or too short to be told the direction of.
+    if (!(std::abs(along.squaredNorm() - 1) < 0.5)) continue;
     Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()),
                     high = -low;
     for (const auto& p : hull) {
@@ -84,9 +88,9 @@ Mat3<double> turned_about(int k, const Mat3<double>& axes, double height,
       least = surface, best = along;
   }
   Mat3<double> turned = axes;
-  turned.row(i) = (best.x() * axes.row(i) + best.y() * axes.row(j)).normalized();
-  turned.row(j) = axes.row(k).cross(turned.row(i)).normalized();
-  return turned;
+  turned.row(i) = best.x() * axes.row(i) + best.y() * axes.row(j);
+  turned.row(j) = axes.row(k).cross(turned.row(i));
+  return orthonormalised(turned);
 }
 
 }  // namespace detail
@@ -107,19 +111,19 @@ Mat3<double> tight_axes(const Mat3<double>& start, std::span<const Vec3<double>>
   for (double before = std::numeric_limits<double>::infinity(); surface < 0.99 * before;) {
     before = surface;
     for (int k = 0; k < 3; ++k) {
-      const Mat3<double> turned =
+      const auto turned =
           detail::turned_about(k, axes, detail::sides_along(axes, scaled)[k], scaled);
-      const double reached = detail::half_surface(detail::sides_along(turned, scaled));
-      if (turned.allFinite() && reached < surface) axes = turned, surface = reached;
+      if (!turned) continue;
+      const double reached = detail::half_surface(detail::sides_along(*turned, scaled));
+      if (reached < surface) axes = *turned, surface = reached;
     }
   }
   const Vec3<double> sides = detail::sides_along(axes, scaled);
   int order[3] = {0, 1, 2};
   std::sort(order, order + 3, [&](int i, int j) { return sides[i] > sides[j]; });
-  Mat3<double> sorted;
+  Mat3<double> sorted = axes;
   sorted.row(0) = axes.row(order[0]), sorted.row(1) = axes.row(order[1]);
-  sorted.row(2) = axes.row(order[0]).cross(axes.row(order[1])).normalized();
-  return sorted;
+  return detail::orthonormalised(sorted).value_or(axes);
 }
 
 }  // namespace bvlab

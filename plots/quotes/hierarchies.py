@@ -183,3 +183,41 @@ def closest_features(record):
 
 
 stated(RESULTS, "what the definition sets", "hulls of 80 to 8000 faces", "off by more than 1e-12", "(Klosowski 1998)")
+
+
+@quotes("frames", RESULTS,
+        "Posing in the other body's frame poses {posed:.2f} of the volumes where bodies are near each other, and {sparse:.2f} where few are, "
+        "at {dearer:.1f} times the price a volume",
+        "boxes along the axes make {aabb:.2f} of the tests there and K-DOPs {kdops:.2f}, for siblings are as tight as they were fitted; "
+        "for all others they are the same to {same:.0f} %",
+        "a slab-box is tested in {slab_relative:.1f} ns there and {slab_world:.1f} here",
+        "takes {slab:.2f} of the world's time with slab-boxes, {aabbs:.2f} with boxes along the axes and {others:.2f} with the others",
+        "Sixteen children take {sixteen:.2f} of the time of two, and {eight:.2f} of that of eight",
+        "the fastest, slab-boxes in the other body's frame, takes {best:.2f} us")
+def frames(record):
+    rows = records.read(record)
+    records.wrong_answers(rows)
+    cell = ["mesh", "side", "volume", "fan_out", "frame"]
+    middle = rows.assign(us=rows.time_ns / rows.pairs / 1e3).groupby(cell)[["n_u", "n_v", "us", "pose_ns", "test_ns"]].median().unstack()
+    wide = middle.xs(16, level="fan_out")
+    ratio = {of: wide[of].relative / wide[of].world for of in ("n_u", "n_v", "us", "pose_ns")}
+
+    def only(what, volumes):
+        return what[what.index.get_level_values("volume").isin(volumes)]
+    near = ratio["n_u"].index.get_level_values("side") == rows.side.min()
+    kdops, same = ["kdop14", "kdop18", "kdop26"], ["sphere", "obb", "rss", "shell"]
+    claim((only(ratio["n_v"], ["aabb", *kdops]) < 1).all(), "what is bound along axes makes fewer tests in the other body's frame")
+    test = only(wide.test_ns, ["slab-box"])
+    us = middle.us.stack()
+    fastest = us.groupby(["mesh", "side"]).idxmin()
+    claim(all(at[2] == "slab-box" and at[4] == "relative" for at in fastest), "slab-boxes in the other body's frame are fastest")
+    by_fan_out = us.unstack("fan_out")
+    return {"posed": Interval(ratio["n_u"][near]), "sparse": Interval(ratio["n_u"][~near]),
+            "dearer": Interval(only(ratio["pose_ns"], ["aabb", *kdops, *same])),
+            "aabb": Interval(only(ratio["n_v"], ["aabb"])), "kdops": Interval(only(ratio["n_v"], kdops)),
+            "same": (100 * (only(ratio["n_v"], same) - 1).abs()).max().clip(1),
+            "slab_relative": Interval(test.relative), "slab_world": Interval(test.world),
+            "slab": Interval(only(ratio["us"], ["slab-box"])), "aabbs": Interval(only(ratio["us"], ["aabb"])),
+            "others": Interval(only(ratio["us"], [*kdops, *same])),
+            "sixteen": (by_fan_out[16] / by_fan_out[2]).median(), "eight": (by_fan_out[16] / by_fan_out[8]).median(),
+            "best": Interval(us.groupby(["mesh", "side"]).min())}

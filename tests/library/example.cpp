@@ -6,7 +6,6 @@
 #include "hierarchies/volumes/obb.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
-#include "traversal/strategies.hpp"
 #include "traversal/world.hpp"
 
 using namespace bvlab;
@@ -30,8 +29,9 @@ int main() {
   std::printf("apart by %.6f\n", distance.distance());
 
   // Many bodies: which touch? Only those that moved, and are near others, are asked.
-  const std::vector<Shape<Volume>> shapes(100, {&mesh, &hierarchy});
-  World<Eight, Volume, Adaptive> world(shapes, Adaptive());
+  const auto tree = Recommended::hierarchy(mesh);
+  const std::vector<Recommended::Shape> shapes(100, {&mesh, &tree});
+  World world(shapes);  // World(shapes, 2) has two threads
   TouchingPairs touching;
   for (int frame = 0; frame < 10; ++frame) {
     for (std::uint32_t i = 0; i < shapes.size(); ++i)

@@ -12,6 +12,7 @@
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/replay.hpp"
 #include "experiments/scenes/named_mesh.hpp"
+#include "experiments/scenes/posed_triangles.hpp"
 #include "experiments/scenes/random_walk.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 #include "experiments/scenes/simplify_mesh.hpp"
@@ -75,22 +76,13 @@ std::pair<std::size_t, std::size_t> odd_edges(const TriangleMesh& mesh) {
   return odd;
 }
 
-bool boxes_overlap(const Triangle& a, const Triangle& b) {
-  for (int d = 0; d < 3; ++d) {
-    const auto [low_a, high_a] = std::minmax({a[0][d], a[1][d], a[2][d]});
-    const auto [low_b, high_b] = std::minmax({b[0][d], b[1][d], b[2][d]});
-    if (high_a < low_b || high_b < low_a) return false;
-  }
-  return true;
-}
-
 bool intersects_itself(const TriangleMesh& mesh) {
   for (std::size_t s = 0; s < mesh.triangles.size(); ++s)
     for (std::size_t t = 0; t < s; ++t) {
       const auto &a = mesh.triangles[s], &b = mesh.triangles[t];
       if (std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end()) continue;
       const Triangle one = mesh.corners(s), other = mesh.corners(t);
-      if (boxes_overlap(one, other) && oracle::intersect(one, other)) return true;
+      if (boxes_meet(one, other) && oracle::intersect(one, other)) return true;
     }
   return false;
 }
@@ -115,17 +107,13 @@ ReplayResult brute_force(const TriangleMesh& mesh, const Trace& trace) {
   for (std::size_t frame = 0; frame < trace.frames; ++frame) {
     trace.poses(frame, poses);
     std::array<std::vector<Triangle>, 2> triangles_of_body;
-    for (std::size_t i = 0; i < 2; ++i)
-      for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        triangles_of_body[i].push_back(mesh.corners(t));
-        for (auto& corner : triangles_of_body[i].back()) corner = poses[i](corner);
-      }
+    for (std::size_t i = 0; i < 2; ++i) triangles_of_body[i] = posed_triangles(mesh, poses[i]);
     double least = std::numeric_limits<double>::infinity();
     const std::size_t before = truth.contacts.size();
     for (std::uint32_t s = 0; s < triangles_of_body[0].size(); ++s)
       for (std::uint32_t t = 0; t < triangles_of_body[1].size(); ++t) {
         const Triangle &a = triangles_of_body[0][s], &b = triangles_of_body[1][t];
-        if (boxes_overlap(a, b) && oracle::intersect(a, b))
+        if (boxes_meet(a, b) && oracle::intersect(a, b))
           truth.contacts.push_back({static_cast<std::uint32_t>(frame), 0, 1, s, t});
         least = std::min(least, distance(a, b).distance);
       }
@@ -136,8 +124,8 @@ ReplayResult brute_force(const TriangleMesh& mesh, const Trace& trace) {
 }
 
 void expect_equal(const ReplayResult& found, const ReplayResult& truth, std::string_view query) {
-  if (query == "touching") EXPECT_EQ(found.touching, truth.touching);
-  if (query == "contacts") EXPECT_EQ(found.contacts, truth.contacts);
+  EXPECT_TRUE(query != "touching" || found.touching == truth.touching);
+  EXPECT_TRUE(query != "contacts" || found.contacts == truth.contacts);
   if (query != "distance") return;
   ASSERT_EQ(found.distances.size(), truth.distances.size());
   for (std::size_t i = 0; i < truth.distances.size(); ++i)

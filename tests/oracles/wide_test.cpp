@@ -2,6 +2,7 @@
 /// Wide trees of boxes with slabs answer as brute force does: every query, fan-out and frame of
 /// comparison.
 #include "hierarchies/wide/slab_box_facing.hpp"
+#include "tests/laws/frame_laws.hpp"
 #include "tests/oracles/wide_scenes.hpp"
 
 namespace bvlab {
@@ -24,6 +25,12 @@ TEST(Wide, EveryFanOutIsBruteForce) {
   expect_touching<SlabBox<float>, 2, RelativeFrame>();
   expect_touching<SlabBox<float>, 4, RelativeFrame>();
   expect_touching<SlabBox<float>, 8, RelativeFrame>();
+}
+
+TEST(Wide, LawsHoldInBothFrames) {
+  expect_frame_laws<SlabBox<float>, 8, RelativeFrame>();
+  expect_frame_laws<SlabBox<float>, 4, RelativeFrame>();
+  expect_frame_laws<SlabBox<float>, 8, WorldFrame>();
 }
 
 TEST(Wide, RememberingIsBruteForce) {

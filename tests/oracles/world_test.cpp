@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "broadphase/broadphase.hpp"
+#include "experiments/replay/configurations.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/worlds.hpp"
 #include "tests/oracles/settings.hpp"
@@ -23,14 +24,22 @@ std::vector<std::uint8_t> touching(const WorldRun& run, const Trace& trace) {
   return all;
 }
 
+Variant variant_of(const char* tree, const char* volume, const char* strategy) {
+  Variant variant;
+  variant.tree = tree, variant.volume = volume, variant.strategy = strategy;
+  return variant;
+}
+
+void expect_all_pairs_answers(const Played& scene, const char* name, const Variant& variant,
+                              int threads = 1) {
+  const auto truth = replay(scene.meshes, scene.trace, {}, {}).touching;
+  const auto world = make_world(scene.meshes, scene.trace.objects, variant, threads);
+  EXPECT_EQ(touching(play_frames(*world, scene.trace, Answers::kept), scene.trace), truth)
+      << name << ' ' << variant.volume << ' ' << variant.strategy << ' ' << threads;
+}
 void expect_all_pairs_answers(const Played& scene, const char* name, const char* volume,
                               const char* strategy) {
-  const auto truth = replay(scene.meshes, scene.trace, {}, {}).touching;
-  Variant variant;
-  variant.volume = volume, variant.strategy = strategy;
-  const auto world = make_world(scene.meshes, scene.trace.objects, variant);
-  EXPECT_EQ(touching(play_frames(*world, scene.trace, Answers::kept), scene.trace), truth)
-      << name << ' ' << volume << ' ' << strategy;
+  expect_all_pairs_answers(scene, name, variant_of("binary", volume, strategy));
 }
 
 /// Everything overlaps everything; and far more bodies than `settings` has, few of which move.
@@ -52,6 +61,13 @@ TEST(World, GivesTheAnswersOfAllPairs) {
       expect_all_pairs_answers(scene, setting.name, "sphere", strategy.name.c_str());
     for (const auto& volume : volumes())
       expect_all_pairs_answers(scene, setting.name, volume.name.c_str(), "deferred");
+    for (const int threads : {1, 2, 5}) {
+      expect_all_pairs_answers(scene, setting.name, configured({}, "recommended"), threads);
+      expect_all_pairs_answers(scene, setting.name, variant_of("wide", "slab-box", "recursive"),
+                               threads);
+      expect_all_pairs_answers(scene, setting.name, variant_of("binary", "obb", "margins"),
+                               threads);
+    }
   }
 }
 

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "hierarchies/bounding_volume.hpp"
+#include "hierarchies/wide/facing.hpp"
 #include "traversal/primitives/triangle_distance.hpp"
 #include "traversal/primitives/triangle_intersection.hpp"
 
@@ -148,6 +149,25 @@ struct Hunted {
   }
 };
 
+/// As one volume of a body and a lane of the other say it, in the frame of the other.
+template <class V>
+struct SeenFromTheOther {
+  bool apart;
+  double gap;
+
+  SeenFromTheOther(const Hunted<V>& a, const Pose& pose_a, const Hunted<V>& b, const Pose& pose_b) {
+    using T = typename V::scalar;
+    using S = Batch<T, 8>;
+    using Facing = FacingOf<V>;
+    const RelativePose pose(OrthonormalPose(pose_a, a.reach), OrthonormalPose(pose_b, b.reach));
+    const auto change = Facing::frame_change(pose, a.reach, b.reach);
+    const auto one = Facing::one(a.local, T(1), change);
+    const auto lanes = in_all_lanes<S>(b.local);
+    apart = any_of(Facing::template compared<S>(one, change, lanes, S(T(1))).apart);
+    gap = static_cast<double>(Facing::template gaps<S>(one, change, lanes)[0]);
+  }
+};
+
 /// How many rounds: more where the environment says so.
 inline int hunting_rounds() {
   const char* text = std::getenv("BVLAB_HUNT_ROUNDS");
@@ -160,7 +180,7 @@ void hunt() {
   std::uint64_t seed = 0;
   for (const char letter : V::name) seed = 31 * seed + static_cast<unsigned char>(letter);
   Hunter hunter(seed);
-  int sharing = 0, apart = 0, told = 0;
+  int sharing = 0, apart = 0, told = 0, told_by_the_other = 0;
   const int rounds = hunting_rounds();
   for (int round = 0; round < rounds; ++round) {
     const double scale = std::pow(10, hunter.uniform(-15, 15));
@@ -199,6 +219,15 @@ void hunt() {
     const Vec3<double> origins[] = {Vec3<double>::Zero(), pose_a.translation, pose_b.translation};
     const Fit fit = round % 2 ? Fit::tight : Fit::published;
     const Hunted<V> hunted_a(a, fit), hunted_b(b, fit);
+    const auto expect_at_most_the_distance = [&](double gap) {
+      if (!(gap > 0)) return;
+      if (std::isinf(distance_ab))
+        for (const auto& s : world_a)
+          for (const auto& t : world_b)
+            distance_ab = std::min(distance_ab, distance(s, t).distance);
+      // The distance itself is right to 1e-14 of it and 2^-90 of the extent.
+      ASSERT_LE(gap, distance_ab * (1 + 2e-14)) << V::name << " round " << round;
+    };
     for (const auto& origin : origins) {
       const auto p = hunted_a.at(pose_a, origin), q = hunted_b.at(pose_b, origin);
       const bool said = disjoint(p, q);
@@ -207,16 +236,17 @@ void hunt() {
       ASSERT_GE(g, 0) << V::name << " round " << round;
       ASSERT_FALSE(share && g > 0) << V::name << " round " << round << " gap " << g;
       ASSERT_FALSE(share && disjoint(q, p)) << V::name << " round " << round;
-      if (g > 0) {
-        if (std::isinf(distance_ab))
-          for (const auto& s : world_a)
-            for (const auto& t : world_b)
-              distance_ab = std::min(distance_ab, distance(s, t).distance);
-        // The distance itself is right to 1e-14 of it and 2^-90 of the extent.
-        ASSERT_LE(static_cast<double>(g), distance_ab * (1 + 2e-14))
-            << V::name << " round " << round;
-      }
+      expect_at_most_the_distance(static_cast<double>(g));
+      if (testing::Test::HasFatalFailure()) return;
       told += said;
+    }
+    for (const auto& seen : {SeenFromTheOther<V>(hunted_a, pose_a, hunted_b, pose_b),
+                             SeenFromTheOther<V>(hunted_b, pose_b, hunted_a, pose_a)}) {
+      ASSERT_FALSE(share && seen.apart) << V::name << " round " << round << " from the other";
+      ASSERT_FALSE(share && seen.gap > 0) << V::name << " round " << round << " from the other";
+      expect_at_most_the_distance(seen.gap);
+      if (testing::Test::HasFatalFailure()) return;
+      told_by_the_other += seen.apart;
     }
     ++(share ? sharing : apart);
   }
@@ -224,6 +254,7 @@ void hunt() {
   EXPECT_GT(apart, rounds / 10);
   // A volume that is never disjoint would pass.
   EXPECT_GT(told, 0);
+  EXPECT_GT(told_by_the_other, 0);
 }
 
 }  // namespace

@@ -150,27 +150,38 @@ class WideMargins {
   }
   void resize(std::size_t pairs) { answers_.resize(pairs), kept_.resize(pairs); }
 
+  /// A pair that parts.
+  void forget(std::size_t p) {
+    answers_[p] = {};
+    Kept& kept = kept_[p];
+    kept.deadline = 0, kept.was_apart = false;
+    kept.pause = 0, kept.next_pause = shortest_pause;
+    kept.front.clear();
+  }
+
   /// Another query than last time begins anew.
   template <class Query>
-  void move(std::span<const Pose> poses) {
-    if (asked_ != &Query::name) {
-      std::fill(answers_.begin(), answers_.end(), Answer{});
-      std::fill(kept_.begin(), kept_.end(), Kept{});
-      asked_ = &Query::name;
-    }
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      Followed& body = bodies_[i];
-      steps_[i] = 0;
-      if (!body.place(poses[i])) continue;
-      const double displacement = body.displacement_bound();
-      steps_[i] = displacement - displacements_[i];
-      displacements_[i] = displacement, epochs_[i] = body.epoch();
-      const ReferencePose& at = body.reference_pose();
-      // A matrix stretches by its defect at most.
-      reaches_[i] =
-          (body.extent().radius * (1 + at.defect) + at.noise) * (1 + 16 * unit_roundoff<double>);
-    }
+  void begin_frame() {
+    if (asked_ == &Query::name) return;
+    std::fill(answers_.begin(), answers_.end(), Answer{});
+    std::fill(kept_.begin(), kept_.end(), Kept{});
+    asked_ = &Query::name;
   }
+  /// Where a body stands in this frame.
+  void move(std::size_t i, const Pose& pose) {
+    Followed& body = bodies_[i];
+    steps_[i] = 0;
+    if (!body.place(pose)) return;
+    const double displacement = body.displacement_bound();
+    steps_[i] = displacement - displacements_[i];
+    displacements_[i] = displacement, epochs_[i] = body.epoch();
+    const ReferencePose& at = body.reference_pose();
+    // A matrix stretches by its defect at most.
+    reaches_[i] =
+        (body.extent().radius * (1 + at.defect) + at.noise) * (1 + 16 * unit_roundoff<double>);
+  }
+  /// Where it stood in the last.
+  void rest(std::size_t i) { steps_[i] = 0; }
 
   /// Whether the answer is what it was, as far as one comparison tells.
   template <class Query>

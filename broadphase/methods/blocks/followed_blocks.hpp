@@ -146,11 +146,9 @@ class FollowedBlocks {
       tree_.set_leaf_bounds(k, bounds(tree_.leaf(k)));
     tree_.refit_above();
     candidates_.clear();
-    visits_ = 0;
-    tree_.join([&](std::uint32_t a, std::uint32_t b) {
-      ++visits_;
-      add_candidates(a, b);
-    });
+    visits_ = joined_.join_into(
+        candidates_.list(),
+        [this](PairList& list, std::uint32_t a, std::uint32_t b) { add_candidates(list, a, b); });
     if (sorted_) visits_when_sorted_ = visits_, sorted_ = false;
     candidates_at_first_ = candidates_.size();
     count_ = boxes.size();
@@ -169,7 +167,7 @@ class FollowedBlocks {
       return;
     }
     if (!joined_.holey(boxes.size()) && 3 * visits_ < 4 * visits_when_sorted_) return;
-    const auto order = joined_.order()(boxes);
+    const auto order = joined_.order()(boxes, joined_.shares().threads());
     auto& rows = candidates_.rows();
     spare_.resize((order.size() + block_width - 1) / block_width * block_width);
     for (std::size_t k = 0; k < order.size(); ++k) spare_[k] = rows[slots_[order[k].id]];
@@ -198,12 +196,11 @@ class FollowedBlocks {
     return {most<T>(fat.lo, zero - limit), least<T>(fat.hi, zero + limit)};
   }
 
-  void add_candidates(std::uint32_t a, std::uint32_t b) {
+  void add_candidates(PairList& list, std::uint32_t a, std::uint32_t b) const {
     const Block<T>& left = tree_.leaf(a);
     const Loaded<T> right(tree_.leaf(b));
     const std::uint32_t* ids = tree_.ids(a);
-    PairList& list = candidates_.list();
-    Pair* out = list.room_for(block_width * block_width + block_width);
+    Pair* out = list.room_for(block_width * block_width + block_width, a, tree_.leaves());
     LaneMask rows = a == b ? all_lanes : overlapping_lanes<Closed>(left, tree_.leaf_bounds(b));
     for (; rows; rows &= rows - 1) {
       const int row = std::countr_zero(rows);
@@ -316,7 +313,7 @@ class FollowedBlocks {
     std::erase_if(newcomers_, [&](std::uint32_t id) { return id >= boxes.size(); });
     new_boxes_.clear();
     for (const std::uint32_t id : newcomers_) new_boxes_.push_back(boxes[id]);
-    const auto order = newcomers_order_(new_boxes_);
+    const auto order = newcomers_order_(new_boxes_, joined_.shares().threads());
     const std::uint32_t first = tree_.slots();
     tree_.resize_leaves(tree_.leaves() +
                         static_cast<std::uint32_t>((order.size() + block_width - 1) / block_width));
@@ -359,17 +356,17 @@ class FollowedBlocks {
   void write_candidates(Keep keep) {
     pairs_.all.clear();
     const std::size_t count = candidates_.size();
-    if (keep != Keep::nothing || settings_.threads <= 1 || count < candidates_worth_sharing)
+    if (keep != Keep::nothing || joined_.shares().threads().count() == 1 ||
+        count < candidates_worth_sharing)
       return candidates_.compare_all(tree_.ids(0), pairs_.all, keep, pairs_.began, pairs_.ended);
     candidates_.forget_places();
-    joined_.shares()(static_cast<std::size_t>(settings_.threads), pairs_.all,
-                     [&](std::size_t t, std::size_t threads, PairList& share) {
-                       candidates_.compare_range(tree_.ids(0), share, count * t / threads,
-                                                 count * (t + 1) / threads);
-                     });
+    const std::size_t shares = 8 * joined_.shares().threads().count();
+    joined_.shares()(pairs_.all, shares, [&](std::size_t share, std::size_t of, PairList& to) {
+      candidates_.compare_range(tree_.ids(0), to, count * share / of, count * (share + 1) / of);
+    });
   }
-  /// Below this a thread takes longer to start than the comparisons do.
-  static constexpr std::size_t candidates_worth_sharing = 100000;
+  /// Below this a thread takes longer to wake than the comparisons do.
+  static constexpr std::size_t candidates_worth_sharing = 20000;
 
   MethodSettings settings_;
   JoinedBlocks<T, Contact>& joined_;
@@ -378,8 +375,8 @@ class FollowedBlocks {
   LastFrame<T>& last_frame_;
 
   CandidatePairs<T, Contact> candidates_;
-  std::vector<Row<T>> fat_boxes_, spare_, last_rows_;
-  std::vector<std::uint32_t> slots_;  ///< of each box
+  LargeVector<Row<T>> fat_boxes_, spare_, last_rows_;
+  LargeVector<std::uint32_t> slots_;  ///< of each box
   std::size_t count_ = 0;             ///< boxes of the last frame
   std::size_t candidates_at_first_ = 0, visits_ = 0, visits_when_sorted_ = 0;
   bool active_ = false, sorted_ = false, steady_ = true;
@@ -390,7 +387,8 @@ class FollowedBlocks {
     Row<T> was;
   };
   std::vector<Escaped> escaped_;
-  std::vector<std::uint32_t> moved_, newcomers_, emptied_;
+  LargeVector<std::uint32_t> moved_;
+  std::vector<std::uint32_t> newcomers_, emptied_;
   std::size_t moved_count_ = 0;
   bool few_moved_ = false, told_few_moved_ = false;
   std::vector<Box<T>> new_boxes_;

@@ -30,7 +30,8 @@ struct BlockCosts {
 template <class T, class Contact>
 class JoinedBlocks {
  public:
-  explicit JoinedBlocks(const MethodSettings& settings) : settings_(settings) {}
+  explicit JoinedBlocks(const MethodSettings& settings)
+      : settings_(settings), shares_(settings.threads) {}
 
   BlockTree<T>& tree() { return tree_; }
   const BlockTree<T>& tree() const { return tree_; }
@@ -48,12 +49,12 @@ class JoinedBlocks {
 
   /// Builds the tree of the boxes in this order.
   void build(std::span<const Keyed<std::uint32_t>> order, Boxes<T> boxes) {
-    tree_.build(order, boxes);
+    tree_.build(order, boxes, shares_.threads());
     leaf_extent_ = tree_.mean_leaf_extent();
   }
 
   void from_scratch(Boxes<T> boxes, ReportedPairs& pairs) {
-    build(order_(boxes), boxes);
+    build(order_(boxes, shares_.threads()), boxes);
     write_all_pairs(pairs);
     fresh_visits_ = visits_;
   }
@@ -78,45 +79,53 @@ class JoinedBlocks {
     return true;
   }
 
+  /// Calls add(list, a, b) for each pair of leaves that the join visits, and says how many they
+  /// are. Threads have lists of their own, which are put together in the order of one.
+  template <class Add>
+  std::size_t join_into(PairList& list, const Add& add) {
+    std::size_t visits = 0;
+    if (shares_.threads().count() == 1 || tree_.leaves() < leaves_worth_sharing) {
+      tree_.join([&](std::uint32_t a, std::uint32_t b) {
+        ++visits;
+        add(list, a, b);
+      });
+      return visits;
+    }
+    tree_.join_parts(parts_);
+    std::vector<std::size_t> visited(shares_.threads().count() * 64);
+    shares_(list, visited.size(), [&](std::size_t share, std::size_t of, PairList& to) {
+      std::size_t count = 0;
+      for (std::size_t k = parts_.size() * share / of; k < parts_.size() * (share + 1) / of; ++k)
+        tree_.join(parts_[k], [&](std::uint32_t a, std::uint32_t b) {
+          ++count;
+          add(to, a, b);
+        });
+      visited[share] = count;
+    });
+    for (const std::size_t count : visited) visits += count;
+    return visits;
+  }
+
   /// Whether slots are empty that sorting these boxes would fill.
   bool holey(std::size_t boxes) const { return tree_.slots() >= boxes + block_width; }
 
-  std::size_t bytes() const { return tree_.bytes() + order_.bytes(); }
+  std::size_t bytes() const { return tree_.bytes() + order_.bytes() + shares_.bytes(); }
 
  private:
+  /// Below this a thread takes longer to wake than the join does.
+  static constexpr std::uint32_t leaves_worth_sharing = 200;
+
   /// Joins the tree with itself into the list of pairs.
   void write_all_pairs(ReportedPairs& pairs) {
     const bool compare = settings_.changes == Changes::reported;
     if (compare) pairs.keep_before();
     PairList& list = pairs.all;
     list.clear();
-    const bool alone = settings_.threads <= 1 || tree_.leaves() < leaves_worth_sharing;
-    visits_ = 0;
-    tree_.join([&](std::uint32_t a, std::uint32_t b) {
-      ++visits_;
-      if (alone) add_pairs(list, a, b);
+    visits_ = join_into(list, [this](PairList& to, std::uint32_t a, std::uint32_t b) {
+      Pair* out = to.room_for(block_width * block_width + block_width, a, tree_.leaves());
+      to.end_at(a == b ? pairs_within(out, a) : pairs_between(out, a, b));
     });
-    if (!alone) join_in_shares(list);
     if (compare) pairs.compare_with_kept();
-  }
-  /// Below this a thread takes longer to start than the join does.
-  static constexpr std::uint32_t leaves_worth_sharing = 1000;
-
-  void add_pairs(PairList& list, std::uint32_t a, std::uint32_t b) const {
-    Pair* out = list.room_for(block_width * block_width + block_width);
-    list.end_at(a == b ? pairs_within(out, a) : pairs_between(out, a, b));
-  }
-  /// Every thread walks the tree, which is cheap, and compares its share of the leaf pairs.
-  void join_in_shares(PairList& list) {
-    shares_(static_cast<std::size_t>(settings_.threads), list,
-            [&](std::size_t t, std::size_t threads, PairList& share) {
-              const std::size_t first = visits_ * t / threads, last = visits_ * (t + 1) / threads;
-              std::size_t at = 0;
-              tree_.join([&](std::uint32_t a, std::uint32_t b) {
-                if (at >= first && at < last) add_pairs(share, a, b);
-                ++at;
-              });
-            });
   }
   Pair* pairs_within(Pair* out, std::uint32_t a) const {
     const Block<T>& block = tree_.leaf(a);
@@ -152,6 +161,7 @@ class JoinedBlocks {
   SpatialOrder<T> order_;
   BlockTree<T> tree_;
   PairShares shares_;
+  std::vector<typename BlockTree<T>::Part> parts_;
   double leaf_extent_ = 0;  ///< mean, after sorting
   std::size_t visits_ = 0, fresh_visits_ = 0;
   double spreading_ = 0;  ///< visits that the last refit added

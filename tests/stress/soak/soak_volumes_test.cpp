@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Coherent equals fresh, for ever: every strategy over every volume, for every query, on one long
-/// way, beside recursion over spheres.
+/// way, beside recursion over spheres; and wide trees, from the roots and with margins.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -49,28 +49,43 @@ class SoakOfVolumes : public ::testing::Test {
     variant.query = query;
     return all.emplace(query, played(variant)).first->second;
   }
+
+  static void expect_fresh(Variant variant) {
+    const std::string where = variant.tree + ' ' + variant.volume + ' ' + variant.strategy;
+    variant.query = "touching";
+    EXPECT_EQ(played(variant).touching, fresh("touching").touching) << where;
+    variant.query = "contacts";
+    const ReplayResult contacts = played(variant, true);
+    EXPECT_EQ(contacts.contacts, fresh("contacts").contacts) << where;
+    // A front holds no more than the pairs of leaves.
+    for (const auto& frame : contacts.series) ASSERT_LE(frame.front, 60 * 64) << where;
+    variant.query = "distance";
+    const auto distances = played(variant).distances;
+    const auto& truth = fresh("distance").distances;
+    ASSERT_EQ(distances.size(), truth.size());
+    for (std::size_t frame = 0; frame < truth.size(); ++frame)
+      ASSERT_NEAR(distances[frame], truth[frame], 1e-12 * truth[frame])
+          << where << ", frame " << frame;
+  }
 };
+
+TEST_F(SoakOfVolumes, WideTreesEqualFresh) {
+  for (const auto& volume : wide_volumes())
+    for (const char* strategy : {"recursive", "margins"}) {
+      Variant variant;
+      variant.tree = "wide", variant.volume = volume.name, variant.strategy = strategy;
+      variant.leaf_size = 16;
+      expect_fresh(variant);
+    }
+}
 
 struct OfVolume : SoakOfVolumes, ::testing::WithParamInterface<std::string> {};
 
 TEST_P(OfVolume, CoherentEqualsFresh) {
-  for (const auto& [strategy, description] : strategies()) {
+  for (const auto& strategy : strategies()) {
     Variant variant;
-    variant.volume = GetParam(), variant.strategy = strategy;
-    variant.query = "touching";
-    EXPECT_EQ(this->played(variant).touching, this->fresh("touching").touching) << strategy;
-    variant.query = "contacts";
-    const ReplayResult contacts = this->played(variant, true);
-    EXPECT_EQ(contacts.contacts, this->fresh("contacts").contacts) << strategy;
-    // A front holds no more than the pairs of leaves.
-    for (const auto& frame : contacts.series) ASSERT_LE(frame.front, 60 * 64) << strategy;
-    variant.query = "distance";
-    const auto distances = this->played(variant).distances;
-    const auto& truth = this->fresh("distance").distances;
-    ASSERT_EQ(distances.size(), truth.size());
-    for (std::size_t frame = 0; frame < truth.size(); ++frame)
-      ASSERT_NEAR(distances[frame], truth[frame], 1e-12 * truth[frame])
-          << strategy << ", frame " << frame;
+    variant.volume = GetParam(), variant.strategy = strategy.name;
+    this->expect_fresh(variant);
   }
 }
 INSTANTIATE_TEST_SUITE_P(Volumes, OfVolume, testing::ValuesIn([] {

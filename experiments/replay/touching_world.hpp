@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A whole scene that says which pairs touch, over pairs of any kind.
+#pragma once
+
+#include <concepts>
+#include <memory>
+#include <utility>
+
+#include "experiments/replay/box_methods.hpp"
+#include "experiments/replay/triangle_test.hpp"
+#include "experiments/replay/world_frames.hpp"
+#include "traversal/counters.hpp"
+#include "traversal/world_of.hpp"
+
+namespace bvlab {
+
+namespace detail {
+
+template <class Query>
+concept SaysYesOrNo = requires(const Query& query) {
+  { query.answer() } -> std::same_as<bool>;
+};
+
+/// The broad phase of whole scenes, compiled once for all strategies.
+class NearBoxes {
+ public:
+  explicit NearBoxes(const MethodSettings& settings)
+      : method_(make_method<float>("auto", settings)) {}
+  std::span<const Pair> overlapping(Boxes<float> boxes) { return method_->overlapping(boxes); }
+  PairChanges changes() const { return method_->changes(); }
+
+ private:
+  std::unique_ptr<AnyMethod<float>> method_;
+};
+
+template <class Pairs, SaysYesOrNo Query, class Hierarchies>
+class TouchingWorld final : public WorldEngine {
+ public:
+  /// `pairs` are of bodies over what `hierarchies` holds.
+  TouchingWorld(Hierarchies hierarchies, Pairs pairs, const Variant& variant, int threads)
+      : hierarchies_(std::move(hierarchies)),
+        world_(std::move(pairs), threads),
+        how_{triangle_test(variant.precision), 0} {}
+
+  void move(std::uint32_t object, const Pose& pose) override { world_.move(object, pose); }
+  void take_out(std::uint32_t object) override { world_.take_out(object); }
+
+  void update() override {
+    NotCounting counter;
+    world_.update(
+        counter, [&](const ObjectPair&) { return Query::asked(how_); },
+        [&](std::uint32_t slot, const ObjectPair& pair, const Query& query) {
+          touching_.put(slot, pair, query.answer());
+        },
+        [&](std::uint32_t slot) { touching_.drop(slot); });
+  }
+
+  std::span<const ObjectPair> touching() override { return touching_.pairs(); }
+  std::size_t near() const override { return world_.near(); }
+  std::size_t asked() const override { return world_.asked(); }
+
+ private:
+  Hierarchies hierarchies_;
+  WorldOf<Pairs, NearBoxes> world_;
+  TouchingPairs touching_;
+  QueryOptions how_;
+};
+
+}  // namespace detail
+
+}  // namespace bvlab

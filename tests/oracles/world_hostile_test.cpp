@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Whole scenes in which bodies come and go: brute force over all pairs of triangles finds the
+/// same, whatever trees, strategies and threads; and counts are those of one thread.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <random>
+
+#include "hierarchies/volumes/sphere.hpp"
+#include "tests/oracles/wide_scenes.hpp"
+#include "traversal/strategies.hpp"
+#include "traversal/world.hpp"
+
+namespace bvlab {
+namespace {
+
+/// A body where it is to be, or nowhere.
+using Script = std::vector<std::vector<std::optional<Pose>>>;  // of each frame, of each body
+
+/// Bodies come late, rest, creep, jump, leave for a while and come back where they were.
+Script hostile_script(std::size_t bodies, int frames) {
+  std::mt19937 random(20261122);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto anywhere = [&] {
+    return *pose_from(1.6 * Vec3<double>(unit(random), unit(random), unit(random)), unit(random),
+                      unit(random), unit(random), unit(random) + 2);
+  };
+  Script script;
+  std::vector<std::optional<Pose>> now(bodies);
+  std::vector<Pose> last(bodies);
+  for (std::size_t i = 0; i < bodies; ++i) {
+    last[i] = anywhere();
+    if (i % 3) now[i] = last[i];
+  }
+  for (int frame = 0; frame < frames; ++frame) {
+    script.push_back(now);
+    for (std::size_t i = 0; i < bodies; ++i) {
+      const double chance = std::abs(unit(random));
+      if (!now[i]) {
+        if (chance < 0.2) now[i] = last[i];
+        continue;
+      }
+      if (chance < 0.05) {
+        now[i].reset();
+      } else if (chance < 0.1) {
+        now[i] = anywhere();
+      } else if (chance < 0.6) {
+        const double by = chance < 0.4 ? 0.002 : 0.05;
+        now[i]->translation += by * Vec3<double>(unit(random), unit(random), unit(random));
+      }
+      if (now[i]) last[i] = *now[i];
+    }
+  }
+  return script;
+}
+
+/// Who is nowhere is far from everybody.
+Truth truth_of(const Script& script, const std::vector<TriangleMesh>& meshes) {
+  Scene scene{"hostile", meshes, {}};
+  for (const auto& each : script) {
+    Frame frame;
+    for (std::size_t i = 0; i < each.size(); ++i) {
+      Pose far;
+      far.translation = Vec3<double>(1e6 * (1.0 + static_cast<double>(i)), 0, 0);
+      frame.push_back(each[i].value_or(far));
+    }
+    scene.frames.push_back(frame);
+  }
+  return truth_of(scene);
+}
+
+/// Moves bodies as one frame of the script says.
+template <class World>
+void follow(World& world, const Script& script, std::size_t frame) {
+  for (std::uint32_t i = 0; i < script[frame].size(); ++i)
+    if (script[frame][i])
+      world.move(i, *script[frame][i]);
+    else
+      world.take_out(i);
+}
+
+const std::vector<TriangleMesh>& hostile_meshes() {
+  static const std::vector<TriangleMesh> meshes{formula_mesh("star", 24), formula_mesh("torus", 32),
+                                                formula_mesh("box", 12)};
+  return meshes;
+}
+constexpr std::size_t hostile_bodies = 12;
+const Script& hostile_scene() {
+  static const Script script = hostile_script(hostile_bodies, 150);
+  return script;
+}
+const Truth& hostile_truth() {
+  static const Truth truth = truth_of(hostile_scene(), hostile_meshes());
+  return truth;
+}
+
+/// Which pairs touch, in every frame.
+template <class World>
+std::vector<std::uint8_t> touching_of(World& world, const Script& script) {
+  std::vector<std::uint8_t> found;
+  NotCounting counter;
+  TouchingPairs touching;
+  const auto pairs = all_object_pairs(hostile_bodies);
+  for (std::size_t frame = 0; frame < script.size(); ++frame) {
+    follow(world, script, frame);
+    world.update(
+        counter, [](const ObjectPair&) { return Touching(); },
+        [&](std::uint32_t slot, const ObjectPair& pair, const Touching& query) {
+          touching.put(slot, pair, query.touching());
+        },
+        [&](std::uint32_t slot) { touching.drop(slot); });
+    for (const auto& [i, j] : pairs)
+      found.push_back(static_cast<std::uint8_t>(
+          std::count_if(touching.pairs().begin(), touching.pairs().end(),
+                        [&](const auto& p) { return p.i == i && p.j == j; })));
+  }
+  return found;
+}
+
+/// One hierarchy for each mesh, and a shape for each body.
+template <class Hierarchy, class Shape>
+struct Shapes {
+  std::vector<Hierarchy> hierarchies;
+  std::vector<Shape> all;
+
+  template <class Make>
+  explicit Shapes(const Make& make) {
+    for (const auto& mesh : hostile_meshes()) hierarchies.push_back(make(mesh));
+    for (std::size_t i = 0; i < hostile_bodies; ++i)
+      all.push_back({&hostile_meshes()[i % 3], &hierarchies[i % 3]});
+  }
+};
+const auto& wide_shapes() {
+  static const Shapes<Recommended::Hierarchy, Recommended::Shape> shapes(
+      [](const TriangleMesh& mesh) { return Recommended::hierarchy(mesh); });
+  return shapes.all;
+}
+using Ball = Sphere<float>;
+const auto& binary_shapes() {
+  static const Shapes<Hierarchy<Ball>, Shape<Ball>> shapes([](const TriangleMesh& mesh) {
+    return Hierarchy<Ball>(mesh, builds::BottomUpLocal::topology(mesh, 1), Fit::published);
+  });
+  return shapes.all;
+}
+template <class Strategy>
+auto binary_world(int threads) {
+  using Pairs = StrategyPairs<Bodies<Batch<float, 8>, Ball>, Strategy>;
+  return World<Pairs>(Pairs(std::span<const Shape<Ball>>(binary_shapes()), Strategy()), threads);
+}
+World<> wide_world(int threads) { return World<>(wide_shapes(), threads); }
+auto forgetful_world(int threads) {
+  using Pairs = WidePairs<Recommended::Volume, Recommended::fan_out, RelativeFrame, Forgetful>;
+  return World<Pairs>(Pairs(wide_shapes()), threads);
+}
+
+TEST(WorldThatComesAndGoes, TouchesWhereBruteForceDoes) {
+  const auto& truth = hostile_truth().touching;
+  EXPECT_GT(std::count(truth.begin(), truth.end(), 1), 500);
+  const auto expect = [&](auto world, const char* name, int threads) {
+    EXPECT_EQ(touching_of(world, hostile_scene()), truth) << name << ' ' << threads;
+  };
+  for (const int threads : {1, 3}) {
+    expect(wide_world(threads), "recommended", threads);
+    expect(forgetful_world(threads), "wide, from the roots", threads);
+    expect(binary_world<Recursive>(threads), "binary, from the roots", threads);
+    expect(binary_world<Margins>(threads), "binary, margins", threads);
+    expect(binary_world<Adaptive>(threads), "binary, adaptive", threads);
+  }
+}
+
+/// All that a world finds out about a script.
+struct Found {
+  std::vector<std::array<std::uint32_t, 5>> contacts;
+  Counting counter;
+  std::size_t asked = 0;
+};
+
+/// Contacts of pairs that are not asked again are those they had.
+template <class World>
+Found contacts_of(World& world, const Script& script) {
+  Found found;
+  std::vector<std::vector<Contact>> of_slot(hostile_bodies * hostile_bodies);
+  std::vector<std::optional<ObjectPair>> pair_of(of_slot.size());
+  for (std::size_t frame = 0; frame < script.size(); ++frame) {
+    follow(world, script, frame);
+    world.update(
+        found.counter,
+        [&](const ObjectPair&, std::uint32_t slot) {
+          of_slot[slot].clear();
+          return Contacts(of_slot[slot]);
+        },
+        [&](std::uint32_t slot, const ObjectPair& pair, const Contacts&) { pair_of[slot] = pair; },
+        [&](std::uint32_t slot) { pair_of[slot].reset(), of_slot[slot].clear(); });
+    found.asked += world.asked();
+    for (std::size_t slot = 0; slot < of_slot.size(); ++slot)
+      for (const auto& [a, b] : of_slot[slot])
+        if (const auto& pair = pair_of[slot])
+          found.contacts.push_back({static_cast<std::uint32_t>(frame), pair->i, pair->j, a, b});
+  }
+  std::sort(found.contacts.begin(), found.contacts.end());
+  return found;
+}
+
+template <class MakeWorld>
+void expect_the_same_of_any_number_of_threads(const MakeWorld& make_world) {
+  std::vector<std::array<std::uint32_t, 5>> truth;
+  std::size_t at = 0;
+  for (std::uint32_t frame = 0; frame < hostile_scene().size(); ++frame)
+    for (const auto& [i, j] : all_object_pairs(hostile_bodies))
+      for (const auto& [a, b] : hostile_truth().contacts[at++])
+        truth.push_back({frame, i, j, a, b});
+  std::optional<Found> alone;
+  for (const int threads : {1, 2, 7}) {
+    auto world = make_world(threads);
+    const Found found = contacts_of(world, hostile_scene());
+    EXPECT_EQ(found.contacts, truth) << threads;
+    EXPECT_GT(found.counter.n_v, 0u);
+    if (!alone) alone = found;
+    EXPECT_EQ(found.asked, alone->asked);
+    EXPECT_EQ(found.counter.n_u, alone->counter.n_u);
+    EXPECT_EQ(found.counter.n_v, alone->counter.n_v);
+    EXPECT_EQ(found.counter.n_p, alone->counter.n_p);
+    EXPECT_EQ(found.counter.considered, alone->counter.considered);
+  }
+}
+
+TEST(WorldThatComesAndGoes, ContactsAndCountsAreTheSameOfAnyNumberOfThreads) {
+  expect_the_same_of_any_number_of_threads(wide_world);
+  expect_the_same_of_any_number_of_threads(forgetful_world);
+}
+
+TEST(WorldThatComesAndGoes, ContactsAndCountsAreTheSameOverBinaryTrees) {
+  expect_the_same_of_any_number_of_threads(binary_world<Recursive>);
+  expect_the_same_of_any_number_of_threads(binary_world<Margins>);
+}
+
+}  // namespace
+}  // namespace bvlab

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Which bodies are near each other: a broad phase over boxes around them, and the pairs whose
+/// boxes meet, in slots. A pair keeps its slot from the frame in which its boxes meet to the one in
+/// which they part; slots are used again.
+///
+/// A frame costs O(m + q) plus what the broad phase takes, for m bodies that moved and q pairs near
+/// them. A body is in the scene from the first time it is moved until it is taken out.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "broadphase/settings.hpp"
+#include "broadphase/structures/radix_sort.hpp"
+#include "hierarchies/geometry/morton.hpp"
+#include "hierarchies/geometry/threads.hpp"
+#include "traversal/body_pair.hpp"
+#include "traversal/rotated_mesh_box.hpp"
+
+namespace bvlab {
+
+/// Method is a broad phase over float boxes that reports changes.
+template <class Method>
+class NearPairs {
+ public:
+  /// `mesh(i)` is body i's, which must outlive this.
+  template <class Mesh>
+  NearPairs(std::size_t objects, int threads, Mesh&& mesh)
+      : threads_(threads),
+        method_(MethodSettings{.changes = Changes::reported, .threads = threads}),
+        poses_(objects),
+        boxes_(objects),
+        neighbours_(objects),
+        moved_(objects, Moved::no),
+        present_(objects, 0) {
+    std::unordered_map<const TriangleMesh*, std::uint32_t> known;
+    for (std::size_t i = 0; i < objects; ++i) {
+      const auto [at, fresh] = known.try_emplace(&mesh(i), known.size());
+      if (fresh) mesh_boxes_.emplace_back(mesh(i));
+      box_of_.push_back(at->second);
+      boxes_[i] = outside(i);
+    }
+  }
+
+  void move(std::uint32_t object, const Pose& pose) {
+    if (present_[object] && poses_[object] == pose) return;
+    poses_[object] = pose, present_[object] = 1;
+    if (moved_[object] == Moved::no) movers_.push_back(object);
+    moved_[object] = Moved::yes;
+  }
+  /// Until it is moved again.
+  void take_out(std::uint32_t object) {
+    if (!present_[object]) return;
+    present_[object] = 0;
+    if (moved_[object] == Moved::no) movers_.push_back(object);
+    moved_[object] = Moved::yes;
+  }
+
+  /// Finds the pairs whose boxes meet: `part(slot)` is told of those that did and do no longer,
+  /// then `meet(slot, pair)` of those that now do. Before, `stand(object)` of everyone who has
+  /// moved and is in the scene, on any thread.
+  template <class Stand, class Meet, class Part>
+  void update(Stand&& stand, Meet&& meet, Part&& part) {
+    due_.clear();
+    if (movers_.empty()) return;
+    if (!placed_) place_origin();
+    constexpr std::size_t stretch = 128;
+    threads_.share((movers_.size() + stretch - 1) / stretch, [&](std::size_t k, std::size_t) {
+      const std::size_t last = std::min((k + 1) * stretch, movers_.size());
+      for (std::size_t m = k * stretch; m < last; ++m) {
+        const std::uint32_t i = movers_[m];
+        boxes_[i] = present_[i] ? mesh_boxes_[box_of_[i]](poses_[i], origin_) : outside(i);
+        if (present_[i]) stand(i);
+      }
+    });
+    method_.overlapping(boxes_);
+    const PairChanges changes = method_.changes();
+    for (std::size_t k = 0; k < changes.ended.size(); ++k) {
+      fetch_ahead(changes.ended, k);
+      const auto& [i, j] = changes.ended[k];
+      const std::uint32_t slot = slot_of(i, j);
+      part(slot);
+      end(slot);
+    }
+    for (std::size_t k = 0; k < changes.began.size(); ++k) {
+      fetch_ahead(changes.began, k);
+      const auto& [i, j] = changes.began[k];
+      meet(begin({i, j}), ObjectPair{i, j});
+    }
+    // What is so large that its box is everywhere stays near those that were taken out.
+    for (const auto i : movers_)
+      if (!present_[i])
+        for (const auto& [other, slot] : neighbours_[i]) part(slot), meet(slot, near_[slot].pair);
+    find_due();
+  }
+
+  /// After `update`: the slots of pairs of which a body has moved.
+  std::span<const std::uint32_t> due() const { return due_; }
+  /// The bodies that have.
+  std::span<const std::uint32_t> movers() const { return movers_; }
+  /// Forgets who has moved.
+  void settle() {
+    for (const auto i : movers_) moved_[i] = Moved::no;
+    movers_.clear();
+  }
+
+  Threads& threads() { return threads_; }
+  std::span<const Pose> poses() const { return poses_; }
+  /// What poses are relative to where volumes are posed into the world.
+  const Vec3<double>& origin() const { return origin_; }
+  bool present(std::uint32_t object) const { return present_[object]; }
+  /// Of a slot that a pair has.
+  const ObjectPair& pair(std::uint32_t slot) const { return near_[slot].pair; }
+  std::size_t slots() const { return near_.size(); }
+  bool taken(std::uint32_t slot) const { return near_[slot].taken; }
+  /// Pairs whose boxes meet.
+  std::size_t size() const { return near_.size() - free_.size(); }
+
+ private:
+  enum class Moved : std::uint8_t { no, yes, done };  ///< done: its pairs are due
+  struct Near {
+    ObjectPair pair;
+    std::uint32_t place_of_i, place_of_j;  ///< in the lists of neighbours
+    bool taken;
+  };
+  struct Neighbour {
+    std::uint32_t other, slot;
+  };
+
+  /// A point far away, of its own: nothing meets it but what is larger than floats reach.
+  static Box<float> outside(std::size_t i) {
+    constexpr float far = std::numeric_limits<float>::max() / 4;
+    constexpr std::size_t cells = 1 << 11;
+    Box<float> box;
+    for (int axis = 0; axis < 3; ++axis, i /= cells)
+      box.lo[axis] = box.hi[axis] = far * (1 + static_cast<float>(i % cells) / cells);
+    return box;
+  }
+
+  /// The middle of the bodies: float boxes and volumes are posed relative to it, so that their
+  /// precision does not depend on where in the world the bodies are.
+  void place_origin() {
+    Eigen::AlignedBox3d all;
+    for (const auto i : movers_)
+      if (present_[i]) all.extend(poses_[i].translation);
+    if (all.isEmpty()) return;
+    origin_ = all.min() / 2 + all.max() / 2;
+    placed_ = true;
+  }
+
+  /// Slots of the movers' pairs, each once. Where most bodies have moved, in the order in which
+  /// they stand; else by the lists of neighbours, movers along a Morton curve, so that what one
+  /// pair has brought into the cache is there for the next.
+  void find_due() {
+    if (4 * movers_.size() > boxes_.size()) {
+      for (std::uint32_t slot = 0; slot < near_.size(); ++slot) {
+        const auto [i, j] = near_[slot].pair;
+        const bool moved = (moved_[i] != Moved::no) | (moved_[j] != Moved::no);
+        if (near_[slot].taken & moved & present_[i] & present_[j]) due_.push_back(slot);
+      }
+      return;
+    }
+    Eigen::AlignedBox3d all;
+    for (const auto i : movers_) all.extend(poses_[i].translation);
+    ordered_.clear();
+    for (const auto i : movers_) {
+      const std::uint64_t code = morton_code(poses_[i].translation, all);
+      ordered_.push_back({static_cast<std::uint32_t>(code >> (63 - code_bits)), i});
+    }
+    radix_sort(ordered_, spare_, code_bits);
+    for (const auto& [code, i] : ordered_) {
+      // A pair of which both have moved is asked once.
+      if (present_[i])
+        for (const auto& [other, slot] : neighbours_[i])
+          if (moved_[other] != Moved::done && present_[other]) due_.push_back(slot);
+      moved_[i] = Moved::done;
+    }
+  }
+  static constexpr int code_bits = 21;  ///< 128 cells a side are enough for an order
+
+  /// Lists of neighbours are anywhere in memory: those of pairs that come are brought while others
+  /// are at work, first where they are, then what they hold.
+  void fetch_ahead(std::span<const Pair> pairs, std::size_t k) const {
+    if (k + 16 < pairs.size())
+      for (const auto i : {pairs[k + 16].i, pairs[k + 16].j})
+        __builtin_prefetch(&neighbours_[i], 1);
+    if (k + 8 < pairs.size())
+      for (const auto i : {pairs[k + 8].i, pairs[k + 8].j})
+        __builtin_prefetch(neighbours_[i].data(), 1);
+  }
+
+  std::uint32_t begin(const ObjectPair& pair) {
+    auto &of_i = neighbours_[pair.i], &of_j = neighbours_[pair.j];
+    const Near fresh{pair, static_cast<std::uint32_t>(of_i.size()),
+                     static_cast<std::uint32_t>(of_j.size()), true};
+    std::uint32_t slot = static_cast<std::uint32_t>(near_.size());
+    if (free_.empty()) {
+      near_.push_back(fresh);
+    } else {
+      slot = free_.back();
+      free_.pop_back();
+      near_[slot] = fresh;
+    }
+    of_i.push_back({pair.j, slot});
+    of_j.push_back({pair.i, slot});
+    return slot;
+  }
+
+  std::uint32_t slot_of(std::uint32_t i, std::uint32_t j) const {
+    const bool i_has_fewer = neighbours_[i].size() <= neighbours_[j].size();
+    const auto& few = neighbours_[i_has_fewer ? i : j];
+    const std::uint32_t other = i_has_fewer ? j : i;
+    return std::find_if(few.begin(), few.end(), [&](const auto& n) { return n.other == other; })
+        ->slot;
+  }
+
+  void end(std::uint32_t slot) {
+    Near& gone = near_[slot];
+    remove(gone.pair.i, gone.place_of_i);
+    remove(gone.pair.j, gone.place_of_j);
+    gone.taken = false;
+    free_.push_back(slot);
+  }
+
+  /// The last one of the body's neighbours takes the place.
+  void remove(std::uint32_t object, std::uint32_t place) {
+    auto& list = neighbours_[object];
+    list[place] = list.back();
+    list.pop_back();
+    if (place == list.size()) return;
+    Near& moved = near_[list[place].slot];
+    (moved.pair.i == object ? moved.place_of_i : moved.place_of_j) = place;
+  }
+
+  Threads threads_;
+  Method method_;
+  std::vector<RotatedMeshBox> mesh_boxes_;  // one for each mesh
+  std::vector<std::uint32_t> box_of_;       // which of them is a body's
+  std::vector<Pose> poses_;
+  std::vector<Box<float>> boxes_;
+  std::vector<std::vector<Neighbour>> neighbours_;
+  std::vector<Near> near_;
+  std::vector<std::uint32_t> free_;                    // slots that no pair has
+  std::vector<std::uint32_t> movers_;                  // since the last update
+  std::vector<Keyed<std::uint32_t>> ordered_, spare_;  // they, with their codes
+  std::vector<std::uint32_t> due_;
+  std::vector<Moved> moved_;
+  std::vector<std::uint8_t> present_;
+  Vec3<double> origin_ = Vec3<double>::Zero();
+  bool placed_ = false;
+};
+
+}  // namespace bvlab
