@@ -5,15 +5,16 @@
 /// widths. What a pair offers:
 ///   a(), b()              the bodies, as far as their motion is concerned (MovingBody)
 ///   query()               the query, which takes the answer
+///   from_front(front)     a traversal from any TrackedFront, which is kept up to date
 ///   from_roots<Roots>(s)  the recursive algorithm; Roots is NoFront or NoFrontBoth, s says whether
 ///                         the roots are known to overlap
-///   from_front(front)     from a front, which is kept up to date: whatever `traverse` takes
 /// The last two give the statistics of the traversal. `AnyPair` of the bvlab program offers the
 /// same without naming a volume.
 #pragma once
 
 #include <cstdint>
 
+#include "traversal/no_front.hpp"
 #include "traversal/traverse.hpp"
 
 namespace bvlab {
@@ -38,7 +39,7 @@ class BodyPair {
 
   template <class Roots = NoFront>
   TraversalStatistics from_roots(Start start = Start::roots) const {
-    return traverse_from_roots<B, Roots>(a_, b_, query_, counter_, workspace_, start);
+    return from_front(Roots(start));
   }
   template <class Front>
   TraversalStatistics from_front(Front&& front) const {

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The front (the talk's separation list): the pairs of nodes at which the last recursion stopped.
+/// All are looked at in every run, a witness first.
 ///
 /// Law: the entries partition the product of the two bodies' leaves, so that every pair of leaves
-/// lies below exactly one entry. Order is free; entry 0 is tested first.
+/// lies below exactly one entry. Order is free; entry 0 is tested first. A front never shrinks.
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
+
+#include "traversal/node_pair.hpp"
+#include "traversal/tracked_front.hpp"
 
 namespace bvlab {
 
-struct NodePair {
-  std::uint32_t a, b;
-  friend bool operator==(const NodePair&, const NodePair&) = default;
-};
-
-class Front {
+class Front : public FrontDefaults {
  public:
   std::size_t size() const { return entries_.size(); }
   bool empty() const { return entries_.empty(); }
@@ -30,12 +30,19 @@ class Front {
 
   void clear() { entries_.clear(); }
 
+  template <class Traversal>
+  bool sweep(Traversal& traversal) {
+    const std::size_t entries = size(), first = witnessed();  // what is added needs no second look
+    if (first > 0 && (traversal.look_at_alone(0) || traversal.fill_batches())) return true;
+    return traversal.look_at(entries - first, [first](std::size_t i) { return first + i; });
+  }
+
   /// The entry in `slot` is about to be replaced by what it ends in: at least two calls of `add`
   /// follow for it, and the first fills its place.
   void open(std::size_t slot) { holes_.push_back(static_cast<std::uint32_t>(slot)); }
 
   /// Adds an entry and says in which slot.
-  std::size_t add(const NodePair& pair) {
+  std::size_t add(const NodePair& pair, Seen = Seen::not_yet, double = 0) {
     if (holes_.empty()) {
       entries_.push_back(pair);
       return entries_.size() - 1;
@@ -44,6 +51,10 @@ class Front {
     holes_.pop_back();
     entries_[slot] = pair;
     return slot;
+  }
+
+  void finish(std::size_t witness, bool) {
+    if (witness != Outcome::none) bring_forward(witness);
   }
 
   /// Makes the entry in `slot` the first to be tested next time.

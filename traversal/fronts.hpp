@@ -1,48 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What strategies keep and hand to `traverse`: the kinds of fronts, and what a traversal says of
-/// its work. No volume and no query is named here.
+/// The fronts that are not one strategy's own: the bvlab program compiles each volume's loops from
+/// all of these, together. A strategy with a front of another kind says so (`using OwnFronts =
+/// TypeList<...>`), and loops from that are compiled for each volume by themselves.
 #pragma once
 
-#include <cstddef>
-
+#include "hierarchies/geometry/type_list.hpp"
 #include "traversal/front.hpp"
-#include "traversal/margin_front.hpp"
-#include "traversal/relative_motion_bound.hpp"
-#include "traversal/rising_front.hpp"
+#include "traversal/no_front.hpp"
+#include "traversal/strategies/margin_sweep.hpp"
+#include "traversal/strategies/rising_front.hpp"
 
 namespace bvlab {
 
-/// What a traversal had to do.
-struct TraversalStatistics {
-  bool everything = true;     ///< false where the query stopped it
-  std::size_t volumes = 0;    ///< pairs of volumes tested
-  std::size_t triangles = 0;  ///< pairs of primitives tested
-};
-
-/// Whether the two roots are still to be tested, or overlap as somebody else has found.
-enum class Start { roots, below_roots };
-
-/// For `traverse` where no front is kept.
-struct NoFront {
-  static constexpr bool kept = false, rises = false, margins = false;
-  static constexpr bool descends_both = false;
-};
-struct NoFrontBoth : NoFront {
-  static constexpr bool descends_both = true;
-};
-struct KeptFront : NoFront {
-  static constexpr bool kept = true;
-  Front& front;
-};
-struct KeptRising : NoFront {
-  static constexpr bool kept = true, rises = true;
-  RisingFront& front;
-};
-struct KeptMargins : NoFront {
-  static constexpr bool kept = true, margins = true;
-  MarginFront& front;
-  const RelativeMotionBound& clock;
-  double step;  ///< how much nearer the bodies come from run to run, about
-};
+using Fronts = TypeList<NoFront, NoFrontBoth, Front, RisingFront, MarginSweep>;
 
 }  // namespace bvlab

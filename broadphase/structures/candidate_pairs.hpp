@@ -14,6 +14,7 @@
 #include "broadphase/settings.hpp"
 #include "broadphase/structures/pair_list.hpp"
 #include "broadphase/structures/row.hpp"
+#include "hierarchies/geometry/large_vector.hpp"
 
 namespace bvlab {
 

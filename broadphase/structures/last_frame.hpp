@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cstring>
-#include <vector>
 
 #include "broadphase/box.hpp"
+#include "hierarchies/geometry/large_vector.hpp"
 
 namespace bvlab {
 

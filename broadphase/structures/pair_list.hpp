@@ -6,12 +6,13 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
+#include <new>
 #include <span>
 #include <utility>
 
 #include "broadphase/box.hpp"
-#include "hierarchies/geometry/large_vector.hpp"
 
 namespace bvlab {
 
@@ -27,9 +28,7 @@ class PairList {
     std::swap(capacity_, other.capacity_);
     return *this;
   }
-  ~PairList() {
-    if (pairs_) LargeAllocator<Pair>().deallocate(pairs_, capacity_);
-  }
+  ~PairList() { std::free(pairs_); }
 
   void clear() { size_ = 0; }
   std::size_t size() const { return size_; }
@@ -73,10 +72,12 @@ class PairList {
         {least, capacity_ + capacity_ / 2, static_cast<std::size_t>(std::min(expected, most))}));
   }
   void grow(std::size_t capacity) {
-    Pair* const pairs = LargeAllocator<Pair>().allocate(capacity);
-    if (size_) std::memcpy(pairs, pairs_, size_ * sizeof(Pair));
-    if (pairs_) LargeAllocator<Pair>().deallocate(pairs_, capacity_);
-    pairs_ = pairs, capacity_ = capacity;
+    // What is large is moved by the system to other addresses, not copied.
+    void* const pairs = capacity < static_cast<std::size_t>(-1) / sizeof(Pair)
+                            ? std::realloc(pairs_, capacity * sizeof(Pair))
+                            : nullptr;
+    if (!pairs) throw std::bad_alloc();
+    pairs_ = static_cast<Pair*>(pairs), capacity_ = capacity;
   }
 
   Pair* pairs_ = nullptr;

@@ -8,6 +8,7 @@
 namespace bvlab {
 
 void add_replay(CLI::App& app);
+void add_predict(CLI::App& app);
 void add_boxes(CLI::App& app);
 void add_triangles(CLI::App& app);
 void add_run(CLI::App& app);

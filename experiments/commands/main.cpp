@@ -63,6 +63,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   try {
     add_replay(app);
+    add_predict(app);
     add_boxes(app);
     add_triangles(app);
     add_run(app);

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Bodies whose volume is chosen by name while the program runs. Volumes and strategies meet here,
-/// so that neither is compiled for the other: one virtual call starts a traversal, and inside it
-/// everything is a template as in `Bodies`.
+/// so that neither is compiled for the other: one call through a pointer starts a traversal, and
+/// inside it everything is a template as in `Bodies`. A loop is found by the kind of front that it
+/// starts from, so that none of them is named here.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <tuple>
+#include <type_traits>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
@@ -14,6 +18,9 @@
 #include "traversal/fronts.hpp"
 
 namespace bvlab {
+
+/// A function, to be cast to what it is.
+using AnyLoop = void (*)();
 
 /// Bodies of a volume that is known inside alone. What is not documented here is as in `Bodies` and
 /// `BodyPair`. Nothing is counted inside: each traversal says what it tested, and how many volumes
@@ -32,24 +39,51 @@ class BodyLoops {
                           Query& query, std::uint8_t* apart) = 0;
   /// Volumes posed, of all bodies, since this was asked last. O(nodes) a body.
   virtual std::size_t newly_posed() = 0;
+  /// The loop from that kind of front, a Loop; null where it was not compiled with the bodies.
+  virtual AnyLoop loop(const std::type_info& front) const = 0;
+};
 
-  /// One traversal of a pair, by what is kept of it.
-  virtual TraversalStatistics traverse(const ObjectPair&, Query&, NoFront, Start) = 0;
-  virtual TraversalStatistics traverse(const ObjectPair&, Query&, NoFrontBoth, Start) = 0;
-  virtual TraversalStatistics traverse(const ObjectPair&, Query&, Front&) = 0;
-  virtual TraversalStatistics traverse(const ObjectPair&, Query&, RisingFront&) = 0;
-  virtual TraversalStatistics traverse(const ObjectPair&, Query&, const KeptMargins&) = 0;
+/// One traversal of a pair, from one kind of front.
+template <class Query, class Front>
+using Loop = TraversalStatistics (*)(BodyLoops<Query>&, const ObjectPair&, Query&, Front&);
+
+/// The loops that a strategy starts, found once by the kinds of its fronts.
+template <class Query, class Fronts>
+class LoopsFrom;
+template <class Query, class... Fronts>
+class LoopsFrom<Query, TypeList<Fronts...>> {
+ public:
+  /// `find(front)` gives the loop from that kind of front; null where it was not compiled.
+  template <class Find>
+  explicit LoopsFrom(Find&& find)
+      : loops_(reinterpret_cast<Loop<Query, Fronts>>(find(typeid(Fronts)))...) {}
+
+  template <class Front>
+  Loop<Query, Front> from() const {
+    static_assert((std::is_same_v<Front, Fronts> || ...),
+                  "a strategy names fronts of its own kind: using OwnFronts = TypeList<...>");
+    return std::get<Loop<Query, Front>>(loops_);
+  }
+
+ private:
+  std::tuple<Loop<Query, Fronts>...> loops_;
 };
 
 /// See BodyPair.
-template <class QueryType, class Counter>
+template <class QueryType, class Counter, class Fronts>
 class AnyPair {
  public:
   using Query = QueryType;
 
-  AnyPair(BodyLoops<Query>& bodies, MovingBody& a, MovingBody& b, const ObjectPair& pair,
-          Query& query, Counter& counter)
-      : bodies_(bodies), a_(a), b_(b), pair_(pair), query_(query), counter_(counter) {}
+  AnyPair(const LoopsFrom<Query, Fronts>& loops, BodyLoops<Query>& bodies, MovingBody& a,
+          MovingBody& b, const ObjectPair& pair, Query& query, Counter& counter)
+      : loops_(loops),
+        bodies_(bodies),
+        a_(a),
+        b_(b),
+        pair_(pair),
+        query_(query),
+        counter_(counter) {}
 
   MovingBody& a() const { return a_; }
   MovingBody& b() const { return b_; }
@@ -57,20 +91,19 @@ class AnyPair {
 
   template <class Roots = NoFront>
   TraversalStatistics from_roots(Start start = Start::roots) const {
-    return counted(bodies_.traverse(pair_, query_, Roots{}, start));
+    return from_front(Roots(start));
   }
   template <class Front>
   TraversalStatistics from_front(Front&& front) const {
-    return counted(bodies_.traverse(pair_, query_, front));
-  }
-
- private:
-  TraversalStatistics counted(const TraversalStatistics& statistics) const {
+    const auto loop = loops_.template from<std::remove_cvref_t<Front>>();
+    const TraversalStatistics statistics = loop(bodies_, pair_, query_, front);
     counter_.tested(statistics.volumes);
     counter_.primitives(statistics.triangles);
     return statistics;
   }
 
+ private:
+  const LoopsFrom<Query, Fronts>& loops_;
   BodyLoops<Query>& bodies_;
   MovingBody& a_;
   MovingBody& b_;
@@ -79,13 +112,21 @@ class AnyPair {
   Counter& counter_;
 };
 
-/// The bodies, as `AllPairsOf` and `StrategyPairs` take them.
-template <class Query, class Counter>
+/// The bodies, as `AllPairsOf` and `StrategyPairs` take them, for strategies with such fronts.
+template <class Query, class Counter, class Fronts = bvlab::Fronts>
 class AnyBodies {
  public:
   static constexpr bool culls_in_batches = true;
 
-  explicit AnyBodies(std::unique_ptr<BodyLoops<Query>> loops) : loops_(std::move(loops)) {
+  explicit AnyBodies(std::unique_ptr<BodyLoops<Query>> bodies)
+      : AnyBodies(std::move(bodies), [](const std::type_info&) { return nullptr; }) {}
+  /// `find(front)` gives loops that were not compiled with the bodies; null where there is none.
+  template <class Find>
+  AnyBodies(std::unique_ptr<BodyLoops<Query>> bodies, Find&& find)
+      : loops_(std::move(bodies)), from_([&](const std::type_info& front) {
+          const AnyLoop loop = loops_->loop(front);
+          return loop ? loop : find(front);
+        }) {
     for (std::size_t i = 0; i < loops_->size(); ++i) bodies_.push_back(&loops_->body(i));
   }
 
@@ -98,8 +139,8 @@ class AnyBodies {
   void move(std::span<const Pose> poses, const Vec3<double>& origin) {
     loops_->move(poses, origin);
   }
-  AnyPair<Query, Counter> pair(const ObjectPair& pair, Query& query, Counter& counter) {
-    return {*loops_, *bodies_[pair.i], *bodies_[pair.j], pair, query, counter};
+  AnyPair<Query, Counter, Fronts> pair(const ObjectPair& pair, Query& query, Counter& counter) {
+    return {from_, *loops_, *bodies_[pair.i], *bodies_[pair.j], pair, query, counter};
   }
   void cull_roots(std::span<const ObjectPair> pairs, std::span<const std::uint32_t> fresh,
                   Query& query, Counter&, std::uint8_t* apart) {
@@ -112,6 +153,7 @@ class AnyBodies {
 
  private:
   std::unique_ptr<BodyLoops<Query>> loops_;
+  LoopsFrom<Query, Fronts> from_;
   std::vector<MovingBody*> bodies_;
 };
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <string_view>
+#include <typeinfo>
 
 #include "experiments/replay/any_bodies.hpp"
 #include "experiments/replay/volume_entry.hpp"
@@ -16,6 +17,13 @@ template <class Query>
 struct LoopsEntry {
   std::string_view volume;
   std::unique_ptr<BodyLoops<Query>> (*bodies)(const AnyHierarchies&, std::size_t objects);
+};
+
+/// Loops over bodies of that volume from fronts that are a strategy's own.
+template <class Query>
+struct OwnLoopsEntry {
+  std::string_view volume;
+  AnyLoop (*loop)(const std::type_info& front);  ///< as BodyLoops::loop
 };
 
 }  // namespace bvlab

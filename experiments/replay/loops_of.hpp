@@ -14,11 +14,16 @@ namespace bvlab {
 
 namespace detail {
 
-/// All but the traversals.
+/// The bodies, with the loops from some kinds of fronts.
 template <BoundingVolume V, class Query>
-class LoopsBesides : public BodyLoops<Query> {
+class BodiesOver : public BodyLoops<Query> {
  public:
-  explicit LoopsBesides(std::span<const Shape<V>> shapes) : bodies_(shapes) {}
+  explicit BodiesOver(std::span<const Shape<V>> shapes) : bodies_(shapes) {}
+
+  BodyPair<NativeBatch<typename V::scalar>, V, Query, NotCounting> pair(const ObjectPair& pair,
+                                                                        Query& query) {
+    return bodies_.pair(pair, query, counter_);
+  }
 
   std::size_t size() const override { return bodies_.size(); }
   const TriangleMesh& mesh(std::size_t i) const override { return bodies_.mesh(i); }
@@ -46,7 +51,7 @@ class LoopsBesides : public BodyLoops<Query> {
     return sum;
   }
 
- protected:
+ private:
   struct Posed {
     std::uint32_t epoch = 0;
     std::size_t volumes = 0;
@@ -57,32 +62,30 @@ class LoopsBesides : public BodyLoops<Query> {
   NotCounting counter_;
 };
 
-template <BoundingVolume V, class Query>
-class LoopsOver final : public LoopsBesides<V, Query> {
+/// A Loop over bodies of that volume.
+template <BoundingVolume V, class Query, class Front>
+TraversalStatistics traverse_any(BodyLoops<Query>& bodies, const ObjectPair& pair, Query& query,
+                                 Front& front) {
+  return static_cast<BodiesOver<V, Query>&>(bodies).pair(pair, query).from_front(front);
+}
+
+template <BoundingVolume V, class Query, class... Fronts>
+AnyLoop loop_from(const std::type_info& front, TypeList<Fronts...>) {
+  AnyLoop found = nullptr;
+  ((front == typeid(Fronts)
+        ? void(found = reinterpret_cast<AnyLoop>(traverse_any<V, Query, Fronts>))
+        : void()),
+   ...);
+  return found;
+}
+
+template <BoundingVolume V, class Query, class Fronts = bvlab::Fronts>
+class LoopsOver final : public BodiesOver<V, Query> {
  public:
-  using LoopsBesides<V, Query>::LoopsBesides;
-
-  TraversalStatistics traverse(const ObjectPair& pair, Query& query, NoFront,
-                               Start start) override {
-    return bodies_.pair(pair, query, counter_).template from_roots<NoFront>(start);
+  using BodiesOver<V, Query>::BodiesOver;
+  AnyLoop loop(const std::type_info& front) const override {
+    return loop_from<V, Query>(front, Fronts{});
   }
-  TraversalStatistics traverse(const ObjectPair& pair, Query& query, NoFrontBoth,
-                               Start start) override {
-    return bodies_.pair(pair, query, counter_).template from_roots<NoFrontBoth>(start);
-  }
-  TraversalStatistics traverse(const ObjectPair& pair, Query& query, Front& front) override {
-    return bodies_.pair(pair, query, counter_).from_front(front);
-  }
-  TraversalStatistics traverse(const ObjectPair& pair, Query& query, RisingFront& front) override {
-    return bodies_.pair(pair, query, counter_).from_front(front);
-  }
-  TraversalStatistics traverse(const ObjectPair& pair, Query& query,
-                               const KeptMargins& margins) override {
-    return bodies_.pair(pair, query, counter_).from_front(margins);
-  }
-
- private:
-  using LoopsBesides<V, Query>::bodies_, LoopsBesides<V, Query>::counter_;
 };
 
 template <BoundingVolume V, class Query>
@@ -97,6 +100,14 @@ std::unique_ptr<BodyLoops<Query>> loops_over(const AnyHierarchies& hierarchies,
 template <BoundingVolume V, class Query>
 constexpr LoopsEntry<Query> loops_for() {
   return {V::name, detail::loops_over<V, Query>};
+}
+
+/// Those from the strategy's own fronts alone.
+template <BoundingVolume V, class Query, class Strategy>
+constexpr OwnLoopsEntry<Query> own_loops_for() {
+  return {V::name, [](const std::type_info& front) {
+            return detail::loop_from<V, Query>(front, typename Strategy::OwnFronts{});
+          }};
 }
 
 }  // namespace bvlab

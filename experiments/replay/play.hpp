@@ -183,10 +183,29 @@ class ShareOf final : public Share {
   std::vector<double> frame_seconds_;
 };
 
-template <class Query, class Counter>
-AnyBodies<Query, Counter> bodies_of(const VolumeEntry& volume, const AnyHierarchies& hierarchies,
-                                    std::size_t objects) {
-  return AnyBodies<Query, Counter>(loops_of<Query>(volume.name).bodies(hierarchies, objects));
+/// All the fronts that a strategy may start from.
+template <class Strategy, class List = Fronts>
+struct FrontsOf {
+  using type = Fronts;
+};
+template <class Strategy, class... Shared>
+requires requires { typename Strategy::OwnFronts; }
+struct FrontsOf<Strategy, TypeList<Shared...>> {
+  template <class... Own>
+  static TypeList<Shared..., Own...> with(TypeList<Own...>);
+  using type = decltype(with(typename Strategy::OwnFronts{}));
+};
+
+template <class Strategy, class Query, class Counter>
+using BodiesFor = AnyBodies<Query, Counter, typename FrontsOf<Strategy>::type>;
+
+template <class Strategy, class Query, class Counter>
+BodiesFor<Strategy, Query, Counter> bodies_for(const VolumeEntry& volume,
+                                               const AnyHierarchies& hierarchies,
+                                               std::size_t objects) {
+  return BodiesFor<Strategy, Query, Counter>(
+      loops_of<Query>(volume.name).bodies(hierarchies, objects),
+      [&](const std::type_info& front) { return own_loop<Query>(volume.name, front); });
 }
 
 /// `engine` says, for either way to count, how one is made over some pairs.
@@ -217,9 +236,9 @@ void play(const VolumeEntry& volume, const AnyHierarchies& hierarchies, const Tr
   const auto strategy = made_from<Strategy>(variant.strategy);
   const auto engine = [&]<class Counter>(std::type_identity<Counter>) {
     return [&](std::vector<ObjectPair> pairs) {
-      return AllPairsOf<AnyBodies<Query, Counter>, Strategy>(
-          bodies_of<Query, Counter>(volume, hierarchies, trace.objects), std::move(pairs),
-          strategy);
+      return AllPairsOf<BodiesFor<Strategy, Query, Counter>, Strategy>(
+          bodies_for<Strategy, Query, Counter>(volume, hierarchies, trace.objects),
+          std::move(pairs), strategy);
     };
   };
   play_over<Query>(engine, trace, variant, options, result);
@@ -230,9 +249,9 @@ template <class Strategy, class Query>
 std::unique_ptr<WorldEngine> world(const VolumeEntry& volume,
                                    std::unique_ptr<AnyHierarchies> hierarchies, std::size_t objects,
                                    const Variant& variant, int threads) {
-  using Pairs = StrategyPairs<AnyBodies<Query, NotCounting>, Strategy>;
+  using Pairs = StrategyPairs<BodiesFor<Strategy, Query, NotCounting>, Strategy>;
   if constexpr (SaysYesOrNo<Query>) {
-    Pairs pairs(bodies_of<Query, NotCounting>(volume, *hierarchies, objects),
+    Pairs pairs(bodies_for<Strategy, Query, NotCounting>(volume, *hierarchies, objects),
                 made_from<Strategy>(variant.strategy));
     return std::make_unique<TouchingWorld<Pairs, Query, std::unique_ptr<AnyHierarchies>>>(
         std::move(hierarchies), std::move(pairs), variant, threads);

@@ -27,6 +27,10 @@ std::span<const WideEntry* const> wide_entries();
 template <class Query>
 std::span<const LoopsEntry<Query>* const> loops_entries();
 
+/// One for each volume and each strategy that has a front of its own.
+template <class Query>
+std::span<const OwnLoopsEntry<Query>* const> own_loops_entries();
+
 /// A name and what it is.
 struct Named {
   std::string name, description;
@@ -47,6 +51,14 @@ template <class Query>
 const LoopsEntry<Query>& loops_of(std::string_view volume) {
   for (const auto* entry : loops_entries<Query>())
     if (entry->volume == volume) return *entry;
+  std::abort();
+}
+/// Of that volume the loop from a front that is a strategy's own.
+template <class Query>
+AnyLoop own_loop(std::string_view volume, const std::type_info& front) {
+  for (const auto* entry : own_loops_entries<Query>())
+    if (entry->volume == volume)
+      if (const AnyLoop loop = entry->loop(front)) return loop;
   std::abort();
 }
 

@@ -145,8 +145,8 @@ ReplayResult recursed(const Scene& scene,
   ReplayResult result;
   const auto engine = [&]<class Counter>(std::type_identity<Counter>) {
     return [&](std::vector<ObjectPair> pairs) {
-      return AllPairsOf<AnyBodies<Query, Counter>, Recursive>(AnyBodies<Query, Counter>(loops()),
-                                                              std::move(pairs), Recursive());
+      using Bodies = AnyBodies<Query, Counter, TypeList<NoFront>>;
+      return AllPairsOf<Bodies, Recursive>(Bodies(loops()), std::move(pairs), Recursive());
     };
   };
   detail::play_over<Query>(engine, scene.trace, Variant{}, options, result);
@@ -154,29 +154,11 @@ ReplayResult recursed(const Scene& scene,
 }
 
 template <class V, class Query>
-class RecursiveLoops final : public detail::LoopsBesides<V, Query> {
- public:
-  using detail::LoopsBesides<V, Query>::LoopsBesides;
-  TraversalStatistics traverse(const ObjectPair& pair, Query& query, NoFront,
-                               Start start) override {
-    return this->bodies_.pair(pair, query, this->counter_).template from_roots<NoFront>(start);
-  }
-  // What recursion never asks for.
-  TraversalStatistics traverse(const ObjectPair&, Query&, NoFrontBoth, Start) override {
-    std::abort();
-  }
-  TraversalStatistics traverse(const ObjectPair&, Query&, Front&) override { std::abort(); }
-  TraversalStatistics traverse(const ObjectPair&, Query&, RisingFront&) override { std::abort(); }
-  TraversalStatistics traverse(const ObjectPair&, Query&, const KeptMargins&) override {
-    std::abort();
-  }
-};
-
-template <class V, class Query>
 ReplayResult engine_of_its_own(const Scene& scene, const Hierarchy<V>& hierarchy, Count count) {
   const std::vector<Shape<V>> shapes(scene.trace.objects, {&scene.meshes[0], &hierarchy});
+  using Loops = detail::LoopsOver<V, Query, TypeList<NoFront>>;
   return recursed<Query>(
-      scene, [&] { return std::make_unique<RecursiveLoops<V, Query>>(shapes); }, count);
+      scene, [&] { return std::make_unique<Loops>(shapes); }, count);
 }
 
 template <class V, class Query>

@@ -31,7 +31,8 @@ class Threads {
 #if BVLAB_TBB
     // More than there are processors wait for each other.
     if (count_ > 1)
-      arena_ = std::make_unique<tbb::task_arena>(std::min(count_, tbb::info::default_concurrency()));
+      arena_ =
+          std::make_unique<tbb::task_arena>(std::min(count_, tbb::info::default_concurrency()));
 #endif
   }
 

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A topology with up to F children a node, made of a binary one: a node takes the place of its
-/// children's parents, the one with the largest surface first (wald2008getting), until it has F
-/// children. What holds at most `leaf_size` triangles becomes a leaf, whose triangles are its
-/// children. O(n F).
+/// A topology with up to F children a node, made of a binary one: of all ways to let nodes take the
+/// place of their children's parents, the one with the least sum of surfaces of nodes, which is how
+/// many are likely to be looked at; found by dynamic programming (ylitie2017efficient). It fills
+/// nodes near the leaves, of which there are many, and leaves lanes empty near the root; to open
+/// the largest child until there are F (wald2008getting) does the opposite, at a tenth more time.
+/// What holds at most `leaf_size` triangles becomes a leaf, whose triangles are its children. O(n
+/// F^2).
 #pragma once
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "hierarchies/build/topology.hpp"
@@ -50,7 +54,8 @@ class Collapsing {
     }
   }
 
-  WideTopology collapse(std::uint32_t fan_out, std::uint32_t leaf_size) const {
+  WideTopology collapse(std::uint32_t fan_out, std::uint32_t leaf_size) {
+    find_least_costs(fan_out, leaf_size);
     WideTopology wide;
     wide.primitives = binary_.primitives;
     std::vector<std::uint32_t> from{0};  // the binary node of each wide one
@@ -63,7 +68,7 @@ class Collapsing {
         node.first = begin_[b], node.count = end_[b] - begin_[b];
       } else {
         node.first = static_cast<std::uint32_t>(from.size());
-        for (const auto child : children_of(b, fan_out, leaf_size)) from.push_back(child);
+        add_children(b, fan_out, from);
         node.count = static_cast<std::uint32_t>(from.size()) - node.first;
       }
       wide.nodes.push_back(node);
@@ -76,26 +81,55 @@ class Collapsing {
     return binary_.nodes[b].count > 0 || end_[b] - begin_[b] <= leaf_size;
   }
 
-  std::vector<std::uint32_t> children_of(std::uint32_t b, std::uint32_t fan_out,
-                                         std::uint32_t leaf_size) const {
-    std::vector<std::uint32_t> children{b};
-    while (children.size() < fan_out) {
-      std::size_t largest = children.size();
-      for (std::size_t k = 0; k < children.size(); ++k)
-        if (!is_leaf(children[k], leaf_size) &&
-            (largest == children.size() || surface_[children[k]] > surface_[children[largest]]))
-          largest = k;
-      if (largest == children.size()) break;
-      const std::uint32_t first = binary_.nodes[children[largest]].first;
-      children[largest] = first;
-      children.push_back(first + 1);
+  /// What is below a binary node as so many wide ones at most, 1 to the fan-out.
+  struct Cut {
+    double cost = 0;
+    std::uint32_t left = 0, right = 0;  ///< how many below its children; 0: it is one itself
+  };
+  Cut& cut(std::uint32_t b, std::uint32_t roots) { return cuts_[b * fan_out_ + roots - 1]; }
+
+  /// Children stand behind their parents.
+  void find_least_costs(std::uint32_t fan_out, std::uint32_t leaf_size) {
+    fan_out_ = fan_out;
+    cuts_.assign(binary_.nodes.size() * fan_out, {});
+    for (auto b = static_cast<std::uint32_t>(binary_.nodes.size()); b-- > 0;) {
+      cut(b, 1) = {surface_[b]};
+      const bool leaf = is_leaf(b, leaf_size);
+      for (std::uint32_t roots = 2; roots <= fan_out; ++roots)
+        cut(b, roots) = leaf ? cut(b, 1) : shared(b, roots);
+      if (leaf) continue;
+      cut(b, 1).cost += cut(b, fan_out).cost;
+      for (std::uint32_t roots = 2; roots <= fan_out; ++roots)
+        if (cut(b, roots - 1).cost < cut(b, roots).cost) cut(b, roots) = cut(b, roots - 1);
     }
-    return children;
+  }
+  /// The best way to share them among the children of b.
+  Cut shared(std::uint32_t b, std::uint32_t roots) {
+    const std::uint32_t first = binary_.nodes[b].first;
+    Cut best{std::numeric_limits<double>::infinity(), 1, roots - 1};
+    for (std::uint32_t left = 1; left < roots; ++left) {
+      const double cost = cut(first, left).cost + cut(first + 1, roots - left).cost;
+      if (cost < best.cost) best = {cost, left, roots - left};
+    }
+    return best;
+  }
+
+  void add_children(std::uint32_t b, std::uint32_t roots, std::vector<std::uint32_t>& to) {
+    const Cut& best = cut(b, roots);
+    const std::uint32_t first = binary_.nodes[b].first;
+    for (const auto& [child, share] :
+         {std::pair(first, best.left), std::pair(first + 1, best.right)})
+      if (cut(child, share).left == 0)
+        to.push_back(child);
+      else
+        add_children(child, share, to);
   }
 
   const Topology& binary_;
   std::vector<double> surface_;
   std::vector<std::uint32_t> begin_, end_;
+  std::uint32_t fan_out_ = 0;
+  std::vector<Cut> cuts_;
 };
 
 }  // namespace detail

@@ -17,6 +17,7 @@
 #include "hierarchies/hierarchy.hpp"
 #include "hierarchies/wide/collapse.hpp"
 #include "hierarchies/wide/lanes.hpp"
+#include "hierarchies/wide/support_map.hpp"
 
 namespace bvlab {
 
@@ -73,7 +74,8 @@ class WideHierarchy {
                       fit) {}
 
   /// A leaf holds at most F triangles.
-  WideHierarchy(const TriangleMesh& mesh, const WideTopology& topology, Fit fit) : ball_(mesh) {
+  WideHierarchy(const TriangleMesh& mesh, const WideTopology& topology, Fit fit)
+      : ball_(mesh), supports_(mesh, ball_.centre) {
     nodes_.reserve(topology.nodes.size());
     siblings_.resize(topology.nodes.size());
     for (const auto& node : topology.nodes) {
@@ -114,10 +116,13 @@ class WideHierarchy {
   double reach() const { return reach_; }
 
   const MeshBall& ball() const { return ball_; }
+  /// About the ball's centre.
+  const SupportMap& supports() const { return supports_; }
 
   std::size_t bytes() const {
     return nodes_.size() * (sizeof(Node) + sizeof(Siblings)) +
-           corners_.size() * sizeof(TriangleLanes<scalar, F>) + triangles_.size() * 4;
+           corners_.size() * sizeof(TriangleLanes<scalar, F>) + triangles_.size() * 4 +
+           supports_.bytes();
   }
 
  private:
@@ -157,6 +162,7 @@ class WideHierarchy {
   std::vector<std::uint32_t> leaves_;  // by what stands in corners_
   double reach_ = 0;
   MeshBall ball_;
+  SupportMap supports_;
   // Only while fitting:
   std::vector<Vec3<double>> points_;
   std::vector<Triangle> fitted_;

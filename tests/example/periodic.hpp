@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "traversal/fronts.hpp"
+#include "traversal/front.hpp"
 
 namespace bvlab {
 

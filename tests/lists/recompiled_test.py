@@ -49,18 +49,18 @@ def configured(folder):
     return objects_of_program(tree)
 
 
-def with_capsule(scratch):
-    """Objects of the program before and after the capsule is put into a copy of the list."""
-    folder = pathlib.Path(scratch) / "copy"
+def with_example(scratch, example, name, list_header, folder_of, before_it):
+    """Objects of the program before and after an example is put into a copy of its list."""
+    folder = pathlib.Path(scratch) / example
     ignore = shutil.ignore_patterns("build", "record", ".git", "node_modules")
     shutil.copytree(SOURCE, folder, ignore=ignore)
     before = configured(folder)
-    shutil.copy(folder / "tests/example/capsule.hpp", folder / "hierarchies/volumes/capsule.hpp")
-    volumes = folder / "hierarchies/volumes.hpp"
-    text = volumes.read_text()
+    shutil.copy(folder / f"tests/example/{example}.hpp", folder / folder_of / f"{example}.hpp")
+    header = folder / list_header
+    text = header.read_text()
     first = text.index("#include")
-    text = text[:first] + '#include "hierarchies/volumes/capsule.hpp"\n' + text[first:]
-    volumes.write_text(text.replace("Sphere<float>,", "Sphere<float>, Capsule<float>,", 1))
+    text = text[:first] + f'#include "{folder_of}/{example}.hpp"\n' + text[first:]
+    header.write_text(text.replace(before_it, f"{before_it} {name},", 1))
     return before, configured(folder)
 
 
@@ -73,12 +73,20 @@ def main():
         if again:
             wrong.append(f"{name} is included by {', '.join(again)}")
     with tempfile.TemporaryDirectory(prefix="bvlab-") as scratch:
-        before, after = with_capsule(scratch)
-    added = sorted(pathlib.Path(o).name for o in after - before)
-    print("new units:", ", ".join(added))
-    # One for the volume itself, one for its loops under all queries.
-    if before - after or len(added) != 2 or not all("capsule" in name for name in added):
-        wrong.append(f"the capsule is compiled in {added}")
+        volume = with_example(
+            scratch, "capsule", "Capsule<float>", "hierarchies/volumes.hpp", "hierarchies/volumes", "Sphere<float>,"
+        )
+        strategy = with_example(
+            scratch, "patient", "Patient", "traversal/strategies.hpp", "traversal/strategies", "SeparationList,"
+        )
+    volumes = sum("/unity_volume_" in o or "/volume_" in o for o in strategy[0])
+    # A volume: one unit for itself, one for its loops under all queries. A strategy with a front of its own: one for
+    # itself, and one for each volume's loops from that front.
+    for name, (before, after), wanted in [("capsule", volume, 2), ("patient", strategy, 1 + volumes)]:
+        added = sorted(pathlib.Path(o).name for o in after - before)
+        print("new units:", ", ".join(added))
+        if before - after or len(added) != wanted or not all(name in each for each in added):
+            wrong.append(f"the {name} is compiled in {added}")
     sys.exit("\n".join(wrong) or 0)
 
 

@@ -87,7 +87,7 @@ const std::vector<TriangleMesh>& hostile_meshes() {
 }
 constexpr std::size_t hostile_bodies = 12;
 const Script& hostile_scene() {
-  static const Script script = hostile_script(hostile_bodies, 150);
+  static const Script script = hostile_script(hostile_bodies, 60);
   return script;
 }
 const Truth& hostile_truth() {
@@ -156,7 +156,7 @@ auto forgetful_world(int threads) {
 
 TEST(WorldThatComesAndGoes, TouchesWhereBruteForceDoes) {
   const auto& truth = hostile_truth().touching;
-  EXPECT_GT(std::count(truth.begin(), truth.end(), 1), 500);
+  EXPECT_GT(std::count(truth.begin(), truth.end(), 1), 200);
   const auto expect = [&](auto world, const char* name, int threads) {
     EXPECT_EQ(touching_of(world, hostile_scene()), truth) << name << ' ' << threads;
   };

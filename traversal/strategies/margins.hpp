@@ -26,7 +26,7 @@
 #include <limits>
 #include <string_view>
 
-#include "traversal/fronts.hpp"
+#include "traversal/strategies/margin_sweep.hpp"
 
 namespace bvlab {
 
@@ -50,7 +50,7 @@ class Margins {
       quiet_until_ = front_.hits().front().deadline;
       return {};
     }
-    const TraversalStatistics statistics = pair.from_front(KeptMargins{{}, front_, clock_, step_});
+    const TraversalStatistics statistics = pair.from_front(MarginSweep(front_, clock_, step_));
     account(statistics);
     remember(query);
     return statistics;
@@ -58,6 +58,36 @@ class Margins {
 
   /// Starts again from the roots next time.
   void forget() { front_.clear(); }
+
+  /// Starts from a list next time, as if a rebuild had just left it; `step` is how much nearer the
+  /// bodies come from run to run, about.
+  void start_from(const Front& list, MovingBody& a, MovingBody& b, double step) {
+    front_.clear();
+    rebuild(a, b);
+    displacement_ -= step;
+    epoch_a_ = a.epoch() - 1, epoch_b_ = b.epoch() - 1;
+    front_.open(0);
+    for (const NodePair& entry : list.entries()) front_.add(entry);
+    if (list.witnessed()) front_.bring_forward(0);
+    cost_ = static_cast<double>(list.size());  // the other half of a rebuild's tests
+    asked_ = nullptr;
+  }
+
+  /// Of what the last run looked at, the share that comes up in a run if each brings the bodies
+  /// nearer by `step`: an entry whose gap is g comes up in every (g / step)-th run.
+  double due_in_a_run(double step) const {
+    const auto share = [&](double deadline) {
+      const double gap = deadline - shown_;
+      return gap > step ? step / gap : 1;
+    };
+    if (!front_.hits().empty() && front_.earliest() == MarginFront::passed)
+      return share(front_.hits().front().deadline);
+    double due = 0;
+    for (std::size_t slot = 0; slot < front_.size(); ++slot) due += share(front_.deadline(slot));
+    return due / static_cast<double>(front_.size());
+  }
+  /// How often it has been rebuilt from the roots, or started from a list.
+  std::uint32_t rebuilds() const { return rebuilds_; }
 
   std::size_t front_size() const { return front_.size(); }
   const MarginFront& front() const { return front_; }
@@ -139,6 +169,7 @@ class Margins {
     upkeep_ = cost_ = 0;
     runs_ = 0;
     worn_out_ = false;
+    ++rebuilds_;
   }
 
   void account(const TraversalStatistics& statistics) {
@@ -168,6 +199,7 @@ class Margins {
   double quiet_until_ = 0;                   // the answer is what it was while the clock shows less
   double distance_ = 0;
   double upkeep_ = 0, cost_ = 0, runs_ = 0;  // of a run, smoothed; since the last rebuild
+  std::uint32_t rebuilds_ = 0;
   bool worn_out_ = false;
   const std::string_view* asked_ = nullptr;  // the query that was answered last
 };

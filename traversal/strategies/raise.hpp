@@ -28,7 +28,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "traversal/fronts.hpp"
+#include "traversal/strategies/rising_front.hpp"
 
 namespace bvlab {
 

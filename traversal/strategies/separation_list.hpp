@@ -19,7 +19,7 @@
 
 #include <string_view>
 
-#include "traversal/fronts.hpp"
+#include "traversal/front.hpp"
 
 namespace bvlab {
 

@@ -2,12 +2,15 @@
 /// What pairs of bodies over wide trees remember from frame to frame: how long nothing can have
 /// changed, and where they touched.
 ///
-/// A traversal that finds two bodies apart has compared volumes that are apart, and the least of
-/// their gaps is one of the bodies unless triangles had to be looked at. Until the bodies can have
-/// come nearer by that much the answer stays, and costs one comparison: of a deadline with the
-/// displacements since the first frame (MovingBody::displacement_bound). Where displacements are
-/// long because bodies jitter or go together, the bound between reference poses is looked at before
-/// the pair is. Bodies that touch are looked at where they did, first.
+/// How far apart two bodies are is told by a direction in which they do not reach each other, or by
+/// a traversal: the least gap of volumes that it found apart is one of the bodies unless triangles
+/// had to be looked at. Until the bodies can have come nearer by that much the answer stays, and
+/// costs one comparison: of a deadline with the displacements since the first frame
+/// (MovingBody::displacement_bound). Where displacements are long because bodies jitter or go
+/// together, the bound between reference poses is looked at before the pair is.
+///
+/// Bodies that touch go on to touch until one edge that crosses a triangle can have left it
+/// (triangle_margin.hpp); after that they are looked at where they did, first.
 ///
 /// Bodies that were apart twice, but hardly, get a front (WideFront), of which those entries are
 /// looked at again whose deadlines have passed. Where most have, there is none for a while: four
@@ -16,7 +19,7 @@
 /// Tried and not kept: to open volumes that are hardly apart so that the least gap grows. Triangles
 /// of two surfaces are near each other in many places, and to know the nearest is to know the
 /// distance, at five times the price. Nor does it pay to measure triangles that are apart by more
-/// than the volumes they have anyway.
+/// than the volumes they have anyway: a third of the tests is left, and each gap costs four.
 #pragma once
 
 #include <algorithm>
@@ -30,6 +33,7 @@
 
 #include "traversal/body_pair.hpp"
 #include "traversal/relative_motion_bound.hpp"
+#include "traversal/wide/separating_direction.hpp"
 #include "traversal/wide/wide_front.hpp"
 #include "traversal/wide/wide_traversal.hpp"
 
@@ -52,18 +56,19 @@ class MeasuringGap {
   static constexpr bool measures = true;
 
   /// A front that is not complete is written anew.
-  void begin(WideFront* front, double displacement) {
-    front_ = front, displacement_ = displacement;
+  void begin(WideFront* front, const RelativeMotionBound& clock) {
+    front_ = front, now_ = clock.now(), zero_ = clock.deadline(0);
     sweeps_ = front && front->is_complete(), swept_ = false, due_ = 0;
     if (front && !sweeps_) front->clear();
-    least_ = S(std::numeric_limits<float>::infinity()), touched_.reset();
+    least_ = S(std::numeric_limits<float>::infinity()), touched_.reset(), crossing_.reset();
   }
 
   /// Whether it starts from a front, and whether that has been looked at.
   bool sweeps() const { return sweeps_; }
   bool swept() const { return swept_; }
   WideFront& sweep() { return swept_ = true, *front_; }
-  double displacement() const { return displacement_; }
+  /// By the clock of the bodies.
+  double now() const { return now_; }
   bool front() const { return front_; }
   std::size_t due() const { return due_; }
 
@@ -106,6 +111,9 @@ class MeasuringGap {
     if (rest > 0) --rest;
     return !touching && rest == 0;
   }
+  /// These triangles cross for certain, by their numbers in their meshes.
+  void crossing(std::uint32_t a, std::uint32_t b) { crossing_ = {a, b}; }
+  const std::optional<NodePair>& crossing() const { return crossing_; }
   void triangles_are(const S& gaps, std::size_t entry) {
     const float gap = stdx::hmin(select(gaps > S(0.0f), gaps, S(0.0f)));
     front_->deadline(entry) = deadline_of(gap);
@@ -121,17 +129,16 @@ class MeasuringGap {
   }
 
  private:
-  /// Sums of displacements are rounded here and where they are compared.
+  /// As RelativeMotionBound::deadline; a sum is rounded here.
   double deadline_of(float gap) const {
     if (!(gap > 0)) return WideFront::passed;
-    return (displacement_ + gap * (1 - 32.0 * unit_roundoff<float>)) *
-           (1 - 8 * unit_roundoff<double>);
+    return (zero_ + gap * (1 - 32.0 * unit_roundoff<float>)) * (1 - 8 * unit_roundoff<double>);
   }
 
   S least_, last_;
-  std::optional<NodePair> touched_;
+  std::optional<NodePair> touched_, crossing_;
   WideFront* front_ = nullptr;
-  double displacement_ = 0;
+  double now_ = 0, zero_ = 0;
   std::size_t due_ = 0;
   bool sweeps_ = false, swept_ = false;
 };
@@ -146,7 +153,7 @@ class WideMargins {
 
   void add_body(const MeshBall& ball, double reach) {
     bodies_.emplace_back(HierarchyExtent{ball.centre, ball.radius, reach, 0});
-    displacements_.push_back(0), steps_.push_back(0), reaches_.push_back(0), epochs_.push_back(0);
+    displacements_.push_back(0), steps_.push_back(0), epochs_.push_back(0);
   }
   void resize(std::size_t pairs) { answers_.resize(pairs), kept_.resize(pairs); }
 
@@ -154,8 +161,8 @@ class WideMargins {
   void forget(std::size_t p) {
     answers_[p] = {};
     Kept& kept = kept_[p];
-    kept.deadline = 0, kept.was_apart = false;
-    kept.pause = 0, kept.next_pause = shortest_pause;
+    kept.deadline = 0, kept.was_apart = kept.touched_again = false;
+    kept.rest = 0, kept.pause = 0, kept.next_pause = shortest_pause;
     kept.front.clear();
   }
 
@@ -167,18 +174,15 @@ class WideMargins {
     std::fill(kept_.begin(), kept_.end(), Kept{});
     asked_ = &Query::name;
   }
-  /// Where a body stands in this frame.
-  void move(std::size_t i, const Pose& pose) {
+  /// Where a body stands in this frame; says whether it has moved.
+  bool move(std::size_t i, const Pose& pose) {
     Followed& body = bodies_[i];
     steps_[i] = 0;
-    if (!body.place(pose)) return;
+    if (!body.place(pose)) return false;
     const double displacement = body.displacement_bound();
     steps_[i] = displacement - displacements_[i];
     displacements_[i] = displacement, epochs_[i] = body.epoch();
-    const ReferencePose& at = body.reference_pose();
-    // A matrix stretches by its defect at most.
-    reaches_[i] =
-        (body.extent().radius * (1 + at.defect) + at.noise) * (1 + 16 * unit_roundoff<double>);
+    return true;
   }
   /// Where it stood in the last.
   void rest(std::size_t i) { steps_[i] = 0; }
@@ -200,18 +204,36 @@ class WideMargins {
     hold(p, pair, left * (1 - 4 * unit_roundoff<double>));
     return true;
   }
-  /// Whether the balls around them are apart.
-  bool balls_apart(std::size_t p, const ObjectPair& pair) {
-    const double reach = reaches_[pair.i] + reaches_[pair.j];
-    const double distance =
-        (bodies_[pair.i].reference_pose().centre - bodies_[pair.j].reference_pose().centre).norm() *
-        (1 - 16 * unit_roundoff<double>);
-    if (!(distance > reach)) return false;
-    kept_[p].deadline = 0;
-    answers_[p] = {0, epochs(pair), false};
-    hold(p, pair, (distance - reach) * (1 - 4 * unit_roundoff<double>));
-    return true;
+  /// The bodies are so far apart, from where they stand now.
+  void apart(std::size_t p, const ObjectPair& pair, double gap) {
+    Kept& kept = kept_[p];
+    answers_[p] = {unknown, epochs(pair), false};
+    kept.clock.restart(bodies_[pair.i], bodies_[pair.j]);
+    kept.deadline = kept.clock.deadline(gap);
+    kept.front.clear();
+    kept.was_apart = true, kept.touched_again = false;
+    hold(p, pair, gap);
   }
+
+  /// Whether it is worth while to ask for how long they go on touching: not where that was no
+  /// longer than it takes to ask.
+  bool asks_how_long(std::size_t p) {
+    Kept& kept = kept_[p];
+    return kept.rest == 0 || --kept.rest == 0;
+  }
+  /// They touch until they have come so far.
+  void goes_on_touching(std::size_t p, const ObjectPair& pair, double margin) {
+    Kept& kept = kept_[p];
+    if (!(margin > 2 * (steps_[pair.i] + steps_[pair.j]))) {
+      kept.rest = 64;
+      return;
+    }
+    kept.clock.restart(bodies_[pair.i], bodies_[pair.j]);
+    kept.deadline = kept.clock.deadline(margin);
+    hold(p, pair, margin);
+  }
+  /// Whether they touched the last two times that they were looked at.
+  bool goes_on(std::size_t p) const { return kept_[p].touched_again; }
 
   /// Where they touched last time, if one hit is enough.
   template <class Query>
@@ -226,8 +248,26 @@ class WideMargins {
     if (kept.pause > 0) return --kept.pause, nullptr;
     return kept.was_apart ? &kept.front : nullptr;
   }
-  double displacement(const ObjectPair& pair) const {
-    return displacements_[pair.i] + displacements_[pair.j];
+  /// Whether it is known which lanes are apart by how much.
+  bool has_front(std::size_t p) const { return kept_[p].front.is_complete(); }
+  /// Goes on from here; begins at zero where no front goes by it.
+  const RelativeMotionBound& clock(std::size_t p, const ObjectPair& pair) {
+    Kept& kept = kept_[p];
+    MovingBody &a = bodies_[pair.i], &b = bodies_[pair.j];
+    if (!kept.front.is_complete()) {
+      kept.clock.restart(a, b);
+    } else {
+      kept.clock.advance(a, b);
+      if (kept.clock.since() > 2 * (steps_[pair.i] + steps_[pair.j])) kept.clock.refer(a, b);
+    }
+    return kept.clock;
+  }
+  /// Puts a body where it stands among those whose directions are looked along.
+  void stand(std::size_t i, SeparatingDirections& directions, std::int32_t map,
+             const Vec3<double>& origin) {
+    const ReferencePose& at = bodies_[i].reference_pose();
+    const double noise = at.defect < 0.1 ? at.noise : std::numeric_limits<double>::infinity();
+    directions.stand(i, map, at.rotation, at.centre - origin, bodies_[i].extent().radius, noise);
   }
 
   /// Gives a query that was not asked the answer of the last one.
@@ -253,6 +293,7 @@ class WideMargins {
     answer = {unknown, epochs(pair), found.touched().has_value()};
     if constexpr (says_all<Query>) answer.touching = query.touching();
     kept.deadline = 0;
+    kept.touched_again = answer.touching && !kept.was_apart;
     kept.was_apart = !answer.touching;
     if (answer.touching) {
       kept.touched = *found.touched();
@@ -273,14 +314,14 @@ class WideMargins {
         kept.next_pause = shortest_pause;
       }
       if (worn || front.overgrown()) return front.clear();
-      const double earliest = front.earliest();
-      if (earliest > displacement(pair)) answer.until = earliest;
+      kept.deadline = front.earliest();
+      const double left = kept.deadline - kept.clock.now();
+      if (left > 0) hold(p, pair, left * (1 - 4 * unit_roundoff<double>));
       return;
     }
     // Less would hardly last until the next frame.
     const double gap = found.gap();
     if (!(gap > steps_[pair.i] + steps_[pair.j])) return;
-    kept.clock.restart(bodies_[pair.i], bodies_[pair.j]);
     kept.deadline = kept.clock.deadline(gap);
     hold(p, pair, gap);
   }
@@ -306,7 +347,8 @@ class WideMargins {
     NodePair touched{};
     WideFront front;
     int pause = 0, next_pause = shortest_pause;
-    bool was_apart = false;
+    int rest = 0;  // how many times it is not to be asked how long they touch
+    bool was_apart = false, touched_again = false;
   };
 
   static constexpr double unknown = -1;
@@ -327,7 +369,7 @@ class WideMargins {
   }
 
   std::vector<Followed> bodies_;
-  std::vector<double> displacements_, steps_, reaches_;
+  std::vector<double> displacements_, steps_;
   std::vector<std::uint32_t> epochs_;
   std::vector<Answer> answers_;
   std::vector<Kept> kept_;

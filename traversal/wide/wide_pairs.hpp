@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Bodies over wide trees that move from frame to frame, and pairs of them asked in every frame:
-/// AllPairs' sibling. Balls around the bodies dismiss what is far apart; what is near takes turns,
-/// two pairs at a time. Or some pairs of them, which come and go: what a World asks.
+/// AllPairs' sibling. Balls around the bodies, and directions in which they do not reach each
+/// other, dismiss pairs by the registerful; what is left takes turns, two at a time. Or some pairs
+/// of them, which come and go: what a World asks.
 ///
 /// What is remembered from one frame to the next is a policy: nothing (Forgetful), so that every
 /// pair starts from the roots, or how long answers stay (WideMargins).
@@ -9,7 +10,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <map>
 #include <ranges>
 #include <span>
 #include <type_traits>
@@ -18,6 +21,7 @@
 
 #include "hierarchies/geometry/threads.hpp"
 #include "traversal/all_pairs.hpp"
+#include "traversal/wide/separating_direction.hpp"
 #include "traversal/wide/wide_margins.hpp"
 
 namespace bvlab {
@@ -32,6 +36,8 @@ struct WideShape {
 template <BoundingVolume V, int F, class Frame = RelativeFrame, class Memory = Forgetful>
 class WidePairs {
   using Body = typename Frame::template Body<V, F>;
+  using Indices = SeparatingDirections::Indices;
+  static constexpr std::size_t width = SeparatingDirections::width;
 
  public:
   /// One body for each shape, which must outlive this.
@@ -43,8 +49,7 @@ class WidePairs {
       meshes_.push_back(shape.mesh);
       balls_.push_back(shape.hierarchy->ball());
     }
-    centres_.resize(bodies_.size()), reaches_.resize(bodies_.size());
-    near_.resize(pairs_.size());
+    add_support_maps();
     if constexpr (Memory::remembers) {
       for (const auto& shape : shapes)
         memory_.add_body(shape.hierarchy->ball(), shape.hierarchy->reach());
@@ -58,20 +63,11 @@ class WidePairs {
   void frame(std::span<const Pose> poses, Counter& counter, Ask&& ask, Take&& take) {
     using Query = std::remove_cvref_t<decltype(ask(0))>;
     if (!placed_) origin_ = middle_of(poses), placed_ = true;
-    if constexpr (Memory::remembers) return frame_from_memory<Query>(poses, counter, ask, take);
-    for (std::size_t i = 0; i < bodies_.size(); ++i) place_with_ball(i, poses[i]);
-    std::size_t near = pairs_.size();
-    const std::uint64_t before = counter.n_v + counter.n_p;
-    if constexpr (!SeeksDistance<Query>) {
-      near = find_near(counter);
-      for (std::size_t k = near; k < pairs_.size(); ++k) {
-        counter.asked(before);
-        take(near_[k], ask(near_[k]));
-      }
-    } else {
-      for (std::size_t k = 0; k < near; ++k) near_[k] = static_cast<std::uint32_t>(k);
-    }
-    take_turns<Query>(std::span(near_).first(near), workers_[0], before, counter, ask, take);
+    poses_ = poses;
+    if constexpr (Memory::remembers) memory_.template begin_frame<Query>();
+    for (std::size_t i = 0; i < bodies_.size(); ++i) follow(i);
+    ask_near<Query>(std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(pairs_.size())),
+                    workers_[0], counter, ask, take);
   }
 
   // ---- some pairs of them, in slots: see world_of.hpp -----------------------------------------
@@ -105,10 +101,8 @@ class WidePairs {
   }
   /// Puts one of them where it stands.
   void stand(std::uint32_t i) {
-    if constexpr (Memory::remembers)
-      place(bodies_[i], poses_[i], origin_), memory_.move(i, poses_[i]);
-    else
-      place_with_ball(i, poses_[i]);
+    follow(i);
+    if constexpr (Memory::remembers) place(bodies_[i], poses_[i], origin_);
   }
 
   /// As `worker`, below the number of threads: `ask(slot, pair)`, `take(slot, pair, query)`.
@@ -131,56 +125,56 @@ class WidePairs {
  private:
   static constexpr std::size_t at_once = 2;
 
+  static constexpr int most_directions = 2;
+
   /// What a thread needs for itself, in cache lines of its own.
   struct alignas(128) Worker {
     std::array<WideWorkspace, at_once> workspaces;
-    std::vector<std::uint32_t> near;  ///< pairs
+    std::vector<std::int32_t> near, far;  ///< pairs; with room for a register behind them
+    std::size_t near_count = 0, far_count = 0;
+
+    void make_room(std::size_t pairs) {
+      if (near.size() < pairs + width) near.resize(pairs + width), far.resize(pairs + width);
+      near_count = far_count = 0;
+    }
+    void put(std::int32_t pair, std::size_t is_near) {
+      near[near_count] = far[far_count] = pair;
+      near_count += is_near, far_count += 1 - is_near;
+    }
+    /// The first `used` of these.
+    void put(const Indices& pairs, std::size_t used, std::uint64_t is_near) {
+      alignas(64) std::array<std::int32_t, width> pair;
+      pairs.copy_to(pair.data(), stdx::vector_aligned);
+      for (std::size_t k = 0; k < used; ++k) put(pair[k], is_near >> k & 1);
+    }
   };
 
-  void place_with_ball(std::size_t i, const Pose& pose) {
-    place(bodies_[i], pose, origin_);
-    centres_[i] = pose(balls_[i].centre);
-    // What is off, of a corner and of the centre, and of how far they are apart.
-    reaches_[i] = (balls_[i].radius + 4 * bodies_[i].orthonormal_pose().noise) *
-                  (1 + 16 * unit_roundoff<double>);
-  }
-  bool balls_meet(const ObjectPair& pair) const {
-    const auto [i, j] = pair;
-    const double reach = reaches_[i] + reaches_[j];
-    return !((centres_[i] - centres_[j]).squaredNorm() > reach * reach);
-  }
-
-  /// Puts the pairs whose balls meet before the others; says how many they are.
-  template <class Counter>
-  std::size_t find_near(Counter& counter) {
-    std::size_t near = 0, far = pairs_.size();
-    for (std::size_t p = 0; p < pairs_.size(); ++p) {
-      const bool meet = balls_meet(pairs_[p]);
-      near_[near] = static_cast<std::uint32_t>(p);
-      near += meet;
-      far -= !meet;
-      if (!meet) near_[far] = static_cast<std::uint32_t>(p);
+  /// One for each mesh.
+  void add_support_maps() {
+    directions_.resize(bodies_.size());
+    std::map<const SupportMap*, std::int32_t> added;
+    for (const Body& body : bodies_) {
+      const SupportMap& map = body.hierarchy().supports();
+      if (!added.contains(&map)) added[&map] = directions_.add(map);
+      maps_.push_back(added[&map]);
     }
-    counter.tested(pairs_.size());
-    return near;
   }
 
-  /// Bodies are placed when one of their pairs has to be looked at.
-  template <class Query, class Counter, class Ask, class Take>
-  void frame_from_memory(std::span<const Pose> poses, Counter& counter, Ask& ask, Take& take) {
-    poses_ = poses;
-    memory_.template begin_frame<Query>();
-    for (std::size_t i = 0; i < bodies_.size(); ++i) memory_.move(i, poses[i]);
-    ask_near<Query>(std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(pairs_.size())),
-                    workers_[0], counter, ask, take);
+  /// Puts a body where it stands, as far as is needed to see which of its pairs to look at.
+  void follow(std::size_t i) {
+    if constexpr (Memory::remembers) {
+      if (memory_.move(i, poses_[i])) memory_.stand(i, directions_, maps_[i], origin_);
+    } else {
+      place(bodies_[i], poses_[i], origin_);
+      directions_.stand(i, maps_[i], poses_[i].rotation, poses_[i](balls_[i].centre) - origin_,
+                        balls_[i].radius, bodies_[i].orthonormal_pose().noise);
+    }
   }
 
   /// Asks these pairs: those at once that are known not to have changed, or are far apart.
   template <class Query, class Slots, class Counter, class Ask, class Take>
   void ask_near(const Slots& slots, Worker& worker, Counter& counter, Ask& ask, Take& take) {
-    std::vector<std::uint32_t>& near = worker.near;
-    if (near.size() < slots.size()) near.resize(slots.size());
-    std::size_t due = 0;
+    worker.make_room(slots.size());
     for (const std::uint32_t p : slots) {
       if constexpr (Memory::remembers)
         if (memory_.template stays<Query>(p, pairs_[p])) {
@@ -189,33 +183,87 @@ class WidePairs {
           take(p, query);
           continue;
         }
-      near[due++] = p;
+      worker.near[worker.near_count++] = static_cast<std::int32_t>(p);
     }
     const std::uint64_t before = counter.n_v + counter.n_p;
-    counter.tested(due);
-    std::size_t left = 0;
-    for (std::size_t k = 0; k < due; ++k) {
-      const std::uint32_t p = near[k];
-      if constexpr (!SeeksDistance<Query>)
-        if (is_apart(p)) {
-          counter.asked(before);
-          take(p, ask(p));
-          continue;
-        }
-      near[left++] = p;
+    counter.tested(worker.near_count);
+    if constexpr (!SeeksDistance<Query>) {
+      if constexpr (Memory::remembers)
+        tell_what_stays(worker);
+      else
+        tell_by_balls(worker);
+      tell_by_directions(worker, counter);
+      for (std::size_t k = 0; k < worker.far_count; ++k) {
+        const auto p = static_cast<std::size_t>(worker.far[k]);
+        counter.asked(before);
+        auto query = ask(p);
+        if constexpr (Memory::remembers) memory_.repeat(p, query);
+        take(p, query);
+      }
     }
-    take_turns<Query>(std::span(near).first(left), worker, before, counter, ask, take);
+    take_turns<Query>(std::span(worker.near).first(worker.near_count), worker, before, counter, ask,
+                      take);
   }
-  bool is_apart(std::uint32_t p) {
+
+  void tell_by_balls(Worker& worker) const {
+    const std::size_t count = std::exchange(worker.near_count, 0);
+    for (std::size_t k = 0; k < count; k += width) {
+      const Indices numbers(&worker.near[k], stdx::element_aligned);
+      const std::size_t used = std::min(width, count - k);
+      worker.put(numbers, used, directions_.balls_meet(pairs_of(numbers, used)));
+    }
+  }
+  void tell_what_stays(Worker& worker) {
+    const std::size_t count = std::exchange(worker.near_count, 0);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::int32_t p = worker.near[k];
+      worker.put(p, !memory_.stays_after_all(static_cast<std::size_t>(p),
+                                             pairs_[static_cast<std::size_t>(p)]));
+    }
+  }
+  /// All but those of which more is known.
+  template <class Counter>
+  void tell_by_directions(Worker& worker, Counter& counter) {
+    std::size_t known = 0;
     if constexpr (Memory::remembers)
-      return memory_.stays_after_all(p, pairs_[p]) || memory_.balls_apart(p, pairs_[p]);
-    else
-      return !balls_meet(pairs_[p]);
+      for (std::size_t k = 0; k < worker.near_count; ++k) {
+        const auto p = static_cast<std::size_t>(worker.near[k]);
+        if (memory_.has_front(p) || memory_.goes_on(p))
+          std::swap(worker.near[k], worker.near[known++]);
+      }
+    const std::size_t count = std::exchange(worker.near_count, known);
+    counter.tested(count - known);
+    for (std::size_t k = known; k < count; k += width) {
+      const Indices numbers(&worker.near[k], stdx::element_aligned);
+      const std::size_t used = std::min(width, count - k);
+      const auto pairs = pairs_of(numbers, used);
+      auto direction = SeparatingDirections::normalized(pairs.between);
+      const auto gaps = directions_.gaps(pairs, direction, most_directions);
+      const std::uint64_t near = ~bits(gaps > 0.0f);
+      if constexpr (Memory::remembers)
+        for (std::size_t lane = 0; lane < used; ++lane)
+          if (!(near >> lane & 1)) {
+            const auto p = static_cast<std::size_t>(worker.near[k + lane]);
+            memory_.apart(p, pairs_[p], gaps[lane]);
+          }
+      worker.put(numbers, used, near);
+    }
+  }
+  /// The first `used` of these pairs.
+  SeparatingDirections::Pairs pairs_of(const Indices& numbers, std::size_t used) const {
+    Indices place = 2 * numbers;
+    const Indices lanes([](auto lane) { return static_cast<std::int32_t>(lane); });
+    stdx::where(lanes >= static_cast<std::int32_t>(used), place) = 0;
+    const auto body = [&](const std::uint32_t& first) {
+      return std::bit_cast<Indices>(
+          gathered<static_cast<int>(width)>(reinterpret_cast<const float*>(&first), place));
+    };
+    return directions_.pairs(body(pairs_[0].i), body(pairs_[0].j));
   }
 
   /// `before`: what had been tested when the frame began.
   template <class Query, class Counter, class Ask, class Take>
-  void take_turns(std::span<const std::uint32_t> near, Worker& worker, std::uint64_t before,
+  void take_turns(std::span<const std::int32_t> near, Worker& worker, std::uint64_t before,
                   Counter& counter, Ask& ask, Take& take) {
     using Measure = std::conditional_t<SeeksDistance<Query>, NotMeasuring,
                                        typename Memory::template Measure<F>>;
@@ -226,14 +274,14 @@ class WidePairs {
     std::size_t next = 0, active = 0;
     std::array<Traversal*, at_once> running;
     const auto begin = [&](std::size_t slot) {
-      pair[slot] = near[next++];
+      pair[slot] = static_cast<std::uint32_t>(near[next++]);
       const auto [i, j] = pairs_[pair[slot]];
       if constexpr (Memory::remembers)
         place(bodies_[i], poses_[i], origin_), place(bodies_[j], poses_[j], origin_);
       if constexpr (Measure::measures)
         running[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter,
                              memory_.template touched<Query>(pair[slot]), memory_.front(pair[slot]),
-                             memory_.displacement(pairs_[pair[slot]]));
+                             memory_.clock(pair[slot], pairs_[pair[slot]]));
       else
         running[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter);
     };
@@ -248,9 +296,7 @@ class WidePairs {
           continue;
         }
         counter.asked(before);
-        if constexpr (Memory::remembers)
-          memory_.remember(pair[slot], pairs_[pair[slot]], running[slot]->query(),
-                           running[slot]->measure());
+        if constexpr (Memory::remembers) remember(pair[slot], *running[slot]);
         take(pair[slot], running[slot]->query());
         if (next < near.size()) {
           begin(slot++);
@@ -261,13 +307,29 @@ class WidePairs {
       }
   }
 
+  template <class Traversal>
+  void remember(std::size_t p, const Traversal& traversal) {
+    using Query = std::remove_cvref_t<decltype(traversal.query())>;
+    const ObjectPair& pair = pairs_[p];
+    memory_.remember(p, pair, traversal.query(), traversal.measure());
+    if constexpr (!SeeksDistance<Query> && Query::one_hit_is_enough)
+      if (const auto crossing = traversal.measure().crossing();
+          crossing && memory_.asks_how_long(p)) {
+        const Triangle a = bodies_[pair.i].triangle(crossing->a),
+                       b = bodies_[pair.j].triangle(crossing->b);
+        const Triangle *first = &a, *second = &b;
+        double margin = 0;
+        if (touching_with_margins<>(&first, &second, 1, intersect_batch<Exact>, &margin))
+          memory_.goes_on_touching(p, pair, margin);
+      }
+  }
+
   std::vector<ObjectPair> pairs_;
   std::vector<Body> bodies_;
   std::vector<const TriangleMesh*> meshes_;
   std::vector<MeshBall> balls_;
-  std::vector<Vec3<double>> centres_;
-  std::vector<double> reaches_;
-  std::vector<std::uint32_t> near_;  // pairs, near ones first
+  SeparatingDirections directions_;
+  std::vector<std::int32_t> maps_;  // by which directions_ knows a body's mesh
   std::vector<Worker> workers_;
   Vec3<double> origin_ = Vec3<double>::Zero();
   [[no_unique_address]] Memory memory_;

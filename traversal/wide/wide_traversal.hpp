@@ -22,6 +22,7 @@
 
 #include "traversal/primitives/triangle_filter.hpp"
 #include "traversal/queries/candidate.hpp"
+#include "traversal/relative_motion_bound.hpp"
 #include "traversal/wide/frames.hpp"
 #include "traversal/wide/frontier.hpp"
 #include "traversal/wide/wide_front.hpp"
@@ -62,17 +63,19 @@ class WideTraversal {
     between_.begin(a, b);
     query_.emplace(std::move(query));
     counter_ = &counter;
+    steps_ = 0;
     frontier_.clear(), triangles_.clear(), pending_ = 0;
     frontier_.push({0, 0}, 0);
   }
 
   /// `touched`, a triangle of a and a leaf of b, is looked at first, then its leaf. What the bodies
-  /// are known to be apart by is in `front`, if that is complete; else it is written there.
+  /// are known to be apart by is in `front`, if that is complete; else it is written there. `clock`
+  /// is what deadlines go by.
   void begin(Body& a, Body& b, Query query, Counter& counter,
              const std::optional<NodePair>& touched, WideFront* front,
-             double displacement) requires(Measure::measures) {
+             const RelativeMotionBound& clock) requires(Measure::measures) {
     begin(a, b, std::move(query), counter);
-    measure_.begin(front, displacement);
+    measure_.begin(front, clock);
     if (measure_.sweeps()) {
       frontier_.clear();
     } else if (touched) {
@@ -106,7 +109,10 @@ class WideTraversal {
       float order;
       if constexpr (Measure::measures)
         if (!triangles_.empty() && open_triangle(triangles_.take_last())) return false;
-      step(frontier_.take_least(order));
+      if (++steps_ <= most_in_order)
+        step(frontier_.take_least(order));
+      else
+        step_several();
       while (!triangles_.empty())
         if (open_triangle(triangles_.take_last())) return false;
     } else {
@@ -118,6 +124,18 @@ class WideTraversal {
   }
 
  private:
+  /// Hits take 5 to 13 steps. Who has come so far is likely apart, and then order is worth nothing:
+  /// steps that do not wait for one another take half the time.
+  static constexpr int most_in_order = 16;
+  static constexpr std::size_t several = 4;
+
+  [[gnu::always_inline]] void step_several() {
+    std::array<NodePair, several> taken;
+    const std::size_t count = std::min(frontier_.size(), several);
+    for (std::size_t k = 0; k < count; ++k) taken[k] = frontier_.take_last();
+    for (std::size_t k = 0; k < count; ++k) step(taken[k]);
+  }
+
   /// What was held back is looked at; nothing more is to do.
   bool finish() {
     if (pending_ > 0) flush();
@@ -129,7 +147,7 @@ class WideTraversal {
     WideFront& front = measure_.sweep();
     const std::size_t size = front.size();  // what is added needs no second look
     for (std::size_t i = 0; i < size; ++i) {
-      if (front.deadline(i) > measure_.displacement()) continue;
+      if (front.deadline(i) > measure_.now()) continue;
       const WideFront::Entry entry = front[i];
       if (!entry.triangle)
         step(entry.pair, i);
@@ -200,7 +218,10 @@ class WideTraversal {
     const std::uint32_t triangle = bodies_[0]->hierarchy().triangle(pair.a);
     for (std::uint64_t rest = met; rest; rest &= rest - 1)
       if (query_->known(triangle, triangle_of_b(leaf.first, rest))) {
-        if constexpr (Measure::measures) measure_.triangles(pair, true, entry);
+        if constexpr (Measure::measures) {
+          measure_.triangles(pair, true, entry);
+          measure_.crossing(triangle, triangle_of_b(leaf.first, rest));
+        }
         return true;
       }
     std::uint64_t open = leaf.lanes & ~bits(verdict.apart) & ~met;
@@ -260,6 +281,7 @@ class WideTraversal {
   std::optional<Query> query_;
   [[no_unique_address]] Measure measure_;
   Counter* counter_;
+  int steps_;
   Frontier& frontier_;
   Frontier& triangles_;
   std::array<std::array<Triangle, at_most>, 2> world_;

@@ -17,6 +17,7 @@
 #include "broadphase/methods/blocks/joined_blocks.hpp"
 #include "broadphase/structures/candidate_pairs.hpp"
 #include "broadphase/structures/last_frame.hpp"
+#include "hierarchies/geometry/large_vector.hpp"
 
 namespace bvlab {
 

@@ -4,6 +4,7 @@
 /// rotation is a product of all the turns so far, never made orthonormal again.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <cstdlib>

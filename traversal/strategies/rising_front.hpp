@@ -107,12 +107,16 @@ class RisingFront : public Front {
     Front::open(slot);
   }
 
-  std::size_t add(const NodePair& pair) {
+  std::size_t add(const NodePair& pair, Seen = Seen::not_yet, double = 0) {
     const std::size_t slot = Front::add(pair);
     failures_.resize(size());
     failures_[slot] = 0;
     table_.set(slot, entries_);
     return slot;
+  }
+
+  void finish(std::size_t witness, bool) {
+    if (witness != Outcome::none) bring_forward(witness);
   }
 
   void bring_forward(std::size_t slot) {
@@ -121,6 +125,15 @@ class RisingFront : public Front {
     Front::bring_forward(slot);
     std::swap(failures_[0], failures_[slot]);
     if (slot != 0) table_.set(slot, entries_), table_.set(0, entries_);
+  }
+
+  /// Parents are tried when the witness has been looked at and did not settle the matter, before
+  /// all other entries. What was raised has been tested.
+  template <class Traversal>
+  bool sweep(Traversal& traversal) {
+    if (witnessed() && traversal.look_at_alone(0)) return true;
+    const std::size_t raised = rise(traversal), first = witnessed();
+    return traversal.look_at(size() - raised - first, [first](std::size_t i) { return first + i; });
   }
 
   /// The sibling pairs that are due. Each run asks once, when its witness did not settle the
@@ -183,6 +196,27 @@ class RisingFront : public Front {
   }
 
  private:
+  /// Tries the parents that are proposed and, where one is apart, its parent after it. Says how
+  /// many have been raised: they stand behind all other entries.
+  template <class Traversal>
+  std::size_t rise(Traversal& traversal) {
+    auto& pairs = traversal.workspace().template room<std::vector<SiblingPair>>();
+    propose(traversal.a(), traversal.b(), pairs);
+    for (std::size_t next = 0; next < pairs.size();) {
+      const std::size_t count = std::min(Traversal::W, pairs.size() - next);
+      std::uint64_t apart =
+          traversal.culled(count, [&](std::size_t i) { return pairs[next + i].parent; });
+      for (std::size_t i = 0; i < count; ++i, ++next, apart >>= 1)
+        if (apart & 1)
+          raise(traversal.a(), traversal.b(), pairs, next);
+        else
+          refuse(pairs[next]);
+    }
+    const std::size_t raised = settle(pairs);
+    if (!witnessed()) traversal.forget_witness();
+    return raised;
+  }
+
   /// The longest wait is 2^most_failures runs: for bodies at rest, whose sibling pairs are at most
   /// half their entries, 1/32 of a test for each entry and run. Of 1 to 1024 runs, on random walks,
   /// 8 and 16 are within 7 % of the best at every motion.

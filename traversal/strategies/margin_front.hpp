@@ -18,8 +18,7 @@
 #include <vector>
 
 #include "hierarchies/geometry/scalar.hpp"
-#include "traversal/front.hpp"
-#include "traversal/queries/candidate.hpp"
+#include "traversal/node_pair.hpp"
 
 namespace bvlab {
 
@@ -68,7 +67,7 @@ class MarginFront {
 
   void open(std::size_t slot) { holes_.push_back(static_cast<std::uint32_t>(slot)); }
 
-  /// Adds an entry that has to be looked at, and says in which slot.
+  /// Adds an entry and says in which slot. One that has passed is to be looked at.
   std::size_t add(const NodePair& pair, double deadline = passed) {
     std::size_t slot = entries_.size();
     if (holes_.empty()) {
@@ -87,6 +86,13 @@ class MarginFront {
     // Written so that what is no number has passed.
     deadlines_[slot] = deadline > passed ? just_below(deadline) : passed;
     earliest_ = std::min(earliest_, deadlines_[slot]);
+  }
+
+  /// Not after this, whatever else is said.
+  void expire_by(std::size_t slot, double deadline) {
+    const float before = deadlines_[slot];
+    expire_at(slot, deadline);
+    deadlines_[slot] = std::min(deadlines_[slot], before);
   }
 
   /// Some that were collected have been given none: the traversal was cut short.

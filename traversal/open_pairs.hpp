@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Pairs waiting to be tested, last in, first out: `reserve` once, then `push` without a check.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "traversal/node_pair.hpp"
+
+namespace bvlab {
+
+class OpenPairs {
+ public:
+  void clear() { size_ = 0; }
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  /// Makes room for this number of further entries.
+  void reserve(std::size_t more) {
+    if (pairs_.size() < size_ + more) pairs_.resize(2 * (size_ + more));
+  }
+  void push(const NodePair& pair) {
+    pairs_[size_++] = static_cast<std::uint64_t>(pair.b) << 32 | pair.a;
+  }
+  NodePair pop() {
+    const std::uint64_t pair = pairs_[--size_];
+    return {static_cast<std::uint32_t>(pair), static_cast<std::uint32_t>(pair >> 32)};
+  }
+
+ private:
+  // Each pair is written as it is read, at once: a read that spans two writes waits until both
+  // have reached the cache, and so for all volumes posed before.
+  std::vector<std::uint64_t> pairs_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace bvlab
