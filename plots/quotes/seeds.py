@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The seeds as they were: the talk's tree and prices, the motions of boxes."""
 
+import numpy as np
+
 import nine_bunnies
 import records
 from quoting import RESULTS, Interval, claim, quotes
@@ -60,3 +62,64 @@ def boxes_motions(record):
     sweeps = saved[saved.method.str.startswith("sweep")].left
     claim(sweeps.median() > 0.9, "coherence saves sweeps next to nothing after radix sort")
     return {"sweeps": Interval(sweeps), "middle": sweeps.median(), "blocks": Interval(saved[saved.method == "blocks"].left)}
+
+
+def unit_costs(rows):
+    """C_u, C_v, C_p in nanoseconds: those by which recursions' times are off least, in squares of shares; none below 0."""
+    rows = rows[rows.strategy == "recursive"]
+    shares = rows[["n_u", "n_v", "n_p"]].to_numpy(float) / rows.time_ns.to_numpy()[:, None]
+    costs, used = np.zeros(3), [0, 1, 2]
+    while used:
+        found = np.linalg.lstsq(shares[:, used], np.ones(len(rows)), rcond=None)[0]
+        if (found >= 0).all():
+            costs[used] = found
+            break
+        del used[int(np.argmin(found))]
+    return costs
+
+
+@quotes("talk-scalar", RESULTS,
+        "a pair of triangles costs {plain:.0f} tests of spheres unoptimised and {optimised:.0f} optimised",
+        "the list is {plain_list:.2f} times as fast as recursion in time, unoptimised, and {list:.2f} times optimised, deferring {plain_deferred:.2f} and "
+        "{deferred:.2f} times (counted in tests {tests_list:.2f} and {tests_deferred:.2f})",
+        "all bodies moving in all freedoms leave {every_list:.2f} and {every_deferred:.2f}")
+def talk_scalar(record):
+    rows = records.read(record)
+    records.wrong_answers(rows)
+    one, every = ["one body, one freedom", "one body, all freedoms"], ["all bodies, all freedoms"]
+    cell = ["program", "reading", "density"]
+    found = {}
+    for name, measure in (("time", "time_ns"), ("tests", "n_v")):
+        table = rows.groupby([*cell, "seed", "strategy"])[measure].median().unstack("strategy")
+        found[name] = table.rdiv(table.recursive, axis=0).groupby(level=cell).mean()
+    dear = {program: np.divide(*unit_costs(rows[rows.program == program])[[2, 1]]) for program in set(rows.program)}
+
+    def of(what, program, readings, name):
+        return Interval(found[what].loc[program].loc[readings][name])
+    return {"plain": dear["unoptimised"], "optimised": dear["optimised"],
+            "plain_list": of("time", "unoptimised", one, "separation-list"), "list": of("time", "optimised", one, "separation-list"),
+            "plain_deferred": of("time", "unoptimised", one, "deferred"), "deferred": of("time", "optimised", one, "deferred"),
+            "tests_list": of("tests", "optimised", one, "separation-list"), "tests_deferred": of("tests", "optimised", one, "deferred"),
+            "every_list": of("time", "unoptimised", every, "separation-list"), "every_deferred": of("time", "unoptimised", every, "deferred")}
+
+
+def left_by_coherence(record):
+    """Time with coherence over that without, one a program, sort, set, number, motion and sweep."""
+    rows = records.read(record)
+    records.wrong_answers(rows)
+    rows = rows[(rows.frame_ns > 0) & rows.method.str.startswith("sweep")]
+    wide = rows.groupby(["program", "sort", "set", "boxes", "motion", "method", "coherent"]).frame_ns.median().unstack("coherent")
+    return (wide["on"] / wide["off"]).dropna()
+
+
+@quotes("boxes-sorts", RESULTS,
+        "after a sort by comparison coherence leaves the sweeps {plain:.2f} (median {plain_middle:.2f}) of their time unoptimised and {optimised:.2f} "
+        "({optimised_middle:.2f}) optimised; after a radix sort {plain_radix:.2f} ({plain_radix_middle:.2f}) and {radix:.2f} ({radix_middle:.2f})")
+def boxes_sorts(record):
+    left = left_by_coherence(record)
+    found = {}
+    for name, program, sort in (("plain", "unoptimised", "comparison"), ("optimised", "optimised", "comparison"),
+                                ("plain_radix", "unoptimised", "radix"), ("radix", "optimised", "radix")):
+        values = left.loc[program].loc[sort]
+        found[name], found[f"{name}_middle"] = Interval(values), values.median()
+    return found
