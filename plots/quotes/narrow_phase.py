@@ -3,6 +3,9 @@
 
 from functools import cache
 
+import numpy as np
+
+import records
 import tournament
 from quoting import README, RESULTS, Interval, claim, quotes
 
@@ -51,3 +54,23 @@ def headline(record):
 headline.also(README,
               "`--recommended` says in {us:.2f} us whether two bunnies touch, {fresh:.1f} times as fast as the fastest of OPCODE and FCL, and "
               "{coherent:.1f} times as fast as OPCODE with its temporal coherence")
+
+
+@quotes("memory", RESULTS,
+        "{objects:d} bunnies, {near:d} pairs near each other, hold {wide:.0f} MB of the heap as wide trees in the bodies' own frames "
+        "({wide_body:.1f} KB a body and {wide_pair:.1f} a near pair), {margins:.0f} with margins ({margins_body:.1f} and {margins_pair:.1f}), and "
+        "{binary:.0f} as binary oriented boxes posed into the world, {binary_body:.0f} KB a body")
+def memory(record):
+    rows = records.read(record)
+    crowded = rows[rows.room == rows.room.min()].set_index(["tree", "strategy"])
+
+    def a_body_and_a_pair(tree, strategy):
+        """By the line through the two rooms, in kilobytes."""
+        two = rows[(rows.tree == tree) & (rows.strategy == strategy)].sort_values("near")
+        pair = np.diff(two.bytes)[0] / np.diff(two.near)[0]
+        return (two.bytes.iloc[0] - pair * two.near.iloc[0]) / two.objects.iloc[0] / 1e3, pair / 1e3
+    (body, pair), (kept_body, kept_pair) = (a_body_and_a_pair("wide", strategy) for strategy in ("recursive", "margins"))
+    held = crowded.bytes / 1e6
+    return {"objects": crowded.objects.iloc[0], "near": crowded.near.iloc[0], "wide": held["wide", "recursive"], "wide_body": body,
+            "wide_pair": pair, "margins": held["wide", "margins"], "margins_body": kept_body, "margins_pair": kept_pair,
+            "binary": held["binary", "recursive"], "binary_body": 1e3 * held["binary", "recursive"] / crowded.objects.iloc[0]}
