@@ -82,7 +82,7 @@ def unit_costs(rows):
         "a pair of triangles costs {plain:.0f} tests of spheres unoptimised and {optimised:.0f} optimised",
         "the list is {plain_list:.2f} times as fast as recursion in time, unoptimised, and {list:.2f} times optimised, deferring {plain_deferred:.2f} and "
         "{deferred:.2f} times (counted in tests {tests_list:.2f} and {tests_deferred:.2f})",
-        "all bodies moving in all freedoms leave {every_list:.2f} and {every_deferred:.2f}")
+        "unoptimised and with all bodies moving in all freedoms {every_list:.2f} and {every_deferred:.2f} are left")
 def talk_scalar(record):
     rows = records.read(record)
     records.wrong_answers(rows)
