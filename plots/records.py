@@ -170,14 +170,17 @@ def as_lengths(column, unit):
 
 
 def variant_names(rows):
-    """For each row what was run: "volume strategy", the part alone of which there is more than one, or the peer."""
+    """For each row what was run: "volume strategy", the part alone of which there is more than one, the configuration
+    that chose both, or the peer."""
     for column in ("method", "test", "policy"):
         if column in rows:
             return rows[column].where(rows.peer == "", rows.peer)
     ours = rows[rows.peer == ""]
     parts = [part for part in ("volume", "strategy") if part in rows]
     several = [part for part in parts if ours[part].nunique() > 1] or parts[-1:]
-    named = rows[several].agg(" ".join, axis=1) if several else ""
+    named = rows[several].agg(" ".join, axis=1) if several else pd.Series("", rows.index)
+    if "configuration" in rows:
+        named = named.where(rows.configuration == "", rows.configuration)
     return pd.Series(np.where(rows.peer == "", named, rows.peer), rows.index)
 
 
