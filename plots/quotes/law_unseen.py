@@ -3,6 +3,7 @@
 
 import numpy as np
 
+import law_bullet
 import law_unseen
 from law_unseen import ALONE, FULL, ITSELF, LAST, LATER, LAW, OTHERS, PREFIX, REGRESSION
 from quoting import RESULTS, Interval, claim, quotes, stated
@@ -62,3 +63,22 @@ def unseen(record):
 stated(RESULTS, "what was set before the run", "from the first 20 frames of a run", "at most 1.1 times as many", "Here &kappa; matters: 0",
        "%, 1 gives")
 stated(RESULTS, "a share that is asked about", "95 % of cells within", "(95 %:", "; 95 %:")
+
+
+@quotes("law-bullet", RESULTS,
+        "the law from 20 frames is off by {law:.1f} % in tests, last run's cost by {last:.1f} % and R and c alone by {alone:.1f} %; in time the law by "
+        "{time:.1f} % and last run's cost by {last_time:.1f} %. Other seeds' speedups are off by {others:.1f} %. It names the fewest tests, or at most 1.1 times "
+        "as many, in {right:.0f} % of the cells",
+        "Of its five hypotheses the numbers {held} held")
+def heaps(record):
+    runs = law_bullet.read(record)
+    said = law_unseen.all_predictions(runs, law_unseen.fit_of_coherence())
+    timed = law_bullet.times(record, runs, said)
+
+    def off(name, source=PREFIX):
+        return 100 * np.median(law_unseen.off_by(said[source][name], runs))
+    right = law_unseen.choices(runs, {LAW: said[PREFIX][LAW]})[LAW] <= 1.1
+    held = [number for number, holds, _ in law_bullet.hypotheses(runs, said, timed) if holds]
+    return {"law": off(LAW), "last": off(LAST), "alone": off(ALONE), "time": 100 * np.median(law_bullet.off(timed[LAW], timed.measured)),
+            "last_time": 100 * np.median(law_bullet.off(timed[LAST], timed.measured)), "others": off(LAST, OTHERS),
+            "right": 100 * right.mean(), "held": held}
