@@ -66,7 +66,7 @@ stated(RESULTS, "a share that is asked about", "95 % of cells within", "(95 %:",
 
 
 @quotes("law-bullet", RESULTS,
-        "the law from 20 frames is off by {law:.1f} % in tests, last run's cost by {last:.1f} % and R and c alone by {alone:.1f} %; in time the law by "
+        "the law from the first frames is off by {law:.1f} % in tests, last run's cost by {last:.1f} % and R and c alone by {alone:.1f} %; in time the law by "
         "{time:.1f} % and last run's cost by {last_time:.1f} %. Other seeds' speedups are off by {others:.1f} %. It names the fewest tests, or at most 1.1 times "
         "as many, in {right:.0f} % of the cells",
         "Of its five hypotheses the numbers {held} held")
