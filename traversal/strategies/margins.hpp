@@ -26,6 +26,7 @@
 #include <limits>
 #include <string_view>
 
+#include "traversal/front.hpp"
 #include "traversal/strategies/margin_sweep.hpp"
 
 namespace bvlab {
