@@ -144,7 +144,8 @@ class Predictor {
   void measure_gaps(std::size_t p, PairFronts& pair) {
     Margins margins;
     ask(p, [&](const auto& each) {
-      margins.start_from(pair.open.back().front(), each.a(), each.b(), pair.step);
+      const Front& front = pair.open.back().front();
+      margins.start_from(front, front.size(), each.a(), each.b(), pair.step);
       Cost run;
       run.add(margins.run(each));
       const double due = pair.step > 0 ? margins.due_in_a_run(pair.step) : 0;

@@ -39,10 +39,21 @@ class Margins {
 
   template <class Pair>
   TraversalStatistics run(const Pair& pair) {
+    if (quiet(pair)) return {};
+    return look(pair);
+  }
+
+  /// The first half of a run: whether nothing is due, so that this is all of it.
+  template <class Pair>
+  bool quiet(const Pair& pair) {
+    return !front_.empty() && unchanged(pair.a(), pair.b(), pair.query());
+  }
+  /// The other half.
+  template <class Pair>
+  TraversalStatistics look(const Pair& pair) {
     MovingBody &a = pair.a(), &b = pair.b();
     auto& query = pair.query();
     using Query = typename Pair::Query;
-    if (!front_.empty() && unchanged(a, b, query)) return {};
     if (front_.empty() || worn_out_) rebuild(a, b);
     // What one query learned of triangles is not what another asks: the first hit of an entry, say.
     if (asked_ != &Query::name) front_.expire();
@@ -60,18 +71,29 @@ class Margins {
   /// Starts again from the roots next time.
   void forget() { front_.clear(); }
 
-  /// Starts from a list next time, as if a rebuild had just left it; `step` is how much nearer the
-  /// bodies come from run to run, about.
-  void start_from(const Front& list, MovingBody& a, MovingBody& b, double step) {
+  /// Starts from the first `count` entries of a list next time, as if a rebuild had just left them;
+  /// `step` is how much nearer the bodies come from run to run, about.
+  void start_from(const Front& list, std::size_t count, MovingBody& a, MovingBody& b, double step) {
     front_.clear();
     rebuild(a, b);
     displacement_ -= step;
     epoch_a_ = a.epoch() - 1, epoch_b_ = b.epoch() - 1;
     front_.open(0);
-    for (const NodePair& entry : list.entries()) front_.add(entry);
+    for (std::size_t slot = 0; slot < count; ++slot) front_.add(list[slot]);
     if (list.witnessed()) front_.bring_forward(0);
-    cost_ = static_cast<double>(list.size());  // the other half of a rebuild's tests
+    cost_ = static_cast<double>(count);  // the other half of a rebuild's tests
     asked_ = nullptr;
+  }
+
+  /// Whether the witness is going to last so short that its margin is not worth while.
+  void expect(bool soon) { front_.expect(soon); }
+
+  /// The same, but never a rebuild: not all entries need be there, and where this finds nothing the
+  /// query is still to be answered.
+  template <class Pair>
+  TraversalStatistics look_as_it_is(const Pair& pair) {
+    worn_out_ = false;
+    return look(pair);
   }
 
   /// Of what the last run looked at, the share that comes up in a run if each brings the bodies
