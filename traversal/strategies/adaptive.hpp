@@ -45,7 +45,7 @@ class Adaptive {
     double run, volumes, triangles, look, batch;
   };
   static constexpr Prices broad{25, 14, 20, 0, 0}, plain{25, 18, 30, 0, 120},
-      careful{25, 28, 150, 75, 0};
+      careful{25, 28, 120, 75, 0};
 
   template <class Pair>
   void run(const Pair& pair) {
@@ -87,11 +87,13 @@ class Adaptive {
   /// Motion from frame to frame in sizes of leaves. Above `jump` nothing of a front survives and
   /// lists are not tried (record of coherence). Margins are tried below `small`: gaps are some half
   /// of a leaf wide, so that an entry comes up in 2m of the runs after steps of m leaves, and with
-  /// two triangles to three volumes costs 3.4 times what it costs a list: that pays up to m = 0.15.
+  /// two triangles to three volumes costs some three times what it costs a list: that pays up to
+  /// m = 0.15.
   static constexpr double jump = 4, small = 0.15;
   /// Of the entries that could come up, so many do: bodies that wander come back, and half of what
   /// they pass they leave behind.
   static constexpr double toward = 0.5;
+  /// Chosen, as are `patience` and `look_every`: more is lost in vain, less gives up too early.
   static constexpr double recursions_to_lose = 3;
   /// What is tried in vain, and the rebuild of a list of bodies that part, which stays long without
   /// growing, may cost one part in so many.
