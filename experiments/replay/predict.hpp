@@ -14,10 +14,11 @@
 ///     mean + b (recursion's tests - their mean in the windows),
 ///
 /// with the mean, and the slope b by least squares (at least 0, at most mean over mean), of the
-/// second halves of the windows (the regression estimator of survey sampling). A trace no longer
-/// than a window is predicted exactly. What is left out: how a strategy goes on to age after a
-/// window's length. Lists that nothing makes shorter (violent motion) are predicted too short by
-/// that.
+/// second halves of the windows (the regression estimator of survey sampling). A trace that one
+/// window covers is predicted exactly. What is left out is how a strategy goes on to age after a
+/// window's length: lists that nothing makes shorter (violent motion) are predicted too short, and
+/// where bodies stay about a place and yes or no is asked, by-cost and raise up to twice too dear,
+/// since the witnesses they find get better for longer than that.
 ///
 /// Seconds are predicted tests at the unit costs of `Adaptive`, times what the windows' frames took
 /// beside that: the median over frames, weighted by their cost, so that a frame in which the
