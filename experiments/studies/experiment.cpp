@@ -268,18 +268,21 @@ class Experiment {
     });
   }
 
-  /// One after the other: they say seconds, which are measured (and empty where times are).
+  /// One after the other: they say seconds, which are measured as times are (and empty where those
+  /// are).
   void make_predictions(const Prepared& ready, Found& found) const {
     for (const auto& [key, cell] : fronts_of(found)) {
-      const double start = wall_seconds();
-      const auto predicted = predict(ready.meshes, ready.trace, variant_of(*cell));
-      const double taken = wall_seconds() - start;
-      for (const Predicted& each : predicted) {
+      const auto run = undisturbed([&] {
+        const double start = wall_seconds();
+        auto predicted = predict(ready.meshes, ready.trace, variant_of(*cell));
+        return std::pair(std::move(predicted), wall_seconds() - start);
+      });
+      for (const Predicted& each : run.result.first) {
         Row row = key;
         for (const auto& field :
              {std::string(each.strategy), std::to_string(each.n_v), std::to_string(each.n_p),
               is_timed() ? nanoseconds(each.seconds) : std::string(),
-              is_timed() ? nanoseconds(taken) : std::string()})
+              is_timed() ? nanoseconds(run.result.second) : std::string()})
           row.push_back(field);
         found.predictions.push_back(std::move(row));
       }
