@@ -20,8 +20,8 @@ import records
 import style
 from arguments import record_arguments
 from refused import Refused
-from ticks import log_ticks
-from words import number, plain
+from ticks import decades
+from words import plain
 
 KEEPING = ["separation-list", "deferred", "by-cost", "raise", "margins"]  # what keeps something from frame to frame
 HALF, LESS = "half or more", "less than half"
@@ -160,9 +160,9 @@ def draw_tests(axis, rows, size=3.5):
     low, high = 0.7 * every[["n_v", "said_n_v"]].min().min(), 1.4 * every[["n_v", "said_n_v"]].max().max()
     axis.plot([low, high], [low, high], color="black", linewidth=0.7)
     axis.set(xscale="log", yscale="log", xlim=(low, high), ylim=(low, high))
-    ticks = log_ticks(low, high)
+    ticks = decades(low, high)
     for each in (axis.xaxis, axis.yaxis):
-        each.set_ticks(ticks, [number(tick) for tick in ticks])
+        each.set_ticks(ticks, [f"$10^{{{round(np.log10(tick))}}}$" for tick in ticks])
         each.set_minor_locator(plt.NullLocator())
 
 

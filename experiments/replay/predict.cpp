@@ -2,7 +2,6 @@
 #include "experiments/replay/predict.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 
