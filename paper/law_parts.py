@@ -6,6 +6,7 @@ import column
 import law
 import law_unseen
 import numpy as np
+import predict
 import style
 from sheet import escape, listed, part, percent, signed
 
@@ -323,3 +324,55 @@ def write_law_unseen(paper, record):
     paper.put_percent(
         0, unseenTail=np.quantile(of_law, 0.95), unseenPile=np.median(of_law[pile]), unseenLost=np.median(of_law[less])
     )
+
+
+@part("predict")
+def write_predict(paper, record):
+    """What every strategy costs, from windows begun at recursive fronts."""
+    cells = predict.read(record)
+    rows = cells.rows
+    names = list(dict.fromkeys(rows.strategy))
+    share = {name: predict.near(predict.always(rows, name)) / 100 for name in names}
+    best = max(share, key=share.get)
+    paper.put_text(
+        predictCells=len(cells.chosen),
+        predictSettings=rows.setting.nunique(),
+        predictHalfCells=int((cells.chosen.regime == predict.HALF).sum()),
+        predictAlwaysBest=escape(best),
+        predictHeld=listed(number for number, holds, _ in predict.hypotheses(cells) if holds),
+    )
+    paper.put_percent(
+        predictHalf=predict.errors(cells, regime=predict.HALF).median(),
+        predictLess=predict.errors(cells, regime=predict.LESS).median(),
+        predictTime=predict.errors(cells, "time_ns", strategies=names).median(),
+    )
+    paper.put_percent(
+        0,
+        predictNamed=predict.near(cells.chosen.times) / 100,
+        predictAlways=share[best],
+        predictTaken=cells.taken.median(),
+    )
+    paper.put_times(predictWorst=cells.chosen.times.max())
+
+    def line(strategies):
+        found = [predict.errors(cells, what, regime, strategies) for regime in (predict.HALF, predict.LESS)
+                 for what in ("n_v", "n_p", "time_ns")]
+        return [percent(each.median()) for each in found]
+    paper.table(
+        "predict",
+        "lrrrrrr",
+        ["", "$N_v$", "$N_p$", "time", "$N_v$", "$N_p$", "time"],
+        [[escape(name), *line([name])] for name in names],
+        [r" & \multicolumn{3}{c}{half or more survives} & \multicolumn{3}{c@{}}{less} \\"],
+    )
+    if paper.out:
+        draw_predict(cells, paper.figures())
+
+
+def draw_predict(cells, out):
+    figure, axes = column.panels(2, 2.1)
+    predict.draw_tests(axes[0], cells.rows, 2.2)
+    axes[0].set(xlabel="volume tests, counted", ylabel="predicted")
+    predict.draw_choice(axes[1], cells, 2.2)
+    axes[1].set(xlabel="cells, in this order", ylabel="named / fastest, time")
+    return column.finish(figure, axes, out, "predict")

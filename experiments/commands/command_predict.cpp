@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// `bvlab predict`: what each strategy would cost on a trace.
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -26,14 +25,6 @@ struct Arguments {
 };
 
 using Rows = std::vector<Predicted>;
-
-/// Of recursion and lists: margins, which stand last, are predicted too low to be compared.
-std::string fastest(const Rows& rows) {
-  const auto least = std::min_element(
-      rows.begin(), rows.end() - 1,
-      [](const Predicted& a, const Predicted& b) { return a.seconds < b.seconds; });
-  return std::string(least->strategy);
-}
 
 /// By `format`, of the strategy, n_v, n_p and seconds.
 std::string lines(const Rows& rows, const char* format) {
@@ -61,7 +52,7 @@ Totals totals_of(const Arguments& arguments, const Trace& trace, const Coherence
                static_cast<double>(coherence.kept) / static_cast<double>(coherence.entries));
   else
     totals.set("survival", nullptr);
-  totals.set("fastest_of_recursion_and_lists", fastest(rows));
+  totals.set("fastest", fastest(rows));
   Totals strategies;
   for (const Predicted& row : rows) {
     Totals each;
@@ -90,17 +81,17 @@ void run(const Arguments& arguments) {
     const CoherenceSums sums = coherence(meshes, trace, arguments.variant);
     write_totals(totals_of(arguments, trace, sums, rows), arguments.json);
   }
-  if (!arguments.csv.empty() || !arguments.json.empty()) return;
   std::printf("%-16s %14s %14s %12s\n%s", "strategy", "n_v", "n_p", "seconds",
               lines(rows, "%-16s %14.0f %14.0f %12.6f\n").c_str());
-  std::printf("fastest of recursion and lists: %s\n", fastest(rows).c_str());
+  std::printf("fastest: %s\n", std::string(fastest(rows)).c_str());
 }
 
 }  // namespace
 
 void add_predict(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "predict", "What each strategy would cost on a trace, from recursions and their fronts");
+  CLI::App* command = app.add_subcommand("predict",
+                                         "What each strategy would cost on a trace, from "
+                                         "recursions and windows begun at their fronts");
   auto arguments = std::make_shared<Arguments>();
   command
       ->add_option("trace,--trace", arguments->trace, "poses: .npy, float64, (frames, objects, 7)")
@@ -121,11 +112,17 @@ void add_predict(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--stride", arguments->options.stride,
-                   "a front is followed from every so-many-th frame")
+                   "a window begins in every so-many-th frame, about")
       ->check(whole_number(1, 1u << 16))
       ->capture_default_str();
-  command->add_option("--csv", arguments->csv, "one row a strategy");
-  command->add_option("--json", arguments->json, "the same, as an object");
+  command
+      ->add_option("--window", arguments->options.window,
+                   "frames for which strategies are followed from a recursion's front")
+      ->check(whole_number(2, 1u << 16))
+      ->capture_default_str();
+  command->add_option("--csv", arguments->csv, "the table, one row a strategy");
+  command->add_option("--json", arguments->json,
+                      "the same and how much of the front survives a frame, as an object");
   command->callback([arguments] { run(*arguments); });
 }
 

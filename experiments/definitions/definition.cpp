@@ -177,8 +177,9 @@ class Reader {
     std::set<std::string> result;
     for (auto&& each : *list) {
       const auto name = each.value_exact<std::string>();
-      if (!name || (*name != "coherence" && *name != "best rebuilds" && *name != "frames"))
-        fail(each.source(), "measures: there are best rebuilds, coherence, frames");
+      if (!name || (*name != "coherence" && *name != "best rebuilds" && *name != "frames" &&
+                    *name != "predictions"))
+        fail(each.source(), "measures: there are best rebuilds, coherence, frames, predictions");
       result.insert(*name);
     }
     return result;

@@ -7,6 +7,7 @@
 ///     repetitions = 3                # timed runs of each cell, interleaved
 ///     measures = ["coherence", "best rebuilds"]   # beside the rest, see coherence.hpp
 ///     measures = ["frames"]          # times of single frames: p99_ns
+///     measures = ["predictions"]     # of every strategy's cost, see predict.hpp
 ///
 ///     [parameters]                   # see `bvlab list parameters`; what is not set has its
 ///     default mesh = "bunny" configuration = "recommended"  # sets volume, tree, strategy, build,

@@ -1,203 +1,164 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/replay/predict.hpp"
 
-#include <array>
-#include <deque>
+#include <algorithm>
 #include <memory>
 #include <utility>
 
 #include "experiments/replay/registry.hpp"
-#include "traversal/all_pairs.hpp"
-#include "traversal/queries/contacts.hpp"
-#include "traversal/queries/touching.hpp"
 #include "traversal/strategies/adaptive.hpp"
 #include "traversal/strategies/by_cost.hpp"
 #include "traversal/strategies/margins.hpp"
+#include "traversal/strategies/raise.hpp"
 #include "traversal/strategies/recursive.hpp"
 #include "traversal/strategies/separation_list.hpp"
 
 namespace bvlab {
 namespace {
 
-/// Sums over runs.
-struct Cost {
-  double runs = 0, volumes = 0, triangles = 0;
+/// Some frames of a run that began with the first of them.
+struct Window {
+  std::size_t first = 0;
+  std::vector<double> volumes, triangles, seconds;  // of each frame
 
-  void add(const TraversalStatistics& statistics) {
-    runs += 1;
-    volumes += static_cast<double>(statistics.volumes);
-    triangles += static_cast<double>(statistics.triangles);
-  }
-  void add(const Cost& other, double share = 1) {
-    runs += share * other.runs;
-    volumes += share * other.volumes;
-    triangles += share * other.triangles;
-  }
+  std::size_t size() const { return volumes.size(); }
 };
+using Tests = std::vector<double> Window::*;
 
-enum Rule { separation_list, deferred, by_cost, rules };
+/// Where windows begin: alike far from each other.
+std::vector<std::size_t> window_starts(std::size_t frames, std::size_t stride) {
+  const std::size_t count = std::max<std::size_t>((frames + stride / 2) / stride, 1);
+  std::vector<std::size_t> starts;
+  for (std::size_t k = 0; k < count; ++k) starts.push_back(k * frames / count);
+  return starts;
+}
 
-/// A front from the frame in which recursion left it, and what each rule has spent on it so far.
-class Cycle {
+Trace part_of(const Trace& trace, std::size_t first, std::size_t frames) {
+  const auto place = [&](std::size_t frame) {
+    return trace.values.begin() + static_cast<std::ptrdiff_t>(frame * trace.objects * 7);
+  };
+  return {frames, trace.objects, {place(first), place(first + frames)}};
+}
+
+/// Plays strategies over parts of a trace; hierarchies are built once.
+class Player {
  public:
-  Cycle() { front_.restart(); }
+  Player(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant)
+      : trace_(trace),
+        variant_(variant),
+        volume_(volume_entry(variant.volume)),
+        hierarchies_(volume_.hierarchies(meshes, variant)) {}
 
-  template <class Pair>
-  void run(const Pair& pair) {
-    const std::size_t before = front_.size();
-    const TraversalStatistics statistics = pair.from_front(front_);
-    const bool rebuild = age_++ == 0;
-    for (int rule = 0; rule < rules; ++rule)
-      if (!over_[rule]) costs_[rule].add(statistics);
-    still_ = rebuild || front_.size() > before ? 0 : still_ + 1;
-    over_[separation_list] = over_[separation_list] || still_ > 0;
-    over_[deferred] = over_[deferred] || still_ > 1;
-    const Cost& cost = costs_[by_cost];
-    over_[by_cost] =
-        over_[by_cost] || static_cast<double>(statistics.volumes) * cost.runs > cost.volumes;
-  }
-
-  bool over() const { return over_[0] && over_[1] && over_[2]; }
-  std::size_t age() const { return age_; }
-  const Cost& cost(int rule) const { return costs_[static_cast<std::size_t>(rule)]; }
-  const Front& front() const { return front_; }
-
- private:
-  Front front_;
-  std::size_t age_ = 0;
-  unsigned still_ = 0;  // runs in a row without growth
-  std::array<bool, rules> over_{};
-  std::array<Cost, rules> costs_;
-};
-
-/// What is known of one pair of bodies.
-struct PairFronts {
-  Cost recursive, both, margins;
-  std::array<Cost, rules> lists;
-  std::deque<Cycle> open;
-  double displacement = -1, step = 0;
-};
-
-template <class Query>
-class Predictor {
- public:
-  Predictor(std::span<const TriangleMesh> meshes, std::size_t objects, const Variant& variant,
-            const PredictOptions& options)
-      : options_(options),
-        pairs_(all_object_pairs(static_cast<std::uint32_t>(objects))),
-        fronts_(pairs_.size()),
-        hierarchies_(volume_entry(variant.volume).hierarchies(meshes, variant)),
-        bodies_(loops_of<Query>(variant.volume).bodies(*hierarchies_, objects)) {}
-
-  void frame(std::size_t number, std::span<const Pose> poses) {
-    bodies_.move(poses, Vec3<double>::Zero());
-    for (std::size_t p = 0; p < pairs_.size(); ++p) look_at(p, number);
-  }
-
-  std::vector<Predicted> result(std::size_t frames) {
-    std::array<Cost, rules + 3> sums;
-    for (PairFronts& pair : fronts_) {
-      for (const Cycle& cycle : pair.open) close(pair, cycle);
-      sums[0].add(pair.recursive), sums[1].add(pair.both);
-      for (int rule = 0; rule < rules; ++rule)
-        extend(sums[static_cast<std::size_t>(2 + rule)], pair.lists[static_cast<std::size_t>(rule)],
-               frames);
-      extend(sums[rules + 2], pair.margins, frames);
+  Window play(std::string_view strategy, std::size_t first, std::size_t frames) const {
+    Variant variant = variant_;
+    variant.strategy = strategy;
+    ReplayOptions options;
+    options.count = Count::on;
+    options.keep_answers = false;
+    options.keep_series = options.keep_frame_seconds = true;
+    ReplayResult result;
+    play_entry(strategy, variant.query)
+        .play(volume_, *hierarchies_, part_of(trace_, first, frames), variant, options, result);
+    Window window{first, {}, {}, std::move(result.frame_seconds)};
+    for (const FrameCounts& counts : result.series) {
+      window.volumes.push_back(static_cast<double>(counts.n_v));
+      window.triangles.push_back(static_cast<double>(counts.n_p));
     }
-    return {predicted(Recursive::name, sums[0], Adaptive::broad),
-            predicted(RecursiveBoth::name, sums[1], Adaptive::broad),
-            predicted(SeparationList::name, sums[2], Adaptive::plain),
-            predicted(Deferred::name, sums[3], Adaptive::plain),
-            predicted(ByCost::name, sums[4], Adaptive::plain),
-            predicted(Margins::name, sums[5], Adaptive::careful)};
+    return window;
   }
 
  private:
-  void look_at(std::size_t p, std::size_t number) {
-    PairFronts& pair = fronts_[p];
-    ask(p, [&](const auto& each) { pair.recursive.add(each.from_roots()); });
-    ask(p, [&](const auto& each) { pair.both.add(each.template from_roots<NoFrontBoth>()); });
-    const bool begins = number % options_.stride == 0;
-    if (begins) pair.open.emplace_back();
-    for (Cycle& cycle : pair.open) ask(p, [&](const auto& each) { cycle.run(each); });
-    ask(p, [&](const auto& each) { follow(pair, each.a(), each.b()); });
-    if (begins && number > 0) measure_gaps(p, pair);
-    std::erase_if(pair.open, [&](const Cycle& cycle) {
-      const bool over = cycle.over() || cycle.age() == options_.longest;
-      if (over) close(pair, cycle);
-      return over;
-    });
-  }
-
-  static void close(PairFronts& pair, const Cycle& cycle) {
-    for (int rule = 0; rule < rules; ++rule)
-      pair.lists[static_cast<std::size_t>(rule)].add(cycle.cost(rule));
-  }
-
-  static void follow(PairFronts& pair, MovingBody& a, MovingBody& b) {
-    const double displacement = a.displacement_bound() + b.displacement_bound();
-    pair.step = pair.displacement < 0 ? 0 : displacement - pair.displacement;
-    pair.displacement = displacement;
-  }
-
-  /// One run with margins over the front that recursion has just left: what of it would come up.
-  void measure_gaps(std::size_t p, PairFronts& pair) {
-    Margins margins;
-    ask(p, [&](const auto& each) {
-      const Front& front = pair.open.back().front();
-      margins.start_from(front, front.size(), each.a(), each.b(), pair.step);
-      Cost run;
-      run.add(margins.run(each));
-      const double due = pair.step > 0 ? margins.due_in_a_run(pair.step) : 0;
-      pair.margins.runs += 1;
-      pair.margins.volumes += due * run.volumes;
-      pair.margins.triangles += due * run.triangles;
-    });
-  }
-
-  template <class Run>
-  void ask(std::size_t p, Run&& run) {
-    found_.clear();
-    Query query = [&] {
-      if constexpr (std::same_as<Query, Contacts>)
-        return Contacts(found_);
-      else
-        return Query();
-    }();
-    NotCounting counter;
-    run(bodies_.pair(pairs_[p], query, counter));
-  }
-
-  /// As many runs as there are frames, each at the mean cost.
-  static void extend(Cost& sum, const Cost& of_some, std::size_t frames) {
-    if (of_some.runs > 0) sum.add(of_some, static_cast<double>(frames) / of_some.runs);
-  }
-
-  static Predicted predicted(std::string_view strategy, const Cost& cost,
-                             const Adaptive::Prices& prices) {
-    const double ns =
-        prices.run * cost.runs + prices.volumes * cost.volumes + prices.triangles * cost.triangles;
-    return {strategy, cost.volumes, cost.triangles, 1e-9 * ns};
-  }
-
-  PredictOptions options_;
-  std::vector<ObjectPair> pairs_;
-  std::vector<PairFronts> fronts_;
+  const Trace& trace_;
+  const Variant& variant_;
+  const VolumeEntry& volume_;
   std::unique_ptr<AnyHierarchies> hierarchies_;
-  AnyBodies<Query, NotCounting> bodies_;
-  std::vector<Contact> found_;
 };
 
-template <class Query>
-std::vector<Predicted> predict_under(std::span<const TriangleMesh> meshes, const Trace& trace,
-                                     const Variant& variant, const PredictOptions& options) {
-  Predictor<Query> predictor(meshes, trace.objects, variant, options);
-  std::vector<Pose> poses(trace.objects);
-  for (std::size_t frame = 0; frame < trace.frames; ++frame) {
-    trace.poses(frame, poses);
-    predictor.frame(frame, poses);
+/// Tests of a strategy and of recursion in the same frame.
+struct Sampled {
+  double tests, recursion;
+};
+
+/// What a strategy makes in the frames from `first` on, from what it made in some others.
+double settled(std::span<const Sampled> some, std::span<const double> recursion,
+               std::size_t first) {
+  if (some.empty() || first >= recursion.size()) return 0;
+  const auto count = static_cast<double>(some.size());
+  double mean = 0, of_recursion = 0;
+  for (const Sampled& each : some)
+    mean += each.tests / count, of_recursion += each.recursion / count;
+  double together = 0, alone = 0;
+  for (const Sampled& each : some) {
+    together += (each.tests - mean) * (each.recursion - of_recursion);
+    alone += (each.recursion - of_recursion) * (each.recursion - of_recursion);
   }
-  return predictor.result(trace.frames);
+  const double steepest = of_recursion > 0 ? mean / of_recursion : 0;
+  const double slope = alone > 0 ? std::clamp(together / alone, 0.0, steepest) : 0;
+  double sum = 0;
+  for (std::size_t frame = first; frame < recursion.size(); ++frame)
+    sum += mean + slope * (recursion[frame] - of_recursion);
+  return std::max(sum, 0.0);
+}
+
+/// Of all frames of the trace, in which recursion is known.
+double extended(std::span<const Window> windows, const Window& recursion, Tests tests,
+                std::size_t length) {
+  const std::vector<double>& known = recursion.*tests;
+  std::vector<Sampled> ages(std::min(length, known.size()), {0, 0}), old;
+  std::vector<double> seen(ages.size());
+  for (const Window& window : windows)
+    for (std::size_t age = 0; age < window.size(); ++age) {
+      const Sampled sampled{(window.*tests)[age], known[window.first + age]};
+      ages[age].tests += sampled.tests, ages[age].recursion += sampled.recursion;
+      seen[age] += 1;
+      if (age >= length / 2) old.push_back(sampled);
+    }
+  double sum = settled(old, known, ages.size());
+  for (std::size_t age = 0; age < ages.size(); ++age) {
+    const auto [made, beside] = ages[age];
+    if (beside > 0)
+      sum += made / beside * known[age];
+    else if (seen[age] > 0)
+      sum += made / seen[age];
+  }
+  return sum;
+}
+
+double price(const Adaptive::Prices& prices, double runs, double volumes, double triangles) {
+  return 1e-9 * (prices.run * runs + prices.volumes * volumes + prices.triangles * triangles);
+}
+
+/// How many times what the prices say a frame took: the median, weighted by that.
+double dearness(std::span<const Window> windows, const Adaptive::Prices& prices, double pairs) {
+  std::vector<std::pair<double, double>> frames;
+  double all = 0;
+  for (const Window& window : windows)
+    for (std::size_t k = 0; k < window.size(); ++k) {
+      const double said = price(prices, pairs, window.volumes[k], window.triangles[k]);
+      if (said > 0) frames.emplace_back(window.seconds[k] / said, said), all += said;
+    }
+  std::sort(frames.begin(), frames.end());
+  double so_far = 0;
+  for (const auto& [times, said] : frames)
+    if ((so_far += said) >= all / 2) return times;
+  return 1;
+}
+
+struct Priced {
+  std::string_view strategy;
+  Adaptive::Prices prices;
+};
+
+/// All but recursion.
+constexpr Priced others[] = {
+    {RecursiveBoth::name, Adaptive::broad}, {SeparationList::name, Adaptive::plain},
+    {Deferred::name, Adaptive::plain},      {ByCost::name, Adaptive::plain},
+    {Raise::name, Adaptive::plain},         {Margins::name, Adaptive::careful}};
+
+double sum_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum;
 }
 
 }  // namespace
@@ -205,8 +166,40 @@ std::vector<Predicted> predict_under(std::span<const TriangleMesh> meshes, const
 std::vector<Predicted> predict(std::span<const TriangleMesh> meshes, const Trace& trace,
                                const Variant& variant, const PredictOptions& options) {
   check(variant);
-  return variant.query == Contacts::name ? predict_under<Contacts>(meshes, trace, variant, options)
-                                         : predict_under<Touching>(meshes, trace, variant, options);
+  if (trace.frames == 0) {
+    std::vector<Predicted> nothing{{Recursive::name}};
+    for (const Priced& each : others) nothing.push_back({each.strategy});
+    return nothing;
+  }
+  const Player player(meshes, trace, variant);
+  const auto pairs = static_cast<double>(trace.pairs());
+  const auto predicted = [&](const Priced& of, std::span<const Window> windows, double volumes,
+                             double triangles) {
+    const double runs = pairs * static_cast<double>(trace.frames);
+    return Predicted{
+        of.strategy, volumes, triangles,
+        price(of.prices, runs, volumes, triangles) * dearness(windows, of.prices, pairs)};
+  };
+  const Window recursion = player.play(Recursive::name, 0, trace.frames);
+  std::vector<Predicted> all{predicted({Recursive::name, Adaptive::broad}, {&recursion, 1},
+                                       sum_of(recursion.volumes), sum_of(recursion.triangles))};
+  for (const Priced& of : others) {
+    std::vector<Window> windows;
+    for (const std::size_t first : window_starts(trace.frames, options.stride))
+      windows.push_back(
+          player.play(of.strategy, first, std::min(options.window, trace.frames - first)));
+    all.push_back(predicted(of, windows,
+                            extended(windows, recursion, &Window::volumes, options.window),
+                            extended(windows, recursion, &Window::triangles, options.window)));
+  }
+  return all;
+}
+
+std::string_view fastest(std::span<const Predicted> predicted) {
+  const auto least = std::min_element(
+      predicted.begin(), predicted.end(),
+      [](const Predicted& a, const Predicted& b) { return a.seconds < b.seconds; });
+  return least == predicted.end() ? std::string_view() : least->strategy;
 }
 
 }  // namespace bvlab

@@ -14,6 +14,7 @@
 #include "experiments/records/node.hpp"
 #include "experiments/records/record.hpp"
 #include "experiments/replay/coherence.hpp"
+#include "experiments/replay/predict.hpp"
 #include "experiments/replay/replay.hpp"
 #include "experiments/studies/cells.hpp"
 #include "experiments/studies/clocks.hpp"
@@ -76,7 +77,7 @@ struct Found {
   std::vector<const Cell*> cells;
   std::vector<ReplayResult> counted;  ///< of each cell
   std::vector<std::size_t> differing;
-  std::vector<Row> rows, coherence, disagreements;
+  std::vector<Row> rows, coherence, predictions, disagreements;
 };
 
 class Experiment {
@@ -95,7 +96,12 @@ class Experiment {
         disagreements_(record / (definition.name + ".disagreements.csv"),
                        axis_columns({"frame", "object_i", "object_j", "triangle_i", "triangle_j",
                                      "theirs", "ours", "exact"})),
-        coherence_(record / (definition.name + ".coherence.csv"), coherence_columns()) {
+        coherence_(record / (definition.name + ".coherence.csv"),
+                   front_columns({"pair_runs", "near_runs", "moved_runs", "still_runs", "tests",
+                                  "entries", "kept", "grown", "again", "still_entries",
+                                  "motion_leaf", "motion_gap", "best_tests", "best_rebuilds"})),
+        predictions_(record / (definition.name + ".predictions.csv"),
+                     front_columns({"strategy", "n_v", "n_p", "time_ns", "taken_ns"})) {
     check_measured(record);
     const auto traces = traces_of(cells_);
     const auto [number, of] = options.part;
@@ -134,6 +140,7 @@ class Experiment {
     return definition_.measures.contains("coherence") ||
            definition_.measures.contains("best rebuilds");
   }
+  bool measures_predictions() const { return definition_.measures.contains("predictions"); }
 
   /// Times that are absent would pass for finished.
   void check_measured(const std::filesystem::path& record) const {
@@ -161,14 +168,12 @@ class Experiment {
     return row;
   }
 
-  Row coherence_columns() const {
+  /// What a front depends on, then what is measured of it.
+  Row front_columns(std::initializer_list<const char*> measured) const {
     Row row;
     for (const auto& [name, value] : cells_.at(0).parameters)
       if (matters_to_front(name)) row.push_back(name);
-    for (const char* name :
-         {"pair_runs", "near_runs", "moved_runs", "still_runs", "tests", "entries", "kept", "grown",
-          "again", "still_entries", "motion_leaf", "motion_gap", "best_tests", "best_rebuilds"})
-      row.push_back(name);
+    row.insert(row.end(), measured.begin(), measured.end());
     return row;
   }
 
@@ -193,6 +198,7 @@ class Experiment {
     const Prepared ready = prepared(*found.cells[0]);
     count(ready, found, threads);
     if (measures_coherence()) measure_coherence(ready, found, threads);
+    if (measures_predictions()) make_predictions(ready, found);
     if (is_timed())
       time(ready, found, first_ + trace);
     else
@@ -240,12 +246,17 @@ class Experiment {
     }
   }
 
-  void measure_coherence(const Prepared& ready, Found& found, std::size_t threads) const {
+  /// The fronts that cells of a trace have, each with one of its cells.
+  std::vector<std::pair<Row, const Cell*>> fronts_of(const Found& found) const {
     std::map<Row, const Cell*> fronts;
     for (const Cell* cell : found.cells)
       if ((*cell)["peer"].empty() && (*cell)["tree"] == "binary" && (*cell)["query"] != "distance")
         fronts.emplace(front_key(*cell), cell);
-    const std::vector<std::pair<Row, const Cell*>> all(fronts.begin(), fronts.end());
+    return {fronts.begin(), fronts.end()};
+  }
+
+  void measure_coherence(const Prepared& ready, Found& found, std::size_t threads) const {
+    const auto all = fronts_of(found);
     found.coherence.resize(all.size());
     side_by_side(all.size(), threads, [&](std::size_t i) {
       const Variant variant = variant_of(*all[i].second);
@@ -255,6 +266,27 @@ class Experiment {
         best = best_rebuilds(ready.meshes, ready.trace, variant);
       found.coherence[i] = coherence_row(all[i].first, sums, best);
     });
+  }
+
+  /// One after the other: they say seconds, which are measured as times are (and empty where those
+  /// are).
+  void make_predictions(const Prepared& ready, Found& found) const {
+    for (const auto& [key, cell] : fronts_of(found)) {
+      const auto run = undisturbed([&] {
+        const double start = wall_seconds();
+        auto predicted = predict(ready.meshes, ready.trace, variant_of(*cell));
+        return std::pair(std::move(predicted), wall_seconds() - start);
+      });
+      for (const Predicted& each : run.result.first) {
+        Row row = key;
+        for (const auto& field :
+             {std::string(each.strategy), std::to_string(each.n_v), std::to_string(each.n_p),
+              is_timed() ? nanoseconds(each.seconds) : std::string(),
+              is_timed() ? nanoseconds(run.result.second) : std::string()})
+          row.push_back(field);
+        found.predictions.push_back(std::move(row));
+      }
+    }
   }
 
   /// The order depends on the trace alone, not on what was run before it.
@@ -307,18 +339,21 @@ class Experiment {
     add_series(found);
     for (const Cell* cell : found.cells) disagreements_.forget(axis_row(*cell));
     for (auto& row : found.disagreements) disagreements_.add(std::move(row));
+    for (const Row& row : found.predictions) predictions_.forget(front_of(row));
+    for (auto& row : found.predictions) predictions_.add(std::move(row));
     for (auto& row : found.coherence) {
       coherence_.forget(front_of(row));
       coherence_.add(std::move(row));
     }
     for (auto& row : found.rows) rows_.add(std::move(row));
     if (measures_coherence()) coherence_.save();
+    if (measures_predictions()) predictions_.save();
     if (definition_.has_series) frames_.save();
     if (!disagreements_.rows().empty()) disagreements_.save();
     rows_.save();
   }
 
-  /// Of a row of the coherence table, what was measured left out.
+  /// Of a row of coherence or predictions, what was measured left out.
   Row front_of(const Row& row) const {
     const auto keys = static_cast<std::ptrdiff_t>(front_key(cells_.at(0)).size());
     return Row(row.begin(), row.begin() + keys);
@@ -345,7 +380,7 @@ class Experiment {
   const RunOptions& options_;
   std::vector<Cell> cells_;
   std::size_t keys_ = 0, first_ = 0;
-  Table rows_, frames_, disagreements_, coherence_;
+  Table rows_, frames_, disagreements_, coherence_, predictions_;
   std::vector<std::vector<std::size_t>> traces_;  ///< of this part
   std::set<Row> done_;
   const std::string node_ = node_name();

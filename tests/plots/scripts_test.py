@@ -27,6 +27,7 @@ SPECS = {
                    dict(setting="pile", strategy=("deferred", STRATEGIES)), None),
     "nine_bunnies": ("nine-bunnies", dict(seed=2, reading=2, frame=50),
                      dict(variant=("deferred", STRATEGIES), reading="one body, one freedom", density="dense"), None),
+    "predict": ("predict", dict(setting=["wander, 0.003 / 0.3", "wander, 0.3 / 40", "pile"]), {}, None),
     "stability_map": ("stability-map", dict(level=4), dict(volume="sphere", precision="float32", source="fcl-obb",
                                                            stressor="offset"), None),
     "triangles_error": ("triangles-error", dict(set=2), dict(test="moller", set="random"), None),
