@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "hierarchies/geometry/large_vector.hpp"
 #include "traversal/near_pairs.hpp"
 
 namespace bvlab {
@@ -66,7 +67,7 @@ class WorldOf {
     if (near_.threads().count() == 1)
       pairs_.ask(near_.due(), 0, counter, make, take);
     else
-      ask_in_parts<Query>(counter, make, take);
+      ask_on_threads<Query>(counter, make, take);
     asked_ = near_.due().size();
     near_.settle();
   }
@@ -86,35 +87,44 @@ class WorldOf {
 
  private:
   /// So many pairs that to hand them over costs nothing beside asking them.
-  static constexpr std::size_t part_size = 64;
+  static constexpr std::size_t fewest = 32;
 
+  /// Queries are copied to who asked them, and taken in the order of pairs: it does not depend on
+  /// which thread asked what.
   template <class Query, class Counter, class Make, class Take>
-  void ask_in_parts(Counter& counter, Make& make, Take& take) {
+  void ask_on_threads(Counter& counter, Make& make, Take& take) {
     const auto due = near_.due();
-    const std::size_t parts = (due.size() + part_size - 1) / part_size;
-    struct alignas(128) Part {  // written to by one thread, beside another's
-      std::vector<std::pair<std::uint32_t, Query>> answered;
+    struct alignas(128) Own {  // written to by one thread, beside another's
+      std::vector<Query> answered;
       Counter counter;
     };
-    std::vector<Part> all(parts);
-    near_.threads().share(parts, [&](std::size_t k, std::size_t worker) {
-      Part& part = all[k];
-      const auto slots =
-          due.subspan(k * part_size, std::min(part_size, due.size() - k * part_size));
-      part.answered.reserve(slots.size());
-      pairs_.ask(slots, worker, part.counter, make,
-                 [&](std::uint32_t slot, const ObjectPair&, const Query& query) {
-                   part.answered.emplace_back(slot, query);
-                 });
-    });
-    for (const Part& part : all) {
-      for (const auto& [slot, query] : part.answered) take(slot, near_.pair(slot), query);
-      counter.add(part.counter);
+    std::vector<Own> all(near_.threads().count());
+    for (Own& own : all) own.answered.reserve(2 * due.size() / all.size());
+    answers_.resize(near_.slots());
+    near_.threads().share_out(
+        due.size(), fewest, [&](std::size_t begin, std::size_t end, std::size_t worker) {
+          Own& own = all[worker];
+          pairs_.ask(due.subspan(begin, end - begin), worker, own.counter, make,
+                     [&](std::uint32_t slot, const ObjectPair&, const Query& query) {
+                       answers_[slot] = {static_cast<std::uint32_t>(worker),
+                                         static_cast<std::uint32_t>(own.answered.size())};
+                       own.answered.push_back(query);
+                     });
+        });
+    for (const std::uint32_t slot : due) {
+      const auto [worker, place] = answers_[slot];
+      take(slot, near_.pair(slot), std::as_const(all[worker].answered[place]));
     }
+    for (const Own& own : all) counter.add(own.counter);
   }
+
+  struct Answer {
+    std::uint32_t worker, place;  ///< who has it, and where
+  };
 
   Pairs pairs_;
   NearPairs<Method> near_;
+  LargeVector<Answer> answers_;  // of each slot, while they are taken
   std::size_t asked_ = 0;
 };
 
