@@ -101,7 +101,7 @@ class CandidatePairs {
       began.append(found.began.view()), ended.append(found.ended.view());
     }
     list.clear();
-    Pair* const pairs = list.room_for(count + 1);
+    Pair* const pairs = list.room_to_share(sum);
     threads.share(found_.size(), [&](std::size_t k, std::size_t) {
       const auto [first, here] = std::pair(k * stretch, found_[k].first);
       std::copy_n(found_pairs_.data() + first, found_[k].count, pairs + here);
