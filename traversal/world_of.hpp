@@ -6,7 +6,9 @@
 /// What stays costs nothing, and what nobody came near is not even made.
 ///
 /// With several threads the broad phase, the bodies that moved and the pairs are shared; answers,
-/// contacts and counts are the same for any number of them.
+/// contacts and counts are the same for any number of them. What is one thread's: moves, pairs that
+/// begin and end, the list of those to ask, and takes, together a twentieth of a frame in which ten
+/// thousand bodies move.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "hierarchies/geometry/large_vector.hpp"
+#include "traversal/answers_in_order.hpp"
 #include "traversal/near_pairs.hpp"
 
 namespace bvlab {
@@ -86,45 +88,23 @@ class WorldOf {
   }
 
  private:
-  /// So many pairs that to hand them over costs nothing beside asking them.
-  static constexpr std::size_t fewest = 32;
-
-  /// Queries are copied to who asked them, and taken in the order of pairs: it does not depend on
-  /// which thread asked what.
   template <class Query, class Counter, class Make, class Take>
   void ask_on_threads(Counter& counter, Make& make, Take& take) {
     const auto due = near_.due();
-    struct alignas(128) Own {  // written to by one thread, beside another's
-      std::vector<Query> answered;
-      Counter counter;
-    };
-    std::vector<Own> all(near_.threads().count());
-    for (Own& own : all) own.answered.reserve(2 * due.size() / all.size());
-    answers_.resize(near_.slots());
-    near_.threads().share_out(
-        due.size(), fewest, [&](std::size_t begin, std::size_t end, std::size_t worker) {
-          Own& own = all[worker];
-          pairs_.ask(due.subspan(begin, end - begin), worker, own.counter, make,
+    answers_.ask<Query>(
+        near_.threads(), due.size(), near_.slots(), counter, [&](std::size_t k) { return due[k]; },
+        [&](std::size_t begin, std::size_t end, std::size_t worker, Counter& own, auto&& answer) {
+          pairs_.ask(due.subspan(begin, end - begin), worker, own, make,
                      [&](std::uint32_t slot, const ObjectPair&, const Query& query) {
-                       answers_[slot] = {static_cast<std::uint32_t>(worker),
-                                         static_cast<std::uint32_t>(own.answered.size())};
-                       own.answered.push_back(query);
+                       answer(slot, query);
                      });
-        });
-    for (const std::uint32_t slot : due) {
-      const auto [worker, place] = answers_[slot];
-      take(slot, near_.pair(slot), std::as_const(all[worker].answered[place]));
-    }
-    for (const Own& own : all) counter.add(own.counter);
+        },
+        [&](std::uint32_t slot, const Query& query) { take(slot, near_.pair(slot), query); });
   }
-
-  struct Answer {
-    std::uint32_t worker, place;  ///< who has it, and where
-  };
 
   Pairs pairs_;
   NearPairs<Method> near_;
-  LargeVector<Answer> answers_;  // of each slot, while they are taken
+  AnswersInOrder answers_;
   std::size_t asked_ = 0;
 };
 
