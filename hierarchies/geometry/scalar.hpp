@@ -72,7 +72,7 @@ constexpr int width() {
 /// Bit i is set where lane i of the mask is true.
 inline std::uint64_t bits(bool mask) { return mask ? 1u : 0u; }
 template <class T, class Abi>
-std::uint64_t bits(const stdx::simd_mask<T, Abi>& mask) {
+[[gnu::always_inline]] inline std::uint64_t bits(const stdx::simd_mask<T, Abi>& mask) {
   return mask.__to_bitset().to_ullong();
 }
 
@@ -123,11 +123,11 @@ using Mat3 = Eigen::Matrix<S, 3, 3>;
 
 /// Products and sums in this order, so that a batch gives lane by lane what a scalar gives.
 template <class S>
-S dot(const Vec3<S>& a, const Vec3<S>& b) {
+[[gnu::always_inline]] inline S dot(const Vec3<S>& a, const Vec3<S>& b) {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
 template <class S>
-S squared_norm(const Vec3<S>& v) {
+[[gnu::always_inline]] inline S squared_norm(const Vec3<S>& v) {
   return dot(v, v);
 }
 

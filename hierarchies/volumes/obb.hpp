@@ -164,19 +164,20 @@ struct ObbPair {
 
   /// How far the boxes are apart, at least, along a_i; negative where they are not. In units of a
   /// vector that is 1 + 37e long at most.
-  S beyond_a(const Obb<S>& a, const Obb<S>& b, int i) const {
+  [[gnu::always_inline]] S beyond_a(const Obb<S>& a, const Obb<S>& b, int i) const {
     using std::abs;
     return abs(along_a[i]) - (((a.half[i] + b.half[0] * absolute[i][0]) +
                                (b.half[1] * absolute[i][1] + b.half[2] * absolute[i][2])) +
                               margin);
   }
-  S beyond_b(const Obb<S>& a, const Obb<S>& b, int j) const {
+  [[gnu::always_inline]] S beyond_b(const Obb<S>& a, const Obb<S>& b, int j) const {
     using std::abs;
     return abs(along_b[j]) - (((b.half[j] + a.half[0] * absolute[0][j]) +
                                (a.half[1] * absolute[1][j] + a.half[2] * absolute[2][j])) +
                               margin);
   }
-  Mask<S> apart_along_edges(const Obb<S>& a, const Obb<S>& b, int i, int j) const {
+  [[gnu::always_inline]] Mask<S> apart_along_edges(const Obb<S>& a, const Obb<S>& b, int i,
+                                                   int j) const {
     using std::abs;
     const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
     return abs(cosine[i1][j] * along_a[i2] - cosine[i2][j] * along_a[i1]) >

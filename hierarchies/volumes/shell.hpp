@@ -250,7 +250,8 @@ S gap(const Shell<S>& a, const Shell<S>& b) {
   const S sine_a = sqrt(max(S(0), (S(1) - a.cosine) * (S(1) + a.cosine))),
           sine_b = sqrt(max(S(0), (S(1) - b.cosine) * (S(1) + b.cosine)));
 
-  const auto cosine_and_sine = [](const Vec3<S>& axis, const Vec3<S>& n, const S& length) {
+  const auto cosine_and_sine =
+      [](const Vec3<S>& axis, const Vec3<S>& n, const S& length) __attribute__((always_inline)) {
     const Vec3<S> cross(axis[1] * n[2] - axis[2] * n[1], axis[2] * n[0] - axis[0] * n[2],
                         axis[0] * n[1] - axis[1] * n[0]);
     return std::array<S, 2>{dot<S>(axis, n) / length, sqrt(squared_norm<S>(cross)) / length};

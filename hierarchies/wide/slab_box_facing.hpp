@@ -99,7 +99,7 @@ struct SlabBoxFacing<float> {
     S slab_b = fused<S>(lanes.normal[2], z,
                         fused<S>(lanes.normal[1], y, fused<S>(lanes.normal[0], x, lanes.middle)));
     slab_b = (abs(slab_b) - lanes.width) - S(frame_change.margin);
-    const auto along = [&](int i) {
+    const auto along = [&](int i) __attribute__((always_inline)) {
       const S p(frame_change.column[i][0]), q(frame_change.column[i][1]),
           r(frame_change.column[i][2]);
       const S normal =

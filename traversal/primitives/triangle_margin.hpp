@@ -80,11 +80,15 @@ template <Scalar S>
   return pick<S>(square > S(0x1p-40f), distance * S(1 - 8 * u) - S(64 * u), S(0));
 }
 
+template <Scalar S>
+[[gnu::always_inline]] inline S clamped(const S& x) {
+  return min(max(x, S(0)), S(1));
+}
+
 /// The vector between the nearest points of the nearest two edges, about.
 template <Scalar S>
 [[gnu::always_inline]] inline Vector<S> between_edges(const Corners<S>& a, const Corners<S>& b) {
   constexpr float least = 0x1p-60f;
-  const auto clamped = [](const S& x) { return min(max(x, S(0)), S(1)); };
   Vector<S> nearest{};
   S least_square = S(infinity);
   Vector<S> of_a[3], of_b[3];
@@ -101,9 +105,9 @@ template <Scalar S>
       const S along_a = dot<S>(of_a[i], r), along_b = dot<S>(of_b[j], r);
       const S both = dot<S>(of_a[i], of_b[j]);
       const S sine = max(square_a[i] * square_b[j] - both * both, S(least));
-      const S s0 = clamped((both * along_b - along_a * square_b[j]) / sine);
-      const S t = clamped((both * s0 + along_b) * inverse_b[j]);
-      const S s = clamped((both * t - along_a) * inverse_a[i]);
+      const S s0 = clamped<S>((both * along_b - along_a * square_b[j]) / sine);
+      const S t = clamped<S>((both * s0 + along_b) * inverse_b[j]);
+      const S s = clamped<S>((both * t - along_a) * inverse_a[i]);
       Vector<S> d;
       for (int k = 0; k < 3; ++k) d[k] = r[k] + s * of_a[i][k] - t * of_b[j][k];
       const S square = dot<S>(d, d);
@@ -123,15 +127,18 @@ template <Scalar S>
   return max(edges, max(face_a, face_b));
 }
 
+/// 1 / |n| at most; 0 where that is not known.
+template <Scalar S>
+[[gnu::always_inline]] inline S over_norm(const Vector<S>& n) {
+  const S square = dot<S>(n, n);
+  return pick<S>(square > S(0x1p-40f), S(1 - 8 * u) / (root(square) + S(64 * u)), S(0));
+}
+
 /// By the crossing of `t` by the edges of `edges`; not positive where there is none for certain.
 template <Scalar S>
 [[gnu::always_inline]] inline S crossed(const Corners<S>& t, const Corners<S>& edges) {
-  const auto over_norm = [](const Vector<S>& n) {
-    const S square = dot<S>(n, n);
-    return pick<S>(square > S(0x1p-40f), S(1 - 8 * u) / (root(square) + S(64 * u)), S(0));
-  };
   const Vector<S> normal = cross<S>(t[1] - t[0], t[2] - t[0]);
-  const S scale = over_norm(normal);
+  const S scale = over_norm<S>(normal);
   S height[3];
   for (int i = 0; i < 3; ++i) height[i] = dot<S>(normal, edges[i] - t[0]);
   S best = S(0);
@@ -142,7 +149,7 @@ template <Scalar S>
     S left = S(infinity), right = S(infinity);
     for (int k = 0; k < 3; ++k) {
       const Vector<S> axis = cross<S>(along, t[(k + 1) % 3] - t[k]);
-      const S side = dot<S>(axis, t[k] - edges[i]), inverse = over_norm(axis);
+      const S side = dot<S>(axis, t[k] - edges[i]), inverse = over_norm<S>(axis);
       left = min(left, (side - S(slack)) * inverse);
       right = min(right, (-side - S(slack)) * inverse);
     }

@@ -186,16 +186,16 @@ class SeparatingDirections {
     stdx::where(along < S(0.0f), face) = face + S(1.0f);
     const S scale = S(half) / longest;
     // What is no number becomes 0: max and min give their second operand then.
-    const auto place = [&](const S& at) {
+    const auto place = [&](const S& at) __attribute__((always_inline)) {
       return min(S(2 * half), max(S(0.0f), fused<S>(at, scale, S(half))));
     };
     const S s = finite(place(u)), t = finite(place(v));
     const S i = cell_of(s), j = cell_of(t), p = s - i, q = t - j;
-    const auto sample = [&](const S& first, const S& second) {
+    const auto sample = [&](const S& first, const S& second) __attribute__((always_inline)) {
       return (map + stdx::static_simd_cast<Indices>((face * row + first) * row + second)) * 4;
     };
     const Indices at = sample(i, j);
-    const auto height = [&](int offset) {
+    const auto height = [&](int offset) __attribute__((always_inline)) {
       return gathered<width>(&samples_[0].height + 4 * offset, at);
     };
     const S low = fused<S>(height(1) - height(0), q, height(0));
