@@ -66,10 +66,7 @@ class Body : public MovingBody {
 
   /// The triangle at a place of the hierarchy's primitives, in the world.
   const Triangle& triangle(std::uint32_t place) {
-    once(triangle_epochs_[place], epoch_, askers_, [&] {
-      const Triangle corners = mesh_->corners(hierarchy_->primitive(place));
-      for (int i = 0; i < 3; ++i) triangles_[place][i] = pose_(corners[i]);
-    });
+    if (!is_done(triangle_epochs_[place], epoch_)) pose_triangle(place);
     return triangles_[place];
   }
 
@@ -77,12 +74,32 @@ class Body : public MovingBody {
   /// By itself: it is compiled once for all loops, and what calls it stays small. Says whether
   /// nobody else has.
   [[gnu::noinline]] bool pose_siblings(std::uint32_t siblings) {
-    return once(volume_epochs_[siblings], epoch_, askers_, [&] {
-      once(prepared_, epoch_, askers_, [this] { prepare(); });
-      if (siblings == 0) return put(0);
-      put(2 * siblings - 1);
-      put(2 * siblings);
+    if (askers_ == Askers::several) return pose_siblings_once(siblings);
+    volume_epochs_[siblings] = epoch_;
+    if (prepared_ != epoch_) prepare(), prepared_ = epoch_;
+    put_siblings(siblings);
+    return true;
+  }
+  [[gnu::noinline]] bool pose_siblings_once(std::uint32_t siblings) {
+    return once(volume_epochs_[siblings], epoch_, [&] {
+      once(prepared_, epoch_, [this] { prepare(); });
+      put_siblings(siblings);
     });
+  }
+  void put_siblings(std::uint32_t siblings) {
+    if (siblings == 0) return put(0);
+    put(2 * siblings - 1);
+    put(2 * siblings);
+  }
+
+  void pose_triangle(std::uint32_t place) {
+    const auto pose = [&] {
+      const Triangle corners = mesh_->corners(hierarchy_->primitive(place));
+      for (int i = 0; i < 3; ++i) triangles_[place][i] = pose_(corners[i]);
+    };
+    if (askers_ == Askers::several) return void(once(triangle_epochs_[place], epoch_, pose));
+    triangle_epochs_[place] = epoch_;
+    pose();
   }
 
   /// Made where it is to stand: an assignment would write it, wait for that and copy it.

@@ -42,11 +42,19 @@ namespace detail {
 
 /// Calls work() unless that has been done under this stamp; says whether it was called.
 template <class Work>
-bool once(std::uint32_t& done, std::uint32_t stamp, Askers askers, Work&& work) {
-  if (is_done(done, stamp)) return false;
-  if (askers == Askers::several && !detail::take_work(done, stamp)) return false;
+bool once(std::uint32_t& done, std::uint32_t stamp, Work&& work) {
+  if (!detail::take_work(done, stamp)) return false;
   std::forward<Work>(work)();
   std::atomic_ref(done).store(stamp, std::memory_order_release);
+  return true;
+}
+/// The same where it is known who asks.
+template <class Work>
+bool once(std::uint32_t& done, std::uint32_t stamp, Askers askers, Work&& work) {
+  if (is_done(done, stamp)) return false;
+  if (askers == Askers::several) return once(done, stamp, std::forward<Work>(work));
+  std::forward<Work>(work)();
+  done = stamp;
   return true;
 }
 
