@@ -20,6 +20,11 @@
 /// of two surfaces are near each other in many places, and to know the nearest is to know the
 /// distance, at five times the price. Nor does it pay to measure triangles that are apart by more
 /// than the volumes they have anyway: a third of the tests is left, and each gap costs four.
+/// Nor to measure each gap from where the bodies then stood, so that motions to and fro cancel:
+/// with eight such poses at ever greater intervals two thirds of the entries come up, but the
+/// clocks take what that saves; with exact gaps of triangles, and lanes opened before they are due,
+/// a third, and 0.9 of the time where 500 polygons move slowly, but 1.0 to 1.3 with 8000, where
+/// many triangles are within a step or two of each other, and 1.15 in a planner's motion.
 #pragma once
 
 #include <algorithm>
