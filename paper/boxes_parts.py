@@ -5,6 +5,7 @@ import boxes_fast
 import column
 import records
 import style
+from quotes import seeds
 from sheet import escape, listed, part, percent, thousands, times
 from words import number
 
@@ -77,6 +78,16 @@ def write_boxes_motions(paper, record):
             for motion, of in saved.groupby(level="motion", sort=False)
         ),
     )
+
+
+@part("boxes-sorts")
+def write_boxes_sorts(paper, record):
+    """The same after a sort by comparison, in code without vector registers."""
+    left = seeds.left_by_coherence(record)
+    for name, program in (("Plain", "unoptimised"), ("Optimised", "optimised")):
+        saved = 1 - left.loc[program].loc["comparison"]
+        paper.put_range(f"sorted{name}", saved, lambda v: percent(v, 0))
+        paper.put_percent(0, **{f"sorted{name}Middle": saved.median()})
 
 
 def milliseconds(value):

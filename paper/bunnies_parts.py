@@ -2,6 +2,7 @@
 """The paper's part on nine bunnies, under every reading of the talk."""
 
 import nine_bunnies
+from quotes import seeds
 from sheet import escape, listed, medians, part, read_right
 
 
@@ -117,6 +118,17 @@ def write_talk(paper, record):
         paper.put_range(f"talk{name}Deferred", of[what]["deferred"], two)
     paper.text("talk-prices", prices_text(rows, paper.values))
     paper.put_text(talkInTime=reach_text(of["time_ns"], paper.values))
+
+
+@part("talk-scalar")
+def write_talk_scalar(paper, record):
+    """The talk in scalar code: where one body moves, and what a pair of triangles costs in tests of spheres."""
+    found = seeds.talk_scalar(record)
+    for program, prefix in (("Plain", "plain_"), ("Optimised", "")):
+        for name in ("list", "deferred"):
+            interval = found[prefix + name]
+            paper.put_range(f"scalar{program}{name.title()}", [interval.least, interval.most], "{:.2f}".format)
+    paper.put_text(scalarPlainPrice=f"{found['plain']:.0f}", scalarOptimisedPrice=f"{found['optimised']:.0f}")
 
 
 def reach_text(speedups, published):

@@ -4,6 +4,7 @@
 import numpy as np
 import records
 import tournament
+from quotes import tournament as fair
 from sheet import duration, escape, listed, medians, part, percent, read_right, times
 
 
@@ -97,6 +98,16 @@ def write_narrow_phase(paper, record):
         )
     paper.table("narrow-phase", "lr" + "r" * len(methods), ["work", "polygons"] + [two_lines(m) for m in methods], lines)
     paper.text("narrow-phase-text", tournament_text(tournament.read(record)))
+
+
+@part("tournament")
+def write_tournament(paper, record):
+    """Ours by lanes, over the fastest of FCL and OPCODE with the same flags."""
+    found = fair.headline(record)
+    for name in ("sixteen", "eight", "one"):
+        paper.put_range(f"lanes{name.title()}", [found[name].least, found[name].most])
+    paper.put_range("lanesWidth", [found["width"].least, found["width"].most])
+    paper.put_range("fclFlags", [found["fcl"].least, found["fcl"].most], "{:.2f}".format)
 
 
 def tournament_text(rows):
