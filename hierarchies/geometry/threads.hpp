@@ -61,7 +61,8 @@ class Threads {
 
  private:
   template <class Work>
-  void share_ranges(std::size_t count, std::size_t least, std::size_t divisor, const Work& work) {
+  void share_ranges(std::size_t count, std::size_t least, [[maybe_unused]] std::size_t divisor,
+                    const Work& work) {
     if (count == 0) return;
     if (count_ == 1 || count <= least) return work(std::size_t{0}, count, std::size_t{0});
 #if BVLAB_TBB
