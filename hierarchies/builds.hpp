@@ -18,6 +18,10 @@ struct Down {
   static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size) {
     return TopDown{kAxis, kAt, leaf_size}(mesh);
   }
+  /// The same, by several threads.
+  static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size, Threads& threads) {
+    return TopDown{kAxis, kAt, leaf_size}(mesh, threads);
+  }
 };
 
 struct TopDownMean : Down<SplitAxis::longest, SplitAt::mean> {

@@ -59,6 +59,11 @@ class Bodies {
     for (auto& body : bodies_) body.make_room();
   }
 
+  /// See MovingBody::asked_by.
+  void asked_by(Askers askers) {
+    for (auto& body : bodies_) body.asked_by(askers);
+  }
+
   /// See Body::move.
   void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) {
     bodies_[i].move(pose, origin);
@@ -70,7 +75,7 @@ class Bodies {
 
   template <class Query, class Counter>
   BodyPair<B, V, Query, Counter> pair(const ObjectPair& pair, Query& query, Counter& counter) {
-    // Pairs without a body in common may be asked by several threads.
+    // Pairs may be asked by several threads.
     static thread_local Workspace workspace;
     return {bodies_[pair.i], bodies_[pair.j], query, counter, workspace};
   }

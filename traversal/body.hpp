@@ -2,6 +2,8 @@
 /// A mesh with its hierarchy, standing somewhere. Volumes and triangles are posed when they are
 /// first asked for and never twice until the body moves; a body that stays is never posed again.
 ///
+/// Several threads may ask a body (see once.hpp); one moves it, while nobody asks.
+///
 /// All bodies are posed into one frame (the world's, about a common origin), so that what is posed
 /// for one pair serves all the others.
 #pragma once
@@ -28,8 +30,7 @@ class Body : public MovingBody {
   bool move(const Pose& pose, const Vec3<double>& origin) {
     if (!place(pose, origin)) return false;
     if (volumes_.empty()) make_room();
-    if (epoch_ == 0) forget();
-    placed_ = false;
+    if (epoch_ == 0 || epoch_ >= never_done) forget();
     return true;
   }
 
@@ -48,9 +49,8 @@ class Body : public MovingBody {
   template <class Counter>
   void require(std::uint32_t node, Counter& counter) {
     const std::uint32_t siblings = (node + 1) / 2;
-    if (volume_epochs_[siblings] == epoch_) return;
-    pose_siblings(siblings);
-    counter.posed(siblings == 0 ? 1 : 2);
+    if (is_done(volume_epochs_[siblings], epoch_)) return;
+    if (pose_siblings(siblings)) counter.posed(siblings == 0 ? 1 : 2);
   }
 
   /// How many volumes have been posed since the body moved. O(nodes).
@@ -66,22 +66,40 @@ class Body : public MovingBody {
 
   /// The triangle at a place of the hierarchy's primitives, in the world.
   const Triangle& triangle(std::uint32_t place) {
-    if (triangle_epochs_[place] != epoch_) {
-      triangle_epochs_[place] = epoch_;
-      const Triangle corners = mesh_->corners(hierarchy_->primitive(place));
-      for (int i = 0; i < 3; ++i) triangles_[place][i] = pose_(corners[i]);
-    }
+    if (!is_done(triangle_epochs_[place], epoch_)) pose_triangle(place);
     return triangles_[place];
   }
 
  private:
-  /// By itself: it is compiled once for all loops, and what calls it stays small.
-  [[gnu::noinline]] void pose_siblings(std::uint32_t siblings) {
+  /// By itself: it is compiled once for all loops, and what calls it stays small. Says whether
+  /// nobody else has.
+  [[gnu::noinline]] bool pose_siblings(std::uint32_t siblings) {
+    if (askers_ == Askers::several) return pose_siblings_once(siblings);
     volume_epochs_[siblings] = epoch_;
-    if (!placed_) prepare();
+    if (prepared_ != epoch_) prepare(), prepared_ = epoch_;
+    put_siblings(siblings);
+    return true;
+  }
+  [[gnu::noinline]] bool pose_siblings_once(std::uint32_t siblings) {
+    return once(volume_epochs_[siblings], epoch_, [&] {
+      once(prepared_, epoch_, [this] { prepare(); });
+      put_siblings(siblings);
+    });
+  }
+  void put_siblings(std::uint32_t siblings) {
     if (siblings == 0) return put(0);
     put(2 * siblings - 1);
     put(2 * siblings);
+  }
+
+  void pose_triangle(std::uint32_t place) {
+    const auto pose = [&] {
+      const Triangle corners = mesh_->corners(hierarchy_->primitive(place));
+      for (int i = 0; i < 3; ++i) triangles_[place][i] = pose_(corners[i]);
+    };
+    if (askers_ == Askers::several) return void(once(triangle_epochs_[place], epoch_, pose));
+    triangle_epochs_[place] = epoch_;
+    pose();
   }
 
   /// Made where it is to stand: an assignment would write it, wait for that and copy it.
@@ -89,21 +107,19 @@ class Body : public MovingBody {
     ::new (&volumes_[node]) Posed<V>(posed(hierarchy_->volume(node), placement_));
   }
 
-  void prepare() {
-    placement_ = PlacementOf<V>(pose_, origin_, hierarchy_->extent().reach);
-    placed_ = true;
-  }
+  void prepare() { placement_ = PlacementOf<V>(pose_, origin_, hierarchy_->extent().reach); }
 
   void forget() {
     std::fill(volume_epochs_.begin(), volume_epochs_.end(), 0u);
     std::fill(triangle_epochs_.begin(), triangle_epochs_.end(), 0u);
+    prepared_ = never_done;
     epoch_ = 1;
   }
 
   const TriangleMesh* mesh_;
   const Hierarchy<V>* hierarchy_;
   PlacementOf<V> placement_;
-  bool placed_ = false;  // whether `placement_` is of `pose_`: not where no volume was asked for
+  std::uint32_t prepared_ = never_done;  // the epoch that `placement_` is of
   std::vector<Posed<V>> volumes_;
   std::vector<std::uint32_t> volume_epochs_;  // one for two siblings
   std::vector<Triangle> triangles_;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "traversal/once.hpp"
 #include "traversal/reference_pose.hpp"
 
 namespace bvlab {
@@ -18,15 +19,18 @@ class MovingBody {
   std::uint32_t epoch() const { return epoch_; }
   /// Where it stands. Computed when it is asked for: a strategy that keeps no margins does not ask.
   const ReferencePose& reference_pose() {
-    if (!followed_) follow();
+    follow();
     return reference_pose_;
   }
   /// How far any of its points can have moved from each reference pose that was asked for to the
   /// next, all together: it grows whenever the body has moved.
   double displacement_bound() {
-    if (!followed_) follow();
+    follow();
     return displacement_bound_;
   }
+
+  /// Who asks from now on, until it is moved: several threads may.
+  void asked_by(Askers askers) { askers_ = askers; }
 
  protected:
   /// Says whether the body has moved.
@@ -35,16 +39,19 @@ class MovingBody {
     pose_ = pose;
     origin_ = origin;
     ++epoch_;
-    followed_ = false;
     return true;
   }
 
   Pose pose_;
   Vec3<double> origin_ = Vec3<double>::Zero();
   std::uint32_t epoch_ = 0;
+  Askers askers_ = Askers::one;
 
  private:
   void follow() {
+    once(followed_, epoch_, askers_, [this] { follow_here(); });
+  }
+  void follow_here() {
     const ReferencePose now(pose_, extent_);
     // Rounded up, so that no step is lost in a long way.
     if (displacement_bound_ < 0)
@@ -54,13 +61,12 @@ class MovingBody {
           (displacement_bound_ + step_between(reference_pose_, now, extent_.radius)) *
           (1 + 4 * unit_roundoff<double>);
     reference_pose_ = now;
-    followed_ = true;
   }
 
   HierarchyExtent extent_;
   ReferencePose reference_pose_;
-  double displacement_bound_ = -1;  // before the first reference pose
-  bool followed_ = false;           // whether the reference pose is where the body is
+  double displacement_bound_ = -1;       // before the first reference pose
+  std::uint32_t followed_ = never_done;  // the epoch that the reference pose is of
 };
 
 }  // namespace bvlab

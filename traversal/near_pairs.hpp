@@ -68,10 +68,8 @@ class NearPairs {
     due_.clear();
     if (movers_.empty()) return;
     if (!placed_) place_origin();
-    constexpr std::size_t stretch = 128;
-    threads_.share((movers_.size() + stretch - 1) / stretch, [&](std::size_t k, std::size_t) {
-      const std::size_t last = std::min((k + 1) * stretch, movers_.size());
-      for (std::size_t m = k * stretch; m < last; ++m) {
+    threads_.share_out(movers_.size(), 128, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t m = begin; m < end; ++m) {
         const std::uint32_t i = movers_[m];
         boxes_[i] = present_[i] ? mesh_boxes_[box_of_[i]](poses_[i], origin_) : outside(i);
         if (present_[i]) stand(i);

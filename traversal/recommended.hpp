@@ -23,8 +23,10 @@ struct Recommended {
   using Pairs = WidePairs<Volume, fan_out, RelativeFrame, WideMargins>;
 
   /// One for each mesh, whatever number of bodies has it.
-  static Hierarchy hierarchy(const TriangleMesh& mesh) {
-    return Hierarchy(mesh, builds::TopDownSurfaceArea::topology(mesh, 1));
+  static Hierarchy hierarchy(const TriangleMesh& mesh, int threads = 1) {
+    Threads several(threads);
+    return Hierarchy(mesh, builds::TopDownSurfaceArea::topology(mesh, 1, several), Fit::published,
+                     fan_out, several);
   }
 };
 

@@ -6,7 +6,9 @@
 /// What stays costs nothing, and what nobody came near is not even made.
 ///
 /// With several threads the broad phase, the bodies that moved and the pairs are shared; answers,
-/// contacts and counts are the same for any number of them.
+/// contacts and counts are the same for any number of them. What is one thread's: moves, pairs that
+/// begin and end, the list of those to ask, and takes, together a twentieth of a frame in which ten
+/// thousand bodies move.
 #pragma once
 
 #include <algorithm>
@@ -16,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "traversal/answers_in_order.hpp"
 #include "traversal/near_pairs.hpp"
 
 namespace bvlab {
@@ -66,7 +69,7 @@ class WorldOf {
     if (near_.threads().count() == 1)
       pairs_.ask(near_.due(), 0, counter, make, take);
     else
-      ask_in_parts<Query>(counter, make, take);
+      ask_on_threads<Query>(counter, make, take);
     asked_ = near_.due().size();
     near_.settle();
   }
@@ -85,36 +88,23 @@ class WorldOf {
   }
 
  private:
-  /// So many pairs that to hand them over costs nothing beside asking them.
-  static constexpr std::size_t part_size = 64;
-
   template <class Query, class Counter, class Make, class Take>
-  void ask_in_parts(Counter& counter, Make& make, Take& take) {
+  void ask_on_threads(Counter& counter, Make& make, Take& take) {
     const auto due = near_.due();
-    const std::size_t parts = (due.size() + part_size - 1) / part_size;
-    struct alignas(128) Part {  // written to by one thread, beside another's
-      std::vector<std::pair<std::uint32_t, Query>> answered;
-      Counter counter;
-    };
-    std::vector<Part> all(parts);
-    near_.threads().share(parts, [&](std::size_t k, std::size_t worker) {
-      Part& part = all[k];
-      const auto slots =
-          due.subspan(k * part_size, std::min(part_size, due.size() - k * part_size));
-      part.answered.reserve(slots.size());
-      pairs_.ask(slots, worker, part.counter, make,
-                 [&](std::uint32_t slot, const ObjectPair&, const Query& query) {
-                   part.answered.emplace_back(slot, query);
-                 });
-    });
-    for (const Part& part : all) {
-      for (const auto& [slot, query] : part.answered) take(slot, near_.pair(slot), query);
-      counter.add(part.counter);
-    }
+    answers_.ask<Query>(
+        near_.threads(), due.size(), near_.slots(), counter, [&](std::size_t k) { return due[k]; },
+        [&](std::size_t begin, std::size_t end, std::size_t worker, Counter& own, auto&& answer) {
+          pairs_.ask(due.subspan(begin, end - begin), worker, own, make,
+                     [&](std::uint32_t slot, const ObjectPair&, const Query& query) {
+                       answer(slot, query);
+                     });
+        },
+        [&](std::uint32_t slot, const Query& query) { take(slot, near_.pair(slot), query); });
   }
 
   Pairs pairs_;
   NearPairs<Method> near_;
+  AnswersInOrder answers_;
   std::size_t asked_ = 0;
 };
 

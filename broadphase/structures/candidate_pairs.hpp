@@ -15,6 +15,7 @@
 #include "broadphase/structures/pair_list.hpp"
 #include "broadphase/structures/row.hpp"
 #include "hierarchies/geometry/large_vector.hpp"
+#include "hierarchies/geometry/threads.hpp"
 
 namespace bvlab {
 
@@ -59,10 +60,56 @@ class CandidatePairs {
       places_known_ = false;
       return compare_range(ids, list, 0, candidates_.size());
     }
-    if (keep == Keep::changes && places_known_)
-      compare_keeping<true>(ids, list, began, ended);
-    else
-      compare_keeping<false>(ids, list, began, ended);
+    const bool changed = keep == Keep::changes && places_known_;
+    const std::size_t count = candidates_.size();
+    list.clear();
+    places_.resize(count);
+    origins_.resize(count + 1);
+    Pair* const to = list.room_for(count + 1);
+    list.end_at(
+        to + (changed ? compare_keeping<true>(ids, 0, count, to, origins_.data(), began, ended)
+                      : compare_keeping<false>(ids, 0, count, to, origins_.data(), began, ended)));
+    places_known_ = true;
+  }
+
+  /// The same by several threads, with places or changes: the same lists in the same order. Each
+  /// stretch of candidates is compared into room of its own, then put behind the one before.
+  void compare_all_shared(const std::uint32_t* ids, PairList& list, Keep keep, PairList& began,
+                          PairList& ended, Threads& threads) {
+    const bool changed = keep == Keep::changes && places_known_;
+    const std::size_t count = candidates_.size();
+    constexpr std::size_t stretch = 1024;
+    places_.resize(count);
+    origins_.resize(count + 1);
+    found_pairs_.resize(count), found_origins_.resize(count);
+    found_.resize((count + stretch - 1) / stretch);
+    const auto last_of = [&](std::size_t k) { return std::min((k + 1) * stretch, count); };
+    threads.share(found_.size(), [&](std::size_t k, std::size_t) {
+      Found& found = found_[k];
+      const std::size_t first = k * stretch;
+      Pair* const to = found_pairs_.data() + first;
+      std::uint32_t* const origins = found_origins_.data() + first;
+      found.began.clear(), found.ended.clear();
+      found.count = changed ? compare_keeping<true>(ids, first, last_of(k), to, origins,
+                                                    found.began, found.ended)
+                            : compare_keeping<false>(ids, first, last_of(k), to, origins,
+                                                     found.began, found.ended);
+    });
+    std::uint32_t sum = 0;
+    for (Found& found : found_) {
+      found.first = sum, sum += found.count;
+      began.append(found.began.view()), ended.append(found.ended.view());
+    }
+    list.clear();
+    Pair* const pairs = list.room_to_share(sum);
+    threads.share(found_.size(), [&](std::size_t k, std::size_t) {
+      const auto [first, here] = std::pair(k * stretch, found_[k].first);
+      std::copy_n(found_pairs_.data() + first, found_[k].count, pairs + here);
+      std::copy_n(found_origins_.data() + first, found_[k].count, origins_.data() + here);
+      for (std::size_t c = first; c < last_of(k); ++c)
+        places_[c] += places_[c] != nowhere_in_list ? here : 0;
+    });
+    list.end_at(pairs + sum);
     places_known_ = true;
   }
 
@@ -100,32 +147,40 @@ class CandidatePairs {
 
   std::size_t bytes() const {
     return rows_.capacity() * sizeof(Row<T>) + candidates_.capacity() * sizeof(Pair) +
-           4 * (places_.capacity() + origins_.capacity() + heads_.capacity() + links_.capacity());
+           sizeof(Pair) * found_pairs_.capacity() +
+           4 * (places_.capacity() + origins_.capacity() + heads_.capacity() + links_.capacity() +
+                found_origins_.capacity());
   }
 
  private:
   static constexpr std::uint32_t nowhere_in_list = 0xffffffffu;
   static constexpr std::uint32_t end_of_links = 0xffffffffu;
 
+  /// Compares the candidates from `first` to `last`; says how many overlap. Their pairs and origins
+  /// go to these places, and theirs begin at 0.
   template <bool Changed>
-  void compare_keeping(const std::uint32_t* ids, PairList& list, PairList& began, PairList& ended) {
-    list.clear();
-    places_.resize(candidates_.size());
-    origins_.resize(candidates_.size() + 1);
-    Pair* const first = list.room_for(candidates_.size() + 1);
+  std::uint32_t compare_keeping(const std::uint32_t* ids, std::size_t first, std::size_t last,
+                                Pair* pairs, std::uint32_t* origins, PairList& began,
+                                PairList& ended) {
     std::uint32_t found = 0;
-    for (std::uint32_t c = 0; c < candidates_.size(); ++c) {
+    for (auto c = static_cast<std::uint32_t>(first); c < last; ++c) {
       const Pair candidate = candidates_[c];
       const Pair pair{ids[candidate.i], ids[candidate.j]};
       const bool hit = overlap<Contact>(rows_[candidate.i], rows_[candidate.j]);
       if (Changed && hit != (places_[c] != nowhere_in_list)) (hit ? began : ended).push(pair);
       places_[c] = hit ? found : nowhere_in_list;
-      first[found] = pair;
-      origins_[found] = c;
+      pairs[found] = pair;
+      origins[found] = c;
       found += hit;
     }
-    list.end_at(first + found);
+    return found;
   }
+
+  /// What one thread found among some candidates.
+  struct Found {
+    std::uint32_t first, count;  ///< of the list
+    PairList began, ended;
+  };
 
   void insert(std::uint32_t c, Pair pair, PairList& list, PairList& began) {
     places_[c] = static_cast<std::uint32_t>(list.size());
@@ -165,6 +220,10 @@ class CandidatePairs {
   LargeVector<std::uint32_t> places_;   ///< of each candidate in the list
   LargeVector<std::uint32_t> origins_;  ///< of each place: its candidate
   LargeVector<std::uint32_t> heads_, links_;
+  // Where threads share them, of each stretch:
+  LargeVector<Pair> found_pairs_;
+  LargeVector<std::uint32_t> found_origins_;
+  std::vector<Found> found_;
 };
 
 }  // namespace bvlab

@@ -17,6 +17,7 @@
 #include "experiments/replay/topology_of.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 #include "experiments/scenes/scene_x3d.hpp"
+#include "hierarchies/geometry/threads.hpp"
 
 namespace bvlab {
 namespace {
@@ -181,6 +182,11 @@ void run(Arguments arguments) {
   if (arguments.configuration)
     arguments.variant = configured(arguments.variant, *arguments.configuration);
   check(arguments);
+  if (arguments.threads > 1 && !Threads::available) {
+    std::fprintf(stderr, "--threads %u: there is one thread, for TBB was not found\n",
+                 arguments.threads);
+    arguments.threads = 1;
+  }
   std::vector<TriangleMesh> meshes;
   for (const auto& file : arguments.meshes) meshes.push_back(read_mesh(file));
   const Trace trace = read_trace(arguments.trace);

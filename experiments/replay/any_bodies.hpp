@@ -33,6 +33,7 @@ class BodyLoops {
   virtual const TriangleMesh& mesh(std::size_t i) const = 0;
   virtual MovingBody& body(std::size_t i) = 0;
   virtual void make_room() = 0;
+  virtual void asked_by(Askers askers) = 0;
   virtual void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) = 0;
   virtual void move(std::span<const Pose> poses, const Vec3<double>& origin) = 0;
   virtual void cull_roots(std::span<const ObjectPair> pairs, std::span<const std::uint32_t> fresh,
@@ -133,6 +134,7 @@ class AnyBodies {
   std::size_t size() const { return bodies_.size(); }
   const TriangleMesh& mesh(std::size_t i) const { return loops_->mesh(i); }
   void make_room() { loops_->make_room(); }
+  void asked_by(Askers askers) { loops_->asked_by(askers); }
   void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) {
     loops_->move(i, pose, origin);
   }

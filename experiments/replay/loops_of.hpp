@@ -29,6 +29,7 @@ class BodiesOver : public BodyLoops<Query> {
   const TriangleMesh& mesh(std::size_t i) const override { return bodies_.mesh(i); }
   MovingBody& body(std::size_t i) override { return bodies_[i]; }
   void make_room() override { bodies_.make_room(); }
+  void asked_by(Askers askers) override { bodies_.asked_by(askers); }
   void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) override {
     bodies_.move(i, pose, origin);
   }

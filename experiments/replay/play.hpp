@@ -10,8 +10,8 @@
 
 #include "experiments/replay/any_bodies.hpp"
 #include "experiments/replay/play_entry.hpp"
+#include "experiments/replay/player.hpp"
 #include "experiments/replay/registry.hpp"
-#include "experiments/replay/replay_shares.hpp"
 #include "experiments/replay/strategy_text.hpp"
 #include "experiments/replay/touching_world.hpp"
 #include "experiments/replay/triangle_test.hpp"
@@ -23,8 +23,8 @@ namespace bvlab {
 
 namespace detail {
 
-/// What one thread finds out about its share of the pairs: a cell of the shared array for each
-/// frame and pair, or a list of its own, as the query has it.
+/// What is found out about the pairs: a cell for each frame and pair, or a list, as the query has
+/// it.
 template <class Query>
 class Answers {
   static constexpr bool lists =
@@ -33,13 +33,17 @@ class Answers {
   };
 
  public:
-  Answers(ReplayResult& result, const Trace& trace, bool keep, const QueryOptions& how)
-      : result_(&result), pairs_(trace.pairs()), keep_(keep), how_(how) {
-    if constexpr (!lists)
-      if (keep) cells().resize(trace.frames * pairs_);
+  Answers(ReplayResult& result, const Trace& trace, const ReplayOptions& options,
+          const QueryOptions& how)
+      : result_(&result), pairs_(trace.pairs()), keep_(options.keep_answers), how_(how) {
+    if constexpr (lists) {
+      if (options.threads > 1) of_pairs_.resize(pairs_);
+    } else {
+      if (keep_) cells().resize(trace.frames * pairs_);
+    }
   }
 
-  /// Several pairs may be asked before the first of them is taken.
+  /// Several pairs may be asked before the first of them is taken; of threads, at once.
   Query ask(std::size_t p) {
     if constexpr (lists) {
       auto& found = list_of(p).found;
@@ -56,7 +60,7 @@ class Answers {
       hits_ += list.found.size();
       if (keep_)
         for (const auto& [a, b] : list.found)
-          all_.push_back({static_cast<std::uint32_t>(frame), pair.i, pair.j, a, b});
+          result_->contacts.push_back({static_cast<std::uint32_t>(frame), pair.i, pair.j, a, b});
       list.pair = nobody;
     } else {
       const auto answer = query.answer();
@@ -70,10 +74,6 @@ class Answers {
 
   std::uint64_t hits() const { return hits_; }
 
-  void hand_over(ReplayResult& result) {
-    result.contacts.insert(result.contacts.end(), all_.begin(), all_.end());
-  }
-
  private:
   static constexpr std::size_t nobody = static_cast<std::size_t>(-1);
   struct List {
@@ -81,8 +81,9 @@ class Answers {
     std::vector<std::array<std::uint32_t, 2>> found;
   };
 
-  /// The pair's, or one that nobody has: queries point to it.
+  /// The pair's, or one that nobody has: queries point to it. With threads each pair has its own.
   List& list_of(std::size_t pair) {
+    if (!of_pairs_.empty()) return of_pairs_[pair];
     List* free = nullptr;
     for (List& list : open_) {
       if (list.pair == pair) return list;
@@ -106,81 +107,54 @@ class Answers {
   QueryOptions how_;
   std::uint64_t hits_ = 0;
   std::deque<List> open_;
-  std::vector<std::array<std::uint32_t, 5>> all_;
+  std::vector<List> of_pairs_;
 };
 
-/// An engine of its own, over every `stride`-th pair, all frames.
 template <class Engine, class Query, class Counter>
-class ShareOf final : public Share {
+class PlayedBy final : public Player {
  public:
-  /// `make` makes the engine over the pairs it is given.
-  template <class Make>
-  ShareOf(Make&& make, std::size_t first, std::size_t stride, const Trace& trace,
-          const QueryOptions& how, ReplayResult& result, const ReplayOptions& options)
+  PlayedBy(Engine engine, const Trace& trace, const QueryOptions& how, const ReplayOptions& options,
+           ReplayResult& result)
       : trace_(trace),
         result_(result),
         options_(options),
-        first_(first),
-        stride_(stride),
-        engine_(make(share_of_pairs(trace.objects, first, stride))),
-        answers_(result, trace, options.keep_answers, how) {}
+        engine_(std::move(engine)),
+        answers_(result, trace, options, how),
+        poses_(trace.objects) {}
 
-  void play() override {
-    const auto start = Clock::now();
-    std::vector<Pose> poses(trace_.objects);
-    auto last = start;
-    if (options_.keep_frame_seconds) frame_seconds_.reserve(trace_.frames);
-    for (std::size_t frame = 0; frame < trace_.frames; ++frame) {
-      trace_.poses(frame, poses);
-      engine_.frame(
-          poses, counter_, [&](std::size_t p) { return answers_.ask(first_ + p * stride_); },
-          [&](std::size_t p, const Query& query) {
-            answers_.take(frame, first_ + p * stride_, engine_.pairs()[p], query);
-          });
-      if constexpr (requires { engine_.bodies().count_posed(counter_); })
-        engine_.bodies().count_posed(counter_);
-      const std::size_t front = engine_.front_size();
-      entries_ += static_cast<double>(front);
-      if (options_.keep_series)
-        result_.series[frame] = {counter_.n_u, counter_.n_v, counter_.n_p, front, answers_.hits()};
-      if (options_.see_front) see_fronts(frame);
-      if (frame == 0) first_seconds_ = seconds_since(start);
-      if (options_.keep_frame_seconds) {
-        const auto now = Clock::now();
-        frame_seconds_.push_back(std::chrono::duration<double>(now - last).count());
-        last = now;
-      }
-    }
+  void play(std::size_t frame) override {
+    trace_.poses(frame, poses_);
+    engine_.frame(
+        poses_, counter_, [&](std::size_t p) { return answers_.ask(p); },
+        [&](std::size_t p, const Query& query) {
+          answers_.take(frame, p, engine_.pairs()[p], query);
+        });
+    if constexpr (requires { engine_.bodies().count_posed(counter_); })
+      engine_.bodies().count_posed(counter_);
+    const std::size_t front = engine_.front_size();
+    result_.front += static_cast<double>(front);
+    if (options_.keep_series)
+      result_.series.push_back({counter_.n_u, counter_.n_v, counter_.n_p, front, answers_.hits()});
+    if constexpr (requires { engine_.strategy(0).front().entries(); })
+      if (options_.see_front)
+        for (std::size_t p = 0; p < engine_.pairs().size(); ++p)
+          options_.see_front(frame, p, engine_.strategy(p).front().entries());
   }
 
-  void hand_over(ReplayResult& result) override {
-    result.first_seconds = std::max(result.first_seconds, first_seconds_);
-    result.n_u += counter_.n_u, result.n_v += counter_.n_v, result.n_p += counter_.n_p;
-    result.considered += counter_.considered;
-    result.front += entries_;
-    result.hits += answers_.hits();
-    result.frame_seconds.resize(frame_seconds_.size());
-    for (std::size_t frame = 0; frame < frame_seconds_.size(); ++frame)
-      result.frame_seconds[frame] = std::max(result.frame_seconds[frame], frame_seconds_[frame]);
-    answers_.hand_over(result);
+  void finish() override {
+    result_.n_u += counter_.n_u, result_.n_v += counter_.n_v, result_.n_p += counter_.n_p;
+    result_.considered += counter_.considered;
+    result_.hits += answers_.hits();
   }
 
  private:
-  void see_fronts([[maybe_unused]] std::size_t frame) const {
-    if constexpr (requires { engine_.strategy(0).front().entries(); })
-      for (std::size_t p = 0; p < engine_.pairs().size(); ++p)
-        options_.see_front(frame, first_ + p * stride_, engine_.strategy(p).front().entries());
-  }
-
   const Trace& trace_;
   ReplayResult& result_;
   const ReplayOptions& options_;
-  std::size_t first_, stride_;
   Engine engine_;
   Answers<Query> answers_;
+  std::vector<Pose> poses_;
   Counter counter_;
-  double entries_ = 0, first_seconds_ = 0;
-  std::vector<double> frame_seconds_;
 };
 
 /// All the fronts that a strategy may start from.
@@ -208,21 +182,15 @@ BodiesFor<Strategy, Query, Counter> bodies_for(const VolumeEntry& volume,
       [&](const std::type_info& front) { return own_loop<Query>(volume.name, front); });
 }
 
-/// `engine` says, for either way to count, how one is made over some pairs.
+/// `engine` makes one, for either way to count.
 template <class Query, class EngineOf>
 void play_over(const EngineOf& engine, const Trace& trace, const Variant& variant,
                const ReplayOptions& options, ReplayResult& result) {
   const QueryOptions how{triangle_test(variant.precision), variant.relative_error};
   const auto with = [&]<class Counter>(std::type_identity<Counter> counter) {
-    const auto make = engine(counter);
-    using Engine = decltype(make(std::vector<ObjectPair>()));
-    play_shares(
-        trace, options,
-        [&](std::size_t first, std::size_t stride, ReplayResult& all) -> std::unique_ptr<Share> {
-          return std::make_unique<ShareOf<Engine, Query, Counter>>(make, first, stride, trace, how,
-                                                                   all, options);
-        },
-        result);
+    using Engine = decltype(engine(counter));
+    PlayedBy<Engine, Query, Counter> player(engine(counter), trace, how, options, result);
+    play_frames(player, trace, options, result);
   };
   if (options.count == Count::on || options.keep_series)
     with(std::type_identity<Counting>());
@@ -235,11 +203,10 @@ void play(const VolumeEntry& volume, const AnyHierarchies& hierarchies, const Tr
           const Variant& variant, const ReplayOptions& options, ReplayResult& result) {
   const auto strategy = made_from<Strategy>(variant.strategy);
   const auto engine = [&]<class Counter>(std::type_identity<Counter>) {
-    return [&](std::vector<ObjectPair> pairs) {
-      return AllPairsOf<BodiesFor<Strategy, Query, Counter>, Strategy>(
-          bodies_for<Strategy, Query, Counter>(volume, hierarchies, trace.objects),
-          std::move(pairs), strategy);
-    };
+    return AllPairsOf<BodiesFor<Strategy, Query, Counter>, Strategy>(
+        bodies_for<Strategy, Query, Counter>(volume, hierarchies, trace.objects),
+        all_object_pairs(static_cast<std::uint32_t>(trace.objects)), strategy,
+        static_cast<int>(options.threads));
   };
   play_over<Query>(engine, trace, variant, options, result);
 }

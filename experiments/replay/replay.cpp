@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
 #include "experiments/files/unusable.hpp"
+#include "experiments/replay/player.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/replay_budgeted.hpp"
-#include "experiments/replay/replay_shares.hpp"
 #include "experiments/replay/strategy_text.hpp"
 #include "experiments/replay/worlds.hpp"
 #include "hierarchies/builds.hpp"
@@ -102,36 +101,24 @@ std::unique_ptr<WorldEngine> make_world(std::span<const TriangleMesh> meshes, st
   return world;
 }
 
-std::vector<ObjectPair> detail::share_of_pairs(std::size_t objects, std::size_t first,
-                                               std::size_t stride) {
-  const auto all = all_object_pairs(static_cast<std::uint32_t>(objects));
-  std::vector<ObjectPair> share;
-  for (std::size_t p = first; p < all.size(); p += stride) share.push_back(all[p]);
-  return share;
-}
-
-void detail::play_shares(const Trace& trace, const ReplayOptions& options, const MakeShare& make,
+void detail::play_frames(Player& player, const Trace& trace, const ReplayOptions& options,
                          ReplayResult& result) {
-  if (options.keep_series) result.series.resize(trace.frames);
-  const std::size_t pairs = trace.pairs();
-  // A series is of all pairs together, and fronts are shown in order, so one thread plays it.
-  const std::size_t threads =
-      options.keep_series || options.see_front
-          ? 1
-          : std::clamp<std::size_t>(options.threads, 1, std::max<std::size_t>(pairs, 1));
-  std::vector<std::unique_ptr<Share>> shares;
-  for (std::size_t t = 0; t < threads; ++t) shares.push_back(make(t, threads, result));
+  if (options.keep_frame_seconds) result.frame_seconds.reserve(trace.frames);
   const auto start = Clock::now();
-  {
-    std::vector<std::jthread> helpers;
-    for (std::size_t t = 1; t < threads; ++t)
-      helpers.emplace_back([&share = *shares[t]] { share.play(); });
-    shares[0]->play();
+  auto last = start;
+  for (std::size_t frame = 0; frame < trace.frames; ++frame) {
+    player.play(frame);
+    if (frame == 0) result.first_seconds = seconds_since(start);
+    if (options.keep_frame_seconds) {
+      const auto now = Clock::now();
+      result.frame_seconds.push_back(std::chrono::duration<double>(now - last).count());
+      last = now;
+    }
   }
   result.seconds = seconds_since(start);
-  for (auto& share : shares) share->hand_over(result);
+  player.finish();
   std::sort(result.contacts.begin(), result.contacts.end());
-  const double asked = static_cast<double>(pairs) * static_cast<double>(trace.frames);
+  const double asked = static_cast<double>(trace.pairs()) * static_cast<double>(trace.frames);
   result.front = asked > 0 ? result.front / asked : 0;
   // Counts have been running totals so far.
   for (std::size_t frame = result.series.size(); frame-- > 1;) {

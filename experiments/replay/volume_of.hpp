@@ -7,7 +7,7 @@
 
 #include "experiments/replay/drawn_volume.hpp"
 #include "experiments/replay/hierarchies_of.hpp"
-#include "experiments/replay/replay_shares.hpp"
+#include "experiments/replay/player.hpp"
 #include "experiments/replay/triangle_test.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/budgeted.hpp"

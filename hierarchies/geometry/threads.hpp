@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #if BVLAB_TBB
 #include <tbb/info.h>
@@ -30,47 +32,100 @@ class Threads {
   explicit Threads(int count = 1) : count_(available ? std::max(count, 1) : 1) {
 #if BVLAB_TBB
     // More than there are processors wait for each other.
-    if (count_ > 1)
-      arena_ =
-          std::make_unique<tbb::task_arena>(std::min(count_, tbb::info::default_concurrency()));
+    if (count_ == 1) return;
+    arena_ = std::make_unique<tbb::task_arena>(std::min(count_, tbb::info::default_concurrency()));
+    left_ = std::vector<Left>(this->count());
 #endif
   }
 
   std::size_t count() const { return static_cast<std::size_t>(count_); }
 
-  /// Calls work(part, worker) for each part below `parts`, by whichever worker below `count()` is
-  /// free; a worker does one part at a time, parts in ascending order. Returns when all are done.
-  /// What throws ends the work, and is thrown here.
+  /// Calls work(part, worker) for each part below `parts`, where a worker below `count()` does one
+  /// part at a time. Each begins with its own share of them, the same for the same `parts`, so that
+  /// what a worker had in its cache is there for it again; who is done helps the others. Returns
+  /// when all are done. What throws ends the work, and is thrown here.
   template <class Work>
   void share(std::size_t parts, const Work& work) {
-    if (count_ == 1 || parts <= 1) {
-      for (std::size_t part = 0; part < parts; ++part) work(part, std::size_t{0});
-      return;
-    }
+    share_ranges(parts, 1, 0, [&](std::size_t begin, std::size_t end, std::size_t worker) {
+      for (std::size_t part = begin; part < end; ++part) work(part, worker);
+    });
+  }
+
+  /// The same with work(begin, end, worker) for ranges that together are everything below `count`:
+  /// at least `least` at a time, half of what is left of a worker's share while that is more,
+  /// so that all are done at the same time.
+  template <class Work>
+  void share_out(std::size_t count, std::size_t least, const Work& work) {
+    share_ranges(count, least, 2, work);
+  }
+
+ private:
+  template <class Work>
+  void share_ranges(std::size_t count, std::size_t least, [[maybe_unused]] std::size_t divisor,
+                    const Work& work) {
+    if (count == 0) return;
+    if (count_ == 1 || count <= least) return work(std::size_t{0}, count, std::size_t{0});
 #if BVLAB_TBB
-    // What is written before a part is taken, and by those who finish, is seen: by these two, not
-    // only by what happens inside of TBB, which thread sanitizers cannot see.
-    alignas(64) std::atomic<std::size_t> next;
-    alignas(64) std::atomic<std::size_t> finished;
-    next.store(0, std::memory_order_release), finished.store(0, std::memory_order_release);
+    const std::size_t workers = this->count();
+    for (std::size_t w = 0; w < workers; ++w)
+      left_[w].set(count * w / workers, count * (w + 1) / workers);
+    std::atomic<std::size_t> finished(0);
     arena_->execute([&] {
       tbb::parallel_for(
-          std::size_t{0}, std::min(count(), parts),
+          std::size_t{0}, workers,
           [&](std::size_t worker) {
-            for (std::size_t part; (part = next.fetch_add(1, std::memory_order_acq_rel)) < parts;)
-              work(part, worker);
+            for (std::size_t k = 0; k < workers; ++k) {
+              Left& left = left_[worker + k < workers ? worker + k : worker + k - workers];
+              for (Range r; (r = left.take(least, divisor, k > 0)).begin < r.end;)
+                work(std::size_t{r.begin}, std::size_t{r.end}, worker);
+            }
             finished.fetch_add(1, std::memory_order_acq_rel);
           },
-          tbb::simple_partitioner());
+          tbb::static_partitioner());
     });
     finished.load(std::memory_order_acquire);
 #endif
   }
 
- private:
+#if BVLAB_TBB
+  struct Range {
+    std::uint32_t begin, end;
+  };
+  /// What is left of a worker's share; in cache lines of its own. What is written before a range is
+  /// taken is seen by who takes it: by this, not only by what happens inside of TBB, which thread
+  /// sanitizers cannot see.
+  class alignas(128) Left {
+   public:
+    void set(std::size_t begin, std::size_t end) {
+      range_.store({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)},
+                   std::memory_order_release);
+    }
+    /// Others take from the end, so that the owner's go on from each other.
+    Range take(std::size_t least, std::size_t divisor, bool from_end) {
+      Range now = range_.load(std::memory_order_acquire);
+      for (;;) {
+        const std::uint32_t size = now.end - now.begin;
+        const std::size_t share = std::max(least, divisor ? size / divisor : 0);
+        const auto taken = static_cast<std::uint32_t>(std::min<std::size_t>(share, size));
+        Range rest = now, got = now;
+        if (from_end)
+          rest.end = got.begin = now.end - taken;
+        else
+          rest.begin = got.end = now.begin + taken;
+        if (taken == 0 || range_.compare_exchange_weak(now, rest, std::memory_order_acq_rel))
+          return got;
+      }
+    }
+
+   private:
+    std::atomic<Range> range_;
+  };
+#endif
+
   int count_;
 #if BVLAB_TBB
   std::unique_ptr<tbb::task_arena> arena_;
+  std::vector<Left> left_;
 #endif
 };
 

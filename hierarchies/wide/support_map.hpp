@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "hierarchies/geometry/scalar.hpp"
+#include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
 namespace bvlab {
@@ -33,7 +34,9 @@ class SupportMap {
   static constexpr int row = cells + 1, samples = 6 * row * row;
 
   SupportMap() = default;
-  SupportMap(const TriangleMesh& mesh, const Vec3<double>& centre) {
+  SupportMap(const TriangleMesh& mesh, const Vec3<double>& centre, Threads&& threads = Threads())
+      : SupportMap(mesh, centre, threads) {}
+  SupportMap(const TriangleMesh& mesh, const Vec3<double>& centre, Threads& threads) {
     std::vector<bool> used(mesh.vertices.size(), false);
     for (const auto& triangle : mesh.triangles)
       for (const std::uint32_t v : triangle) used[v] = true;
@@ -44,16 +47,18 @@ class SupportMap {
     for (auto& coordinates : points_)
       while (coordinates.size() % stdx::native_simd<double>::size() != 0)
         coordinates.push_back(coordinates.back());
-    along_.resize(points_[0].size());
-    for (std::size_t k = 0; k < along_.size(); ++k)
+    for (std::size_t k = 0; k < points_[0].size(); ++k)
       farthest_ = std::max(
           farthest_, std::abs(points_[0][k]) + std::abs(points_[1][k]) + std::abs(points_[2][k]));
-    samples_.reserve(samples);
-    for (int face = 0; face < 6; ++face)
-      for (int i = 0; i < row; ++i)
-        for (int j = 0; j < row; ++j)
-          samples_.push_back(sample(on_face(face, 2.0 * i / cells - 1, 2.0 * j / cells - 1)));
-    points_ = {}, along_ = {};
+    samples_.resize(samples);
+    threads.share(6 * row, [&](std::size_t part, std::size_t) {
+      const int face = static_cast<int>(part) / row, i = static_cast<int>(part) % row;
+      std::vector<double> along(points_[0].size());
+      for (int j = 0; j < row; ++j)
+        samples_[part * row + static_cast<std::size_t>(j)] =
+            sample(on_face(face, 2.0 * i / cells - 1, 2.0 * j / cells - 1), along);
+    });
+    points_ = {};
   }
 
   /// Of direction (i, j) of face 2 axis + (negative ? 1 : 0): at (face * row + i) * row + j. Where
@@ -71,33 +76,31 @@ class SupportMap {
     return g;
   }
 
-  /// A difference and three products in float64 are off by less than 5 roundings.
-  SupportSample sample(const Vec3<double>& g) {
-    const std::size_t count = along_.size();
+  /// `far`: room for how far each point is along g. A difference and three products in float64 are
+  /// off by less than 5 roundings.
+  SupportSample sample(const Vec3<double>& g, std::vector<double>& far) const {
+    const std::size_t count = far.size();
     const double *x = points_[0].data(), *y = points_[1].data(), *z = points_[2].data();
     using Several = stdx::native_simd<double>;
     Several most(-std::numeric_limits<double>::infinity());
     for (std::size_t k = 0; k < count; k += Several::size()) {
       const auto from = [k](const double* p) { return Several(p + k, stdx::element_aligned); };
       const Several along = (from(x) * g[0] + from(y) * g[1]) + from(z) * g[2];
-      along.copy_to(&along_[k], stdx::element_aligned);
+      along.copy_to(&far[k], stdx::element_aligned);
       most = stdx::max(most, along);
     }
-    const auto at =
-        static_cast<std::size_t>(std::find(along_.begin(), along_.end(), stdx::hmax(most)) -
-                                 along_.begin()) %
-        count;
+    const auto at = static_cast<std::size_t>(std::find(far.begin(), far.end(), stdx::hmax(most)) -
+                                             far.begin()) %
+                    count;
     SupportSample found;
     for (int k = 0; k < 3; ++k) found.point[k] = static_cast<float>(points_[k][at]);
-    found.height = rounded_up<float>(along_[at] + 8 * unit_roundoff<double> * farthest_);
+    found.height = rounded_up<float>(far[at] + 8 * unit_roundoff<double> * farthest_);
     return found;
   }
 
   std::vector<SupportSample> samples_;
   double farthest_ = 0;
-  // Only while it is made: coordinate by coordinate, and how far they are along a direction.
-  std::array<std::vector<double>, 3> points_;
-  std::vector<double> along_;
+  std::array<std::vector<double>, 3> points_;  // only while it is made, coordinate by coordinate
 };
 
 }  // namespace bvlab

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hierarchies/geometry/enclosing_ball.hpp"
+#include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/written_out.hpp"
 #include "hierarchies/hierarchy.hpp"
 #include "hierarchies/wide/collapse.hpp"
@@ -69,36 +70,43 @@ class WideHierarchy {
   };
 
   WideHierarchy(const TriangleMesh& mesh, const Topology& binary, Fit fit = Fit::published,
-                std::uint32_t leaf_size = F)
-      : WideHierarchy(mesh, collapsed(mesh, binary, F, std::min<std::uint32_t>(leaf_size, F)),
-                      fit) {}
+                std::uint32_t leaf_size = F, Threads&& threads = Threads())
+      : WideHierarchy(mesh, binary, fit, leaf_size, threads) {}
+  /// By several threads: the same, whatever their number.
+  WideHierarchy(const TriangleMesh& mesh, const Topology& binary, Fit fit, std::uint32_t leaf_size,
+                Threads& threads)
+      : WideHierarchy(mesh, collapsed(mesh, binary, F, std::min<std::uint32_t>(leaf_size, F)), fit,
+                      threads) {}
 
   /// A leaf holds at most F triangles.
-  WideHierarchy(const TriangleMesh& mesh, const WideTopology& topology, Fit fit)
-      : ball_(mesh), supports_(mesh, ball_.centre) {
-    nodes_.reserve(topology.nodes.size());
+  WideHierarchy(const TriangleMesh& mesh, const WideTopology& topology, Fit fit,
+                Threads&& threads = Threads())
+      : WideHierarchy(mesh, topology, fit, threads) {}
+  WideHierarchy(const TriangleMesh& mesh, const WideTopology& topology, Fit fit, Threads& threads)
+      : ball_(mesh), supports_(mesh, ball_.centre, threads) {
+    nodes_.resize(topology.nodes.size());
     siblings_.resize(topology.nodes.size());
-    for (const auto& node : topology.nodes) {
-      assert(node.count <= F);
-      const V volume = fitted(mesh, topology, node.begin, node.end, fit);
-      const auto lanes = static_cast<std::uint16_t>((1u << node.count) - 1);
-      nodes_.push_back({volume, size_of(volume), node.first, lanes, node.leaf});
-    }
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    std::vector<Fitting> fitting(threads.count());
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      if (topology.nodes[i].leaf) leaves_.push_back(static_cast<std::uint32_t>(i));
+    corners_.resize(leaves_.size());
+    triangles_.resize(leaves_.size() * F);
+    threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
       const auto& node = topology.nodes[i];
-      if (node.leaf) {
-        keep_triangles(nodes_[i], mesh, topology, node);
-        leaves_.push_back(static_cast<std::uint32_t>(i));
-      }
-      for (int lane = 0; lane < F; ++lane) {
-        const std::uint32_t k = node.first + std::min<std::uint32_t>(lane, node.count - 1);
-        const V volume = node.leaf ? fitted(mesh, topology, k, k + 1, fit) : nodes_[k].volume;
-        put_lane(siblings_[i].volumes, lane, volume);
-        siblings_[i].size[lane] = size_of(volume);
-        reach_ = std::max(reach_, static_cast<double>(reach_of(volume)));
-      }
-      reach_ = std::max(reach_, static_cast<double>(reach_of(nodes_[i].volume)));
-    }
+      assert(node.count <= F);
+      const V volume = fitted(mesh, topology, node.begin, node.end, fit, fitting[worker]);
+      const auto lanes = static_cast<std::uint16_t>((1u << node.count) - 1);
+      nodes_[i] = {volume, size_of(volume), node.first, lanes, node.leaf};
+    });
+    threads.share_out(nodes_.size(), 8,
+                      [&](std::size_t begin, std::size_t end, std::size_t worker) {
+                        for (std::size_t i = begin; i < end; ++i)
+                          put_children(i, mesh, topology, fit, fitting[worker]);
+                      });
+    threads.share(leaves_.size(), [&](std::size_t leaf, std::size_t) {
+      keep_triangles(leaf, mesh, topology, topology.nodes[leaves_[leaf]]);
+    });
+    for (const Fitting& each : fitting) reach_ = std::max(reach_, each.reach);
     for (const auto& v : mesh.vertices) reach_ = std::max(reach_, stable_norm(v));
     reach_ *= 1 + 8 * unit_roundoff<scalar>;
   }
@@ -126,32 +134,51 @@ class WideHierarchy {
   }
 
  private:
-  V fitted(const TriangleMesh& mesh, const WideTopology& topology, std::uint32_t begin,
-           std::uint32_t end, Fit fit) {
-    points_.clear(), fitted_.clear();
+  /// What a thread needs for itself while volumes are fitted.
+  struct alignas(128) Fitting {
+    std::vector<Vec3<double>> points;
+    std::vector<Triangle> triangles;
+    double reach = 0;
+  };
+  static V fitted(const TriangleMesh& mesh, const WideTopology& topology, std::uint32_t begin,
+                  std::uint32_t end, Fit fit, Fitting& own) {
+    own.points.clear(), own.triangles.clear();
     for (std::uint32_t place = begin; place < end; ++place) {
-      fitted_.push_back(mesh.corners(topology.primitives[place]));
-      for (const auto& corner : fitted_.back()) points_.push_back(corner);
+      own.triangles.push_back(mesh.corners(topology.primitives[place]));
+      for (const auto& corner : own.triangles.back()) own.points.push_back(corner);
     }
     if constexpr (FittedTightly<V>)
-      if (fit == Fit::tight) return V::tight(points_, fitted_);
+      if (fit == Fit::tight) return V::tight(own.points, own.triangles);
     if constexpr (FittedToTriangles<V>)
-      return V::enclosing(points_, fitted_);
+      return V::enclosing(own.points, own.triangles);
     else
-      return V::enclosing(points_);
+      return V::enclosing(own.points);
   }
 
-  void keep_triangles(Node& node, const TriangleMesh& mesh, const WideTopology& topology,
-                      const WideTopology::Node& leaf) {
-    node.first = static_cast<std::uint32_t>(triangles_.size());
-    corners_.emplace_back();
+  /// All nodes have their volumes.
+  void put_children(std::size_t i, const TriangleMesh& mesh, const WideTopology& topology, Fit fit,
+                    Fitting& own) {
+    const auto& node = topology.nodes[i];
     for (int lane = 0; lane < F; ++lane) {
-      const std::uint32_t place = leaf.first + std::min<std::uint32_t>(lane, leaf.count - 1);
-      triangles_.push_back(topology.primitives[place]);
-      const Triangle corners = mesh.corners(triangles_.back());
+      const std::uint32_t k = node.first + std::min<std::uint32_t>(lane, node.count - 1);
+      const V volume = node.leaf ? fitted(mesh, topology, k, k + 1, fit, own) : nodes_[k].volume;
+      put_lane(siblings_[i].volumes, lane, volume);
+      siblings_[i].size[lane] = size_of(volume);
+      own.reach = std::max(own.reach, static_cast<double>(reach_of(volume)));
+    }
+    own.reach = std::max(own.reach, static_cast<double>(reach_of(nodes_[i].volume)));
+  }
+
+  void keep_triangles(std::size_t leaf, const TriangleMesh& mesh, const WideTopology& topology,
+                      const WideTopology::Node& node) {
+    nodes_[leaves_[leaf]].first = static_cast<std::uint32_t>(leaf * F);
+    for (int lane = 0; lane < F; ++lane) {
+      const std::uint32_t place = node.first + std::min<std::uint32_t>(lane, node.count - 1);
+      triangles_[leaf * F + static_cast<std::size_t>(lane)] = topology.primitives[place];
+      const Triangle corners = mesh.corners(topology.primitives[place]);
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
-          corners_.back().corner[i][j][lane] = static_cast<scalar>(corners[i][j]);
+          corners_[leaf].corner[i][j][lane] = static_cast<scalar>(corners[i][j]);
     }
   }
 
@@ -163,9 +190,6 @@ class WideHierarchy {
   double reach_ = 0;
   MeshBall ball_;
   SupportMap supports_;
-  // Only while fitting:
-  std::vector<Vec3<double>> points_;
-  std::vector<Triangle> fitted_;
 };
 
 }  // namespace bvlab

@@ -201,23 +201,41 @@ TEST(PairDifference, IsTheDifferenceOfSets) {
   }
 }
 
-/// Two threads give the list of one, pair for pair, from scratch and followed.
+/// Any number of threads gives the lists of one, pair for pair: from scratch, followed, refitted
+/// and where a few boxes jump, with changes and without.
 TEST(Blocks, ThreadsChangeNothing) {
-  auto boxes = BoxMaker<float>(8).boxes(30000, 0, 1, 0.005f, 0.06f);
-  MethodSettings one, two;
-  two.threads = 2;
-  Blocks<float, Closed> alone(one), together(two);
-  for (int frame = 0; frame < 5; ++frame) {
-    const auto a = alone.overlapping(boxes), b = together.overlapping(boxes);
-    ASSERT_GT(a.size(), 100000u);
-    ASSERT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end())) << "frame " << frame;
-    for (std::size_t k = 0; k < boxes.size(); ++k)
-      for (int axis = 0; axis < 3; ++axis) {
-        const float by = k % 3 == static_cast<std::size_t>(axis) ? 1e-4f : -1e-4f;
-        boxes[k].lo[axis] += by, boxes[k].hi[axis] += by;
+  const auto expect_same = [](std::span<const Pair> a, std::span<const Pair> b, const char* what,
+                              int frame) {
+    ASSERT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end())) << what << " " << frame;
+  };
+  for (const int threads : {2, 3, 7})
+    for (const Changes changes : {Changes::unreported, Changes::reported}) {
+      auto boxes = BoxMaker<float>(8).boxes(20000, 0, 1, 0.005f, 0.06f);
+      MethodSettings one, more;
+      more.threads = threads, one.changes = more.changes = changes;
+      Blocks<float, Closed> alone(one), together(more);
+      std::size_t followed = 0, began = 0;
+      for (int frame = 0; frame < 14; ++frame) {
+        const auto all = alone.overlapping(boxes);
+        ASSERT_GT(all.size(), 40000u);
+        expect_same(all, together.overlapping(boxes), "all", frame);
+        expect_same(alone.changes().began, together.changes().began, "began", frame);
+        expect_same(alone.changes().ended, together.changes().ended, "ended", frame);
+        EXPECT_EQ(alone.reason(), together.reason());
+        followed += together.reason().starts_with("followed");
+        began += frame > 0 ? together.changes().began.size() : 0;
+        for (std::size_t k = 0; k < boxes.size(); ++k)
+          for (int axis = 0; axis < 3; ++axis) {
+            float by = k % 3 == static_cast<std::size_t>(axis) ? 1e-4f : -1e-4f;
+            if (frame % 4 == 2 && k % 5000 == 77) by = 0.3f;  // a jump
+            if (frame % 4 == 3 && k % 1000 == 5) by = 3e-3f;  // out of its fat box
+            if (frame == 10) by *= 300;
+            boxes[k].lo[axis] += by, boxes[k].hi[axis] += by;
+          }
       }
-  }
-  EXPECT_TRUE(together.reason().starts_with("followed"));
+      EXPECT_GT(followed, 8u);
+      EXPECT_EQ(began > 0, changes == Changes::reported);
+    }
 }
 
 }  // namespace

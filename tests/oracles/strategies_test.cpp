@@ -168,19 +168,49 @@ TEST(Strategies, TheRecursiveAnswerIsThatOfExactPredicates) {
   }
 }
 
+/// Answers, contacts, distances and counts, frame by frame, are those of one thread.
+void expect_threads_change_nothing(const Played& scene, const Variant& variant) {
+  ReplayOptions options;
+  options.count = Count::on, options.keep_series = true;
+  const auto one = replay(scene.meshes, scene.trace, variant, options);
+  for (const unsigned threads : {2u, 3u, 7u}) {
+    const std::string where = variant.volume + " " + variant.strategy + " " + variant.query + " " +
+                              std::to_string(threads);
+    options.threads = threads;
+    const auto more = replay(scene.meshes, scene.trace, variant, options);
+    EXPECT_EQ(one.touching, more.touching) << where;
+    EXPECT_EQ(one.contacts, more.contacts) << where;
+    EXPECT_EQ(one.distances, more.distances) << where;
+    EXPECT_EQ(one.hits, more.hits) << where;
+    EXPECT_EQ(one.n_u, more.n_u) << where;
+    EXPECT_EQ(one.n_v, more.n_v) << where;
+    EXPECT_EQ(one.n_p, more.n_p) << where;
+    EXPECT_EQ(one.considered, more.considered) << where;
+    EXPECT_EQ(one.front, more.front) << where;
+    ASSERT_EQ(one.series.size(), more.series.size()) << where;
+    for (std::size_t frame = 0; frame < one.series.size(); ++frame)
+      EXPECT_TRUE(one.series[frame].n_u == more.series[frame].n_u &&
+                  one.series[frame].n_v == more.series[frame].n_v &&
+                  one.series[frame].front == more.series[frame].front)
+          << where << " frame " << frame;
+  }
+}
+
 TEST(Strategies, ThreadsChangeNothing) {
-  const Played scene = played(settings(500)[0]);
-  for (const char* query : {"touching", "contacts"}) {
-    Variant variant;
-    variant.strategy = "deferred";
-    variant.query = query;
-    ReplayOptions options;
-    const auto one = replay(scene.meshes, scene.trace, variant, options);
-    options.threads = 3;
-    const auto three = replay(scene.meshes, scene.trace, variant, options);
-    EXPECT_EQ(one.touching, three.touching);
-    EXPECT_EQ(one.contacts, three.contacts);
-    EXPECT_EQ(one.hits, three.hits);
+  const Played scene = played(settings(60)[0]);
+  for (const char* query : {"touching", "contacts", "distance"}) {
+    for (const char* volume : {"sphere", "obb"})
+      for (const auto& strategy : strategies()) {
+        Variant variant;
+        variant.volume = volume, variant.strategy = strategy.name, variant.query = query;
+        expect_threads_change_nothing(scene, variant);
+      }
+    for (const char* strategy : {"recursive", "margins"}) {
+      Variant variant;
+      variant.tree = "wide", variant.volume = "slab-box";
+      variant.strategy = strategy, variant.query = query;
+      expect_threads_change_nothing(scene, variant);
+    }
   }
 }
 

@@ -40,9 +40,10 @@ class WidePairs {
   static constexpr std::size_t width = SeparatingDirections::width;
 
  public:
-  /// One body for each shape, which must outlive this.
-  explicit WidePairs(std::span<const WideShape<V, F>> shapes, std::vector<ObjectPair> pairs = {})
-      : pairs_(std::move(pairs)), workers_(1) {
+  /// One body for each shape, which must outlive this; threads are for `frame`.
+  explicit WidePairs(std::span<const WideShape<V, F>> shapes, std::vector<ObjectPair> pairs = {},
+                     int threads = 1)
+      : pairs_(std::move(pairs)), threads_(threads), workers_(threads_.count()) {
     bodies_.reserve(shapes.size());
     for (const auto& shape : shapes) {
       bodies_.emplace_back(*shape.mesh, *shape.hierarchy);
@@ -57,14 +58,16 @@ class WidePairs {
     }
   }
 
-  /// As AllPairs::frame; answers are taken in the order of pairs that were far apart, then of those
-  /// that were not, as they come.
+  /// As AllPairs::frame; with one thread, answers are taken in the order of pairs that were far
+  /// apart, then of those that were not, as they come.
   template <class Counter, class Ask, class Take>
   void frame(std::span<const Pose> poses, Counter& counter, Ask&& ask, Take&& take) {
     using Query = std::remove_cvref_t<decltype(ask(0))>;
     if (!placed_) origin_ = middle_of(poses), placed_ = true;
     poses_ = poses;
     if constexpr (Memory::remembers) memory_.template begin_frame<Query>();
+    if constexpr (std::is_same_v<Frame, RelativeFrame>)
+      if (threads_.count() > 1) return frame_on_threads<Query>(counter, ask, take);
     for (std::size_t i = 0; i < bodies_.size(); ++i) follow(i);
     ask_near<Query>(std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(pairs_.size())),
                     workers_[0], counter, ask, take);
@@ -169,6 +172,21 @@ class WidePairs {
       directions_.stand(i, maps_[i], poses_[i].rotation, poses_[i](balls_[i].centre) - origin_,
                         balls_[i].radius, bodies_[i].orthonormal_pose().noise);
     }
+  }
+
+  template <class Query, class Counter, class Ask, class Take>
+  void frame_on_threads(Counter& counter, Ask& ask, Take& take) {
+    threads_.share_out(bodies_.size(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t i = begin; i < end; ++i) stand(static_cast<std::uint32_t>(i));
+    });
+    answers_.ask<Query>(
+        threads_, pairs_.size(), pairs_.size(), counter, [](std::size_t p) { return p; },
+        [&](std::size_t begin, std::size_t end, std::size_t worker, Counter& own, auto&& answer) {
+          ask_near<Query>(
+              std::views::iota(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)),
+              workers_[worker], own, ask, answer);
+        },
+        take);
   }
 
   /// Asks these pairs: those at once that are known not to have changed, or are far apart.
@@ -325,6 +343,8 @@ class WidePairs {
   }
 
   std::vector<ObjectPair> pairs_;
+  Threads threads_;
+  AnswersInOrder answers_;
   std::vector<Body> bodies_;
   std::vector<const TriangleMesh*> meshes_;
   std::vector<MeshBall> balls_;

@@ -113,6 +113,8 @@ class FollowedBlocks {
 
  private:
   using Keep = typename CandidatePairs<T, Contact>::Keep;
+  /// What a thread takes at once: whole blocks of leaves.
+  static constexpr std::uint32_t slots_a_stretch = 4 * block_width * block_width;
 
   // ---- fat boxes and candidates -------------------------------------------------------------
 
@@ -128,23 +130,12 @@ class FollowedBlocks {
     }
     slots_.resize(boxes.size());
     fat_boxes_.resize(slots);
-    for (std::uint32_t slot = 0; slot < slots; ++slot) {
-      const std::uint32_t id = tree_.ids(0)[slot];
-      Box<T> fat = nowhere<T>();
-      if (id == no_box) {
-        rows[slot] = nowhere_row<T>();
-      } else {
-        const Row<T> now = row_of(boxes[id]);
-        const Row<T> expected = fat_box_of(now, rows[slot], horizon);
-        fat_boxes_[slot].lo = expected.lo, fat_boxes_[slot].hi = expected.hi;
-        fat = box_of(expected);
-        rows[slot].lo = now.lo, rows[slot].hi = now.hi;
-        slots_[id] = slot;
-      }
-      tree_.leaf(slot / block_width).put(static_cast<int>(slot % block_width), fat);
-    }
-    for (std::uint32_t k = 0; k < tree_.leaves(); ++k)
-      tree_.set_leaf_bounds(k, bounds(tree_.leaf(k)));
+    constexpr std::uint32_t stretch = slots_a_stretch;
+    joined_.shares().threads().share(
+        (slots + stretch - 1) / stretch, [&](std::size_t k, std::size_t) {
+          const auto first = static_cast<std::uint32_t>(k) * stretch;
+          make_fat_boxes(boxes, horizon, first, std::min(slots - first, stretch) + first);
+        });
     tree_.refit_above();
     candidates_.clear();
     visits_ = joined_.join_into(
@@ -159,6 +150,28 @@ class FollowedBlocks {
     last_frame_.forget();
     write_candidates(settings_.changes == Changes::reported ? Keep::places : Keep::nothing);
     if (compare) pairs_.compare_with_kept();
+  }
+
+  /// In these slots, whole blocks of leaves, so that no two threads write to the same bounds.
+  void make_fat_boxes(Boxes<T> boxes, int horizon, std::uint32_t first, std::uint32_t last) {
+    auto& rows = candidates_.rows();
+    for (std::uint32_t slot = first; slot < last; ++slot) {
+      const std::uint32_t id = tree_.ids(0)[slot];
+      Box<T> fat = nowhere<T>();
+      if (id == no_box) {
+        rows[slot] = nowhere_row<T>();
+      } else {
+        const Row<T> now = row_of(boxes[id]);
+        const Row<T> expected = fat_box_of(now, rows[slot], horizon);
+        fat_boxes_[slot].lo = expected.lo, fat_boxes_[slot].hi = expected.hi;
+        fat = box_of(expected);
+        rows[slot].lo = now.lo, rows[slot].hi = now.hi;
+        slots_[id] = slot;
+      }
+      tree_.leaf(slot / block_width).put(static_cast<int>(slot % block_width), fat);
+    }
+    for (std::uint32_t k = first / block_width; k < last / block_width; ++k)
+      tree_.set_leaf_bounds(k, bounds(tree_.leaf(k)));
   }
 
   /// A new order, once the old one costs a third more or holds slots that are empty.
@@ -237,19 +250,49 @@ class FollowedBlocks {
   /// In the order of slots: best where most moved.
   void look_by_slot(Boxes<T> boxes, std::size_t staying) {
     const std::uint32_t slots = tree_.slots();
+    const std::size_t had = moved_.size();  // boxes that are gone
+    moved_.resize(had + slots);
+    Threads& threads = joined_.shares().threads();
+    const bool shared = threads.count() > 1 && slots >= 2 * slots_a_stretch;
+    // A frame that the cache holds is fetched in order, a longer one as it is needed.
+    const bool as_needed = shared || boxes.size_bytes() > (1u << 20);
+    if (!as_needed)
+      for (std::size_t byte = 0; byte < boxes.size_bytes(); byte += 64)
+        __builtin_prefetch(reinterpret_cast<const char*>(boxes.data()) + byte, 0, 2);
+    const std::uint32_t stretch = shared ? slots_a_stretch : std::max(slots, 1u);
+    looks_.resize((slots + stretch - 1) / stretch);
+    threads.share(looks_.size(), [&](std::size_t k, std::size_t) {
+      const auto first = static_cast<std::uint32_t>(k) * stretch;
+      look_at_slots(boxes, staying, first, std::min(slots - first, stretch) + first, as_needed,
+                    moved_.data() + had + first, looks_[k]);
+    });
+    moved_count_ = had;
+    for (std::size_t k = 0; k < looks_.size(); ++k) {
+      const std::uint32_t* const from = moved_.data() + had + k * stretch;
+      std::copy(from, from + looks_[k].moved, moved_.data() + moved_count_);
+      moved_count_ += looks_[k].moved;
+      for (const auto& [slot, was] : looks_[k].left) leave_fat_box(slot, was);
+    }
+    moved_.resize(moved_count_);
+  }
+  struct Escaped {
+    std::uint32_t slot;
+    Row<T> was;
+  };
+  /// What one thread saw of some slots.
+  struct Look {
+    std::size_t moved;
+    std::vector<Escaped> left;  ///< whose boxes left their fat boxes
+  };
+  void look_at_slots(Boxes<T> boxes, std::size_t staying, std::uint32_t first, std::uint32_t last,
+                     bool as_needed, std::uint32_t* const moved_slots, Look& look) {
     const std::uint32_t* ids = tree_.ids(0);
     Row<T>* const rows = candidates_.rows().data();
     const Row<T>* const fat_boxes = fat_boxes_.data();
-    const std::size_t had = moved_.size();  // boxes that are gone
-    moved_.resize(had + slots);
-    std::uint32_t* moved = moved_.data() + had;
-    // A frame that the cache holds is fetched in order, a longer one as it is needed.
-    const bool far = boxes.size_bytes() > (1u << 20);
-    if (!far)
-      for (std::size_t byte = 0; byte < boxes.size_bytes(); byte += 64)
-        __builtin_prefetch(reinterpret_cast<const char*>(boxes.data()) + byte, 0, 2);
-    for (std::uint32_t slot = 0; slot < slots; ++slot) {
-      if (far && slot + ahead < slots && ids[slot + ahead] < staying)
+    std::uint32_t* moved = moved_slots;
+    look.left.clear();
+    for (std::uint32_t slot = first; slot < last; ++slot) {
+      if (as_needed && slot + ahead < last && ids[slot + ahead] < staying)
         __builtin_prefetch(&boxes[ids[slot + ahead]]);
       if (ids[slot] >= staying) continue;
       const Row<T> was = rows[slot], now = row_of(boxes[ids[slot]]);
@@ -257,13 +300,10 @@ class FollowedBlocks {
       rows[slot].lo = now.lo, rows[slot].hi = now.hi;
       *moved = slot;
       moved += !bvlab::same(now, was);
-      if (!inside(now, fat_boxes[slot])) [[unlikely]] {
-        const Row<T> left = was;  // its address is taken: `was` itself can stay in registers
-        leave_fat_box(slot, left);
-      }
+      if (!inside(now, fat_boxes[slot])) [[unlikely]]
+        look.left.push_back({slot, was});
     }
-    moved_count_ = static_cast<std::size_t>(moved - moved_.data());
-    moved_.resize(moved_count_);
+    look.moved = static_cast<std::size_t>(moved - moved_slots);
   }
   static constexpr std::uint32_t ahead = 16;  ///< slots between a prefetch and its use
 
@@ -357,17 +397,20 @@ class FollowedBlocks {
   void write_candidates(Keep keep) {
     pairs_.all.clear();
     const std::size_t count = candidates_.size();
-    if (keep != Keep::nothing || joined_.shares().threads().count() == 1 ||
-        count < candidates_worth_sharing)
+    Threads& threads = joined_.shares().threads();
+    if (threads.count() == 1 || count < candidates_worth_sharing)
       return candidates_.compare_all(tree_.ids(0), pairs_.all, keep, pairs_.began, pairs_.ended);
+    if (keep != Keep::nothing)
+      return candidates_.compare_all_shared(tree_.ids(0), pairs_.all, keep, pairs_.began,
+                                            pairs_.ended, threads);
     candidates_.forget_places();
-    const std::size_t shares = 8 * joined_.shares().threads().count();
+    const std::size_t shares = 8 * threads.count();
     joined_.shares()(pairs_.all, shares, [&](std::size_t share, std::size_t of, PairList& to) {
       candidates_.compare_range(tree_.ids(0), to, count * share / of, count * (share + 1) / of);
     });
   }
   /// Below this a thread takes longer to wake than the comparisons do.
-  static constexpr std::size_t candidates_worth_sharing = 20000;
+  static constexpr std::size_t candidates_worth_sharing = 4000;
 
   MethodSettings settings_;
   JoinedBlocks<T, Contact>& joined_;
@@ -383,11 +426,8 @@ class FollowedBlocks {
   bool active_ = false, sorted_ = false, steady_ = true;
   int longest_ = 64, horizon_ = 0, age_ = 0;
 
-  struct Escaped {
-    std::uint32_t slot;
-    Row<T> was;
-  };
   std::vector<Escaped> escaped_;
+  std::vector<Look> looks_;
   LargeVector<std::uint32_t> moved_;
   std::vector<std::uint32_t> newcomers_, emptied_;
   std::size_t moved_count_ = 0;

@@ -3,6 +3,7 @@
 /// way, beside recursion over spheres; and wide trees, from the roots and with margins.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
 #include <string>
 
@@ -68,6 +69,36 @@ class SoakOfVolumes : public ::testing::Test {
           << where << ", frame " << frame;
   }
 };
+
+/// Four bodies on two ways by three threads, beside recursion by one.
+TEST_F(SoakOfVolumes, ThreadsEqualFresh) {
+  Trace four{soak_frames(3000), 4, {}};
+  Way here, there;
+  for (int k = 0; k < 1000; ++k) there.step();
+  for (std::size_t frame = 0; frame < four.frames; ++frame)
+    for (Way* way : {&here, &there}) {
+      way->step();
+      const auto values = way->values();
+      four.values.insert(four.values.end(), values.begin(), values.end());
+    }
+  for (const char* query : {"touching", "contacts"}) {
+    Variant variant;
+    variant.query = query;
+    const ReplayResult truth = replay(meshes(), four, variant, {});
+    EXPECT_GT(truth.hits, four.frames / 20);
+    ReplayOptions options;
+    options.threads = 3;
+    for (const auto& [tree, volume, strategy] :
+         {std::array{"binary", "obb", "margins"}, std::array{"binary", "sphere", "adaptive"},
+          std::array{"binary", "sphere", "deferred"}, std::array{"wide", "slab-box", "recursive"},
+          std::array{"wide", "slab-box", "margins"}}) {
+      variant.tree = tree, variant.volume = volume, variant.strategy = strategy;
+      const ReplayResult found = replay(meshes(), four, variant, options);
+      EXPECT_EQ(found.touching, truth.touching) << tree << ' ' << volume << ' ' << strategy;
+      EXPECT_EQ(found.contacts, truth.contacts) << tree << ' ' << volume << ' ' << strategy;
+    }
+  }
+}
 
 TEST_F(SoakOfVolumes, WideTreesEqualFresh) {
   for (const auto& volume : wide_volumes())
