@@ -144,10 +144,10 @@ ReplayResult recursed(const Scene& scene,
   options.count = count;
   ReplayResult result;
   const auto engine = [&]<class Counter>(std::type_identity<Counter>) {
-    return [&](std::vector<ObjectPair> pairs) {
-      using Bodies = AnyBodies<Query, Counter, TypeList<NoFront>>;
-      return AllPairsOf<Bodies, Recursive>(Bodies(loops()), std::move(pairs), Recursive());
-    };
+    using Bodies = AnyBodies<Query, Counter, TypeList<NoFront>>;
+    return AllPairsOf<Bodies, Recursive>(
+        Bodies(loops()), all_object_pairs(static_cast<std::uint32_t>(scene.trace.objects)),
+        Recursive());
   };
   detail::play_over<Query>(engine, scene.trace, Variant{}, options, result);
   return result;
