@@ -26,8 +26,8 @@ def win(rows, cell, wins):
 
 
 @quotes("winners-motion", RESULTS,
-        "where bodies move at most {step} of their radius and {degrees} degrees a frame `margins` win {margins:d} of {little:d} cells, "
-        "{gain:.2g} times as fast as recursive spheres, and `adaptive`, which tries them, the others; recursion over both nodes where "
+        "where bodies move at most {step} of their radius and {degrees} degrees a frame `margins` win {margins:d} of {little:d} cells and "
+        "`adaptive`, which tries them, {adaptive:d}, {gain:.2g} times as fast as recursive spheres; recursion over both nodes where "
         "they move {much_step} or {much_degrees} degrees;")
 def over_motion(record):
     cell = ["step", "degrees"]
@@ -35,12 +35,12 @@ def over_motion(record):
     steps, degrees = sorted(rows.step.unique()), sorted(rows.degrees.unique())
     little = rows[(rows.step <= steps[-3]) & (rows.degrees <= degrees[-3])]
     much = rows[(rows.step == steps[-1]) | (rows.degrees == degrees[-1])]
-    won = little[(little.over == 1) & (little.strategy == "margins")]
-    claim(win(little, cell, little.strategy.isin(["margins", "adaptive"])), "margins or adaptive win where little moves")
-    claim(win(much, cell, much.strategy == "recursive-both"), "recursion over both nodes wins where much moves")
+    best = little[little.over == 1]
+    won = {name: best[best.strategy == name] for name in ("margins", "adaptive")}
+    claim(win(much, cell, much.strategy.isin(["recursive-both", "adaptive"])), "recursion over both nodes, or adaptive by it, wins where much moves")
     claim(win(rows, cell, rows.volume.isin(MEETING)), "boxes and rectangle swept spheres win wherever bodies meet")
-    return {"step": f"{steps[-3]:g}", "degrees": f"{degrees[-3]:g}", "margins": len(won), "little": len(little[little.over == 1]),
-            "gain": Interval(won.gain), "much_step": f"{steps[-1]:g}", "much_degrees": f"{degrees[-1]:g}"}
+    return {"step": f"{steps[-3]:g}", "degrees": f"{degrees[-3]:g}", "margins": len(won["margins"]), "adaptive": len(won["adaptive"]),
+            "little": len(best), "gain": Interval([*won["margins"].gain, *won["adaptive"].gain]), "much_step": f"{steps[-1]:g}", "much_degrees": f"{degrees[-1]:g}"}
 
 
 @quotes("winners-scene", RESULTS, "spheres where bodies are far apart (a cube of {far:.0f} radii). Boxes and rectangle swept spheres "
@@ -87,6 +87,29 @@ def adaptive(record):
     one = ratio.index.get_level_values("motion_model").str.startswith("one")
     claim(rows.frames.max() == 100, "runs of a hundred frames")
     return {"all": ratio[~one].median(), "one": ratio[one].median()}
+
+
+# What tells one cell of a record from another; seeds and repetitions are of one cell.
+CELLS = {"best-rebuilds": ["motion", "query"], "workloads": ["workload", "volume"], "winners-motion": ["step", "degrees", "volume"],
+         "winners-scene": ["polygons", "side", "volume"], "short-runs": ["motion", "moving", "volume"]}
+
+
+@quotes([*CELLS, "sweep"], RESULTS, "| record | cells | median | worst | within 1.1 |")
+def adaptive_beside(*found):
+    """`adaptive` over the fastest of the other strategies, with the same volume: medians of seeds and repetitions."""
+    lines = []
+    for record, cell in zip(found, [*CELLS.values(), ["persistence", "step", "degrees", "mesh", "polygons", "side", "freedoms", "volume"]]):
+        rows = records.read(record)
+        records.wrong_answers(rows)
+        time = rows.groupby([*cell, "strategy"]).time_ns.median().unstack()
+        ratio = time.adaptive / time.drop(columns="adaptive").min(axis=1)
+        parts = [(record.name, ratio)]
+        if "moving" in cell:
+            one = ratio.index.get_level_values("moving") == 1
+            parts = [(f"{record.name}, all move", ratio[~one]), (f"{record.name}, one of nine moves", ratio[one])]
+        lines += [[f"[{name}](record/{record.name})", str(len(of)), f"{of.median():.2f}", f"{of.max():.2f}", f"{100 * (of <= 1.1).mean():.0f} %"]
+                  for name, of in parts]
+    return {"rows": lines}
 
 
 @quotes("workloads", RESULTS,
