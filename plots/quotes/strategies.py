@@ -77,8 +77,8 @@ def best_rebuilds(record):
             "violent": Interval(adaptive[violent]), "elsewhere": Interval(adaptive[~violent])}
 
 
-@quotes("coherence", RESULTS, "its trials cost more ({all:.2f}, median over the record above, where all bodies move, and {one:.2f} "
-        "where one moves at a time")
+@quotes("coherence", RESULTS, "in runs of a hundred frames {all:.2f} times where all bodies move and {one:.2f} times where one moves at a time "
+        "(medians over the record above)")
 def adaptive(record):
     rows, _ = measured(record)
     cell = ["motion", "motion_model", "mesh", "volume", "query"]
@@ -163,7 +163,7 @@ def worlds_answers(record):
 
 
 @quotes("worlds-threads", RESULTS,
-        "on two threads a frame in which all move takes `recommended` {small:.2f} times less time with 1000 bodies and {large:.2f} times with 10 000, "
+        "on two threads a frame in which all move takes `recommended` {small:.2f} times less time with a thousand bodies and {large:.2f} times with ten thousand, "
         "oriented boxes in binary trees {binary_small:.2f} and {binary_large:.2f} times")
 def on_threads(record):
     rows = records.read(record)
