@@ -137,7 +137,7 @@ def write_cost_model(paper):
             + [f"{near.ratio.median():.2f}", f"{near.left.median():.0f}", percent(fits[-1], 0)]
         )
     paper.table("cost-model", "lrrrrrr", ["", "$C_u$", "$C_v$", "alone", "pred.", "rest", "fit"], lines)
-    paper.put_text(costTriangle=f"{triangle:.1f}")
+    paper.put("costTriangle", triangle, f"{triangle:.1f}")
     paper.put("costSphere", costs["sphere"]["batched"], f"{costs['sphere']['batched']:.1f}")
     paper.put_range("costPredicted", [ratio.quantile(0.05), ratio.quantile(0.95)], "{:.2f}".format)
     paper.put("costPredictedLow", ratio.quantile(0.25), f"{ratio.quantile(0.25):.2f}")
