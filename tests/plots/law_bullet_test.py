@@ -27,9 +27,10 @@ class LawBullet(unittest.TestCase):
         keep = dict(seed=2, volume=["sphere"], setting=["wander, 0.002 / 0.2", "planner", "pile"])
         with tempfile.TemporaryDirectory() as folder:
             record = Path(small_record("law-unseen", Path(folder) / "record", keep, {}, None))
+            rows = pd.read_csv(record / "law-unseen.csv")
+            rows.assign(time_ns=np.nan).to_csv(record / "law-unseen.csv", index=False)
             with contextlib.redirect_stderr(io.StringIO()), mock.patch.object(sys, "argv", ["law_bullet.py", str(record)]):
                 self.assertEqual(law_bullet.main(), 2, "counts alone are refused")
-            rows = pd.read_csv(record / "law-unseen.csv")
             rows["time_ns"] = (rows[law_bullet.COSTS].to_numpy() @ [3, 2, 40]).astype(int)
             rows.to_csv(record / "law-unseen.csv", index=False)
             said = io.StringIO()
