@@ -185,10 +185,10 @@ class SeparatingDirections {
     stdx::where(by_y, face) = S(2.0f), stdx::where(by_z, face) = S(4.0f);
     stdx::where(along < S(0.0f), face) = face + S(1.0f);
     const S scale = S(half) / longest;
-    // What is no number becomes 0: max and min give their second operand then.
     const auto place = [&](const S& at) __attribute__((always_inline)) {
       return min(S(2 * half), max(S(0.0f), fused<S>(at, scale, S(half))));
     };
+    // What is no number becomes 0, so that it is in the table.
     const S s = finite(place(u)), t = finite(place(v));
     const S i = cell_of(s), j = cell_of(t), p = s - i, q = t - j;
     const auto sample = [&](const S& first, const S& second) __attribute__((always_inline)) {
