@@ -53,7 +53,7 @@ class LeafJoin {
   }
 
  private:
-  static constexpr std::size_t most = 256, most_rows = 512;
+  static constexpr std::size_t most = 256, most_rows = 128;
 
   /// The boxes of leaf `a` that reach into the bounds of leaf `b`.
   LaneMask reaching(std::uint32_t a, std::uint32_t b) const {

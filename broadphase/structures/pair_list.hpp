@@ -77,8 +77,10 @@ class PairList {
   }
 
  private:
-  /// An eighth more than what was done lets expect; a start is no more than a hint.
+  /// An eighth more than what was done lets expect; a start is no more than a hint. From the first
+  /// time on so much that it need not be copied to grow.
   void grow_by_share(std::size_t least, double done) {
+    least = std::max(least, (std::size_t{1} << 18) / sizeof(Pair));
     const double expected = done > 0 ? 1.125 * static_cast<double>(size_) / done : 0;
     const double most = 16.0 * static_cast<double>(std::max(capacity_, least));
     grow(std::max(
@@ -91,16 +93,16 @@ class PairList {
                             : nullptr;
     if (!pairs) throw std::bad_alloc();
     pairs_ = static_cast<Pair*>(pairs), capacity_ = capacity;
-    if (capacity * sizeof(Pair) >= 2 * pages::huge && huge_pages_)
+    if (capacity * sizeof(Pair) >= pages::worth_huge && huge_pages_)
       pages::advise(pairs_, pairs_ + capacity_, true);
   }
 
-  /// Brings the pages that come next, a quarter of what there is, and no more than stays in the
+  /// Brings the pages that come next, an eighth of what there is, and no more than stays in the
   /// cache until it is written to.
   void make_ready(std::size_t least) {
-    constexpr std::size_t fewest = (std::size_t{1} << 14) / sizeof(Pair),
+    constexpr std::size_t fewest = (std::size_t{1} << 13) / sizeof(Pair),
                           most = (std::size_t{1} << 18) / sizeof(Pair);
-    const std::size_t ready = std::min(least + std::clamp(least / 4, fewest, most), capacity_);
+    const std::size_t ready = std::min(least + std::clamp(least / 8, fewest, most), capacity_);
     if (!pages::bring(pairs_ + ready_, pairs_ + ready) && huge_pages_) {
       huge_pages_ = false;
       pages::advise(pairs_, pairs_ + capacity_, false);

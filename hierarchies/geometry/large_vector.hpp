@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A std::vector for large arrays that are written before they are read: what has no constructor is
 /// left as it is when the vector grows, so that no page is touched twice.
-/// What is large comes in whole huge pages.
+/// What is very large comes in whole huge pages.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ class LargeAllocator : public std::allocator<T> {
     const std::size_t bytes = count * sizeof(T);
     if (bytes < worth_asking || count > static_cast<std::size_t>(-1) / 2 / sizeof(T))
       return std::allocator<T>::allocate(count);
-    if (bytes < pages::huge) {
+    if (bytes < pages::worth_huge) {
       T* const memory = std::allocator<T>::allocate(count);
       pages::bring(memory, memory + count);
       return memory;
@@ -48,7 +48,7 @@ class LargeAllocator : public std::allocator<T> {
     return reinterpret_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t count) {
-    if (count * sizeof(T) < pages::huge)
+    if (count * sizeof(T) < pages::worth_huge)
       std::allocator<T>::deallocate(memory, count);
     else
       ::operator delete(memory, std::align_val_t(pages::huge));

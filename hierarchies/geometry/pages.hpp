@@ -15,6 +15,8 @@
 namespace bvlab::pages {
 
 inline constexpr std::size_t small = 4096, huge = std::size_t{1} << 21;
+/// Where a single huge page that comes slowly (`bring`) does not cost more than all others save.
+inline constexpr std::size_t worth_huge = 8 * huge;
 
 /// Whether the memory from `begin` to `end`, which is nobody else's, shall come in huge pages.
 inline void advise([[maybe_unused]] void* begin, [[maybe_unused]] void* end,
