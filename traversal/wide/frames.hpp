@@ -68,13 +68,14 @@ class CornersBetween {
   /// Corners are rounded (e r), as are rotation and translation; then come three products and sums.
   void begin(const RelativePose& a_from_b, double reach_a, double reach_b) {
     constexpr double e = unit_roundoff<float>;
-    const double length = a_from_b.translation.lpNorm<1>();
-    off_ = static_cast<float>((16 * e * (reach_a + length) + 2 * e * reach_b + a_from_b.noise) *
-                              (1 + 8 * e)) +
+    off_ = static_cast<float>(
+               (16 * e * (reach_a + a_from_b.length) + 2 * e * reach_b + a_from_b.noise) *
+               (1 + 8 * e)) +
            std::numeric_limits<float>::min();
     for (int i = 0; i < 3; ++i)
-      rounded_to_four(a_from_b.rotation.col(i)).copy_to(column_[i], stdx::vector_aligned);
-    rounded_to_four(a_from_b.translation).copy_to(translation_, stdx::vector_aligned);
+      rounded_to_float(a_from_b.column[static_cast<std::size_t>(i)])
+          .copy_to(column_[i], stdx::vector_aligned);
+    rounded_to_float(a_from_b.translation).copy_to(translation_, stdx::vector_aligned);
   }
 
   /// The fourth number is none of its coordinates.
@@ -116,8 +117,11 @@ struct RelativeFrame {
       hierarchies_ = {&a.hierarchy(), &b.hierarchy()};
       const RelativePose a_from_b(a.orthonormal_pose(), b.orthonormal_pose());
       const double reach_a = a.hierarchy().reach(), reach_b = b.hierarchy().reach();
-      frame_change_[1] = Facing::frame_change(a_from_b, reach_a, reach_b);
-      frame_change_[0] = Facing::frame_change(a_from_b.reversed(), reach_b, reach_a);
+      const RelativePose b_from_a(b.orthonormal_pose(), a.orthonormal_pose());
+      // In place: what is copied in larger pieces than it was written in is waited for.
+      using FrameChange = typename Facing::FrameChange;
+      ::new (&frame_change_[1]) FrameChange(Facing::frame_change(a_from_b, reach_a, reach_b));
+      ::new (&frame_change_[0]) FrameChange(Facing::frame_change(b_from_a, reach_b, reach_a));
       corners_.begin(a_from_b, reach_a, reach_b);
     }
 
