@@ -299,7 +299,7 @@ class WidePairs {
       if constexpr (Measure::measures)
         running[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter,
                              memory_.template touched<Query>(pair[slot]), memory_.front(pair[slot]),
-                             memory_.clock(pair[slot], pairs_[pair[slot]]));
+                             memory_.turn(pairs_[pair[slot]]));
       else
         running[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter);
     };
