@@ -9,8 +9,9 @@
 /// (MovingBody::displacement_bound). Where displacements are long because bodies jitter or go
 /// together, the bound between reference poses is looked at before the pair is.
 ///
-/// Bodies that touch go on to touch until one edge that crosses a triangle can have left it
-/// (triangle_margin.hpp); after that they are looked at where they did, first.
+/// Bodies that touch go on to touch until one edge that crosses a triangle can have left it; after
+/// that these two are looked at (triangle_margin.hpp), of several pairs of bodies at once, and only
+/// then the bodies, first where they touched.
 ///
 /// Bodies that were apart twice, but hardly, get a front (WideFront), of which those entries are
 /// looked at again whose deadlines have passed. Where most have, there is none for a while: four
@@ -51,6 +52,11 @@ struct Forgetful {
   static constexpr bool remembers = false;
   template <int F>
   using Measure = NotMeasuring;
+};
+
+/// Triangles that cross for certain, by their numbers in their meshes.
+struct Crossing {
+  std::uint32_t a, b;
 };
 
 /// Finds out how far apart two bodies are, at least, while it finds that they do not touch.
@@ -131,9 +137,8 @@ class MeasuringGap {
     least_ = S(0.0f);
     return false;
   }
-  /// These triangles cross for certain, by their numbers in their meshes.
   void crossing(std::uint32_t a, std::uint32_t b) { crossing_ = {a, b}; }
-  const std::optional<NodePair>& crossing() const { return crossing_; }
+  const std::optional<Crossing>& crossing() const { return crossing_; }
   void triangles_are(const S& gaps, std::size_t entry, const Place& place) {
     const S known = select(gaps > S(0.0f), gaps, S(0.0f));
     least_ = stdx::min(least_, known);
@@ -155,7 +160,8 @@ class MeasuringGap {
 
   S least_, last_;
   WideFront::S least_left_;
-  std::optional<NodePair> touched_, crossing_;
+  std::optional<NodePair> touched_;
+  std::optional<Crossing> crossing_;
   WideFront* front_ = nullptr;
   double turn_ = 0;
   std::size_t due_ = 0;
@@ -181,7 +187,7 @@ class WideMargins {
     answers_[p] = {};
     Kept& kept = kept_[p];
     kept.deadline = 0, kept.was_apart = kept.touched_again = false;
-    kept.rest = 0, kept.pause = 0, kept.next_pause = shortest_pause;
+    kept.crossing.reset(), kept.rest = 0, kept.pause = 0, kept.next_pause = shortest_pause;
     kept.front.clear();
   }
 
@@ -228,26 +234,22 @@ class WideMargins {
   void apart(std::size_t p, const ObjectPair& pair, double gap) {
     Kept& kept = kept_[p];
     answers_[p] = {unknown, epochs(pair), false};
-    kept.front.clear();
+    kept.crossing.reset(), kept.front.clear();
     kept.was_apart = true, kept.touched_again = false;
     stays_for(p, pair, gap);
   }
 
-  /// Whether it is worth while to ask for how long they go on touching: not where that was no
-  /// longer than it takes to ask.
-  bool asks_how_long(std::size_t p) {
-    Kept& kept = kept_[p];
-    return kept.rest == 0 || --kept.rest == 0;
+  /// What crossed when the pair was looked at last: all that is asked of it, if one hit is enough,
+  /// while those triangles still do.
+  const std::optional<Crossing>& crossing(std::size_t p) const { return kept_[p].crossing; }
+  /// They do, until the bodies have come so far.
+  void goes_on_crossing(std::size_t p, const ObjectPair& pair, double margin) {
+    answers_[p] = {unknown, epochs(pair), true};
+    kept_[p].deadline = 0, kept_[p].touched_again = true;
+    if (margin > steps_[pair.i] + steps_[pair.j]) stays_for(p, pair, margin);
   }
-  /// They touch until they have come so far.
-  void goes_on_touching(std::size_t p, const ObjectPair& pair, double margin) {
-    Kept& kept = kept_[p];
-    if (!(margin > 2 * (steps_[pair.i] + steps_[pair.j]))) {
-      kept.rest = 64;
-      return;
-    }
-    stays_for(p, pair, margin);
-  }
+  /// They do no longer, or hardly: motions are so large that what crosses next is not worth asking.
+  void stops_crossing(std::size_t p) { kept_[p].rest = 16; }
   /// Whether they touched the last two times that they were looked at.
   bool goes_on(std::size_t p) const { return kept_[p].touched_again; }
 
@@ -299,10 +301,15 @@ class WideMargins {
     answer = {unknown, epochs(pair), found.touched().has_value()};
     if constexpr (says_all<Query>) answer.touching = query.touching();
     kept.deadline = 0;
+    kept.crossing.reset();
     kept.touched_again = answer.touching && !kept.was_apart;
     kept.was_apart = !answer.touching;
     if (answer.touching) {
       kept.touched = *found.touched();
+      if (kept.rest > 0)
+        --kept.rest;
+      else
+        kept.crossing = found.crossing();
       kept.front.clear();
       return;
     }
@@ -347,7 +354,8 @@ class WideMargins {
     NodePair touched{};
     WideFront front;
     int pause = 0, next_pause = shortest_pause;
-    int rest = 0;  // how many times it is not to be asked how long they touch
+    std::optional<Crossing> crossing;
+    int rest = 0;  // how many times what crosses is not to be kept
     bool was_apart = false, touched_again = false;
   };
 
