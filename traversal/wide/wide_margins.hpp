@@ -14,7 +14,7 @@
 /// then the bodies, first where they touched.
 ///
 /// Bodies that were apart twice, but hardly, get a front (WideFront), of which those entries are
-/// looked at again whose deadlines have passed. Where most have, there is none for a while: four
+/// looked at again whose deadlines have passed. Where most have, there is none for a while: sixteen
 /// traversals, four times as many whenever that comes again, 256 at most.
 ///
 /// Tried and not kept: to open volumes that are hardly apart so that the least gap grows. Triangles
@@ -187,7 +187,8 @@ class WideMargins {
     answers_[p] = {};
     Kept& kept = kept_[p];
     kept.deadline = 0, kept.was_apart = kept.touched_again = false;
-    kept.crossing.reset(), kept.rest = 0, kept.pause = 0, kept.next_pause = shortest_pause;
+    kept.crossing.reset(), kept.rest = 0, kept.next_rest = 1, kept.pause = 0,
+                           kept.next_pause = shortest_pause;
     kept.front.clear();
   }
 
@@ -246,10 +247,15 @@ class WideMargins {
   void goes_on_crossing(std::size_t p, const ObjectPair& pair, double margin) {
     answers_[p] = {unknown, epochs(pair), true};
     kept_[p].deadline = 0, kept_[p].touched_again = true;
+    kept_[p].next_rest = std::max(1, kept_[p].next_rest / 2);
     if (margin > steps_[pair.i] + steps_[pair.j]) stays_for(p, pair, margin);
   }
   /// They do no longer, or hardly: motions are so large that what crosses next is not worth asking.
-  void stops_crossing(std::size_t p) { kept_[p].rest = 16; }
+  void stops_crossing(std::size_t p) {
+    Kept& kept = kept_[p];
+    kept.rest = kept.next_rest;
+    kept.next_rest = std::min(4 * kept.next_rest, longest_rest);
+  }
   /// Whether they touched the last two times that they were looked at.
   bool goes_on(std::size_t p) const { return kept_[p].touched_again; }
 
@@ -340,7 +346,8 @@ class WideMargins {
     bool place(const Pose& pose) { return MovingBody::place(pose, Vec3<double>::Zero()); }
   };
 
-  static constexpr int shortest_pause = 4, longest_pause = 256;  // traversals without a front
+  static constexpr int shortest_pause = 16, longest_pause = 256;  // traversals without a front
+  static constexpr int longest_rest = 64;                     // traversals without a crossing
 
   struct Answer {
     double until = unknown;  ///< as a sum of displacements; negative where only rest keeps it
@@ -355,7 +362,7 @@ class WideMargins {
     WideFront front;
     int pause = 0, next_pause = shortest_pause;
     std::optional<Crossing> crossing;
-    int rest = 0;  // how many times what crosses is not to be kept
+    int rest = 0, next_rest = 1;  // how many times what crosses is not to be kept
     bool was_apart = false, touched_again = false;
   };
 
