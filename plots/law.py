@@ -79,7 +79,7 @@ def way_out(persistence, steps):
 def by_age(rows, defer, kappa):
     """Of each run since a list was rebuilt, shape (frames, rows): how likely the list still stands in it, and its tests
     over those of the recursion, near pairs only, by the law."""
-    near = rows.near_runs.to_numpy(float)
+    near = rows.near_runs.where(rows.near_runs > 0).to_numpy(float)  # NaN where nothing was near
     full = rows.tests.to_numpy() / near
     once = rows.again.to_numpy() / near
     gain = rows.growth.to_numpy()

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/number.hpp"
 #include "experiments/commands/whole_number.hpp"
 #include "experiments/files/npy.hpp"
 #include "experiments/files/peak_bytes.hpp"
@@ -157,18 +158,32 @@ void write_page(const Arguments& arguments, std::span<const TriangleMesh> meshes
               scene_page(meshes, trace, arguments.variant, {names, name(arguments.trace)}));
 }
 
+/// In the words of who asked.
+std::string chosen(const Arguments& arguments) {
+  return arguments.configuration ? "--configuration " + *arguments.configuration
+                                 : "--tree " + arguments.variant.tree;
+}
+
 void check(const Arguments& arguments) {
   check(arguments.variant);
-  require_place("--out", arguments.out);
-  require_place("--json", arguments.json);
-  require_place("--page", arguments.page);
-  require_place("--x3d", arguments.x3d);
+  std::vector<NamedFile> read{{"--trace", arguments.trace}};
+  for (const auto& mesh : arguments.meshes) read.push_back({"--mesh", mesh});
+  const NamedFile written[] = {place_of_totals(arguments.json),
+                               {"--out", arguments.out},
+                               {"--page", arguments.page},
+                               {"--x3d", arguments.x3d}};
+  require_places(read, written);
+  if (!arguments.page.empty() && arguments.variant.tree != "binary")
+    throw Unusable("--page", "draws the volumes of binary trees; not with " + chosen(arguments));
   if (!arguments.budget) return;
   for (const auto& [option, file] : {std::pair("--page", arguments.page), {"--x3d", arguments.x3d}})
     if (!file.empty()) throw Unusable(option, "shows whole answers; not with --budget");
   if (arguments.variant.query != "touching")
     throw Unusable("--budget",
                    "answers whether surfaces touch; not with --query " + arguments.variant.query);
+  if (arguments.configuration)
+    throw Unusable("--budget", "starts from the roots of binary trees in every frame; not with " +
+                                   chosen(arguments));
   if (arguments.variant.strategy != "recursive")
     throw Unusable("--budget", "starts from the roots in every frame; not with --strategy " +
                                    arguments.variant.strategy);
@@ -257,6 +272,7 @@ void add_replay(CLI::App& app) {
   command
       ->add_option("--relative-error", arguments->variant.relative_error,
                    "distances may be at most this part above the exact one, never below")
+      ->check(number())
       ->capture_default_str();
   command->add_option("--precision", arguments->variant.precision, "see `bvlab list precisions`")
       ->capture_default_str();

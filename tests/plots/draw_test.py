@@ -201,6 +201,9 @@ class Refuses(unittest.TestCase):
                                 mentions=["time_ns"])
             (record / "own.csv").unlink()
             self.refuse(record, mentions=["own.csv"])
+            with tempfile.TemporaryDirectory() as other:
+                self.refuse(own_record(other), "--out", str(record / "definition.toml" / "figures"),
+                            mentions=["definition.toml", "no folder"])
             (record / "definition.toml").write_text("name = \n")
             self.refuse(record, mentions=["definition.toml"])
 
