@@ -170,7 +170,7 @@ void add_boxes(CLI::App& app) {
                    "the pairs of the trace; float32: a float64 trace rounded outward, so no pair "
                    "is missed, and some that all but touch are called overlapping")
       ->capture_default_str();
-  command->add_option("--threads", arguments->threads)
+  command->add_option("--threads", arguments->threads, "that share a frame; the pairs are the same")
       ->check(whole_number(1, 1024))
       ->capture_default_str();
   command->add_option("--out", arguments->out,

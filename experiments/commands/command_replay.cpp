@@ -282,7 +282,9 @@ void add_replay(CLI::App& app) {
           "at most this many volume tests for each pair and frame: 0 apart, 1 touching, 2 not "
           "known yet, with a bound on how deep")
       ->check(whole_number(0, 1u << 30));
-  command->add_option("--threads", arguments->threads)
+  command
+      ->add_option("--threads", arguments->threads,
+                   "that share the pairs of a frame; answers are the same")
       ->check(whole_number(1, 1024))
       ->capture_default_str();
   command->add_option("--count", arguments->count, "on: fill n_u, n_v, n_p (and time that)")
