@@ -20,6 +20,15 @@ def require_folder(out):
         raise Refused(f"{out}: {place}: Permission denied")
 
 
+def exit_status(main):
+    """Of a script: what it refuses is said in one line, and makes 2."""
+    try:
+        return main() or 0
+    except Refused as fault:
+        print(f"{Path(sys.argv[0]).name}: {fault}", file=sys.stderr)
+        return 2
+
+
 def record_arguments(doc, table_only=False):
     """record and out (RECORD/figures unless it is given) as paths; table_only where a script can
     do without figures. `doc` is the script's, whose first line says what it draws."""

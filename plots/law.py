@@ -28,7 +28,7 @@ FITTED_MOTION_MODELS = ["all bodies, all freedoms", "one body, one freedom"]
 
 def read(record):
     """One row per trace, volume and strategy: counts, median time, and the coherence of the trace."""
-    rows = records.read(record)
+    rows = records.read(record, needs=["entries"])
     records.wrong_answers(rows)
     records.say_left_out(rows[rows.peer != ""].peer, "which keep no front")
     rows = rows[rows.peer == ""]
