@@ -110,7 +110,7 @@ struct RelativePose {
     for (std::size_t j = 0; j < 3; ++j)
       column[j] = b.transposed_times(a.rows[0][j], a.rows[1][j], a.rows[2][j]);
     translation = b.transposed_times(x, y, z);
-    length = stdx::reduce(stdx::abs(translation));
+    length = (std::abs(translation[0]) + std::abs(translation[1])) + std::abs(translation[2]);
     noise = a.noise + b.noise +
             128 * unit_roundoff<double> *
                 (a.reach + b.reach + ((std::abs(x) + std::abs(y)) + std::abs(z)));

@@ -13,19 +13,15 @@
 /// that these two are looked at (triangle_margin.hpp), of several pairs of bodies at once, and only
 /// then the bodies, first where they touched.
 ///
-/// Bodies that were apart twice, but hardly, get a front (WideFront), of which those entries are
-/// looked at again whose deadlines have passed. Where most have, there is none for a while: sixteen
-/// traversals, four times as many whenever that comes again, 256 at most.
+/// Bodies that were apart twice, but hardly, get a front (WideFront), of which only that is looked
+/// at again which can have come together. Where that is most of it, there is none for a while:
+/// sixteen traversals, four times as many whenever that comes again, 256 at most.
 ///
 /// Tried and not kept: to open volumes that are hardly apart so that the least gap grows. Triangles
 /// of two surfaces are near each other in many places, and to know the nearest is to know the
 /// distance, at five times the price. Nor does it pay to measure triangles that are apart by more
-/// than the volumes they have anyway: a third of the tests is left, and each gap costs four.
-/// Nor to measure each gap from where the bodies then stood, so that motions to and fro cancel:
-/// with eight such poses at ever greater intervals two thirds of the entries come up, but the
-/// clocks take what that saves; with exact gaps of triangles, and lanes opened before they are due,
-/// a third, and 0.9 of the time where 500 polygons move slowly, but 1.0 to 1.3 with 8000, where
-/// many triangles are within a step or two of each other, and 1.15 in a planner's motion.
+/// than the volumes they have anyway, exactly or not: a third of the tests is left, each gap costs
+/// four, and of 8000 polygons many are within a step or two of each other.
 #pragma once
 
 #include <algorithm>
