@@ -24,7 +24,7 @@ template <class T, class Contact = Closed>
 using Methods = TypeList<
     Auto<T, Contact>,
     Blocks<T, Contact>,
-    // the seed's
+    // koziara2005bounding
     Hybrid<T, Contact>,
     Hash<T, Contact>,
     Sweep1<T, Contact>,

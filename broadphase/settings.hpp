@@ -16,7 +16,7 @@ enum class Coherence { off, on };
 enum class Changes { unreported, reported };
 
 /// How ends are sorted from scratch: by the digits of their keys, O(n), or by comparing them,
-/// O(n log n), as was usual when the seed was written.
+/// O(n log n), as was usual when koziara2005bounding was written.
 enum class Sort { radix, comparison };
 
 struct MethodSettings {

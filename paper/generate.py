@@ -43,6 +43,7 @@ PARTS = (
     strategies.write_workloads,
     law.write_sweep,
     law.write_law_unseen,
+    law.write_law_bullet,
     law.write_predict,
     volumes.write_tightness,
     volumes.write_fits,

@@ -4,6 +4,7 @@
 import coherence
 import column
 import law
+import law_bullet
 import law_unseen
 import numpy as np
 import predict
@@ -324,6 +325,15 @@ def write_law_unseen(paper, record):
     paper.put_percent(
         0, unseenTail=np.quantile(of_law, 0.95), unseenPile=np.median(of_law[pile]), unseenLost=np.median(of_law[less])
     )
+
+
+@part("law-bullet")
+def write_law_bullet(paper, record):
+    """The law from the first frames of heaps that Bullet lets fall."""
+    runs = law_bullet.read(record)
+    said = law_unseen.all_predictions(runs, law_unseen.fit_of_coherence())[law_unseen.PREFIX]
+    paper.put_percent(heapsLaw=np.median(law_unseen.off_by(said[law_unseen.LAW], runs)),
+                      heapsLast=np.median(law_unseen.off_by(said[law_unseen.LAST], runs)))
 
 
 @part("predict")

@@ -2,7 +2,31 @@
 """The command line of a script that draws one record."""
 
 import argparse
+import os
+import sys
 from pathlib import Path
+
+from refused import Refused
+
+
+def require_folder(out):
+    """Refuses a folder that cannot be made or written into, before figures are drawn for it."""
+    place = Path(out)
+    while not place.exists():
+        place = place.parent
+    if not place.is_dir():
+        raise Refused(f"{out}: {place} is no folder")
+    if not os.access(place, os.W_OK | os.X_OK):
+        raise Refused(f"{out}: {place}: Permission denied")
+
+
+def exit_status(main):
+    """Of a script: what it refuses is said in one line, and makes 2."""
+    try:
+        return main() or 0
+    except Refused as fault:
+        print(f"{Path(sys.argv[0]).name}: {fault}", file=sys.stderr)
+        return 2
 
 
 def record_arguments(doc, table_only=False):
@@ -16,4 +40,10 @@ def record_arguments(doc, table_only=False):
         parser.add_argument("--table-only", action="store_true", help="print, draw nothing")
     arguments = parser.parse_args()
     arguments.out = arguments.out or arguments.record / "figures"
+    try:
+        if arguments.record.is_dir() and not (table_only and arguments.table_only):
+            require_folder(arguments.out)
+    except Refused as fault:
+        print(f"{Path(sys.argv[0]).name}: {fault}", file=sys.stderr)
+        sys.exit(2)
     return arguments

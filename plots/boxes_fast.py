@@ -6,6 +6,7 @@ usage: boxes_fast.py RECORD [RECORD ...] [--out FOLDER]
 """
 
 import argparse
+import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -14,6 +15,7 @@ import pandas as pd
 
 import records
 import style
+from arguments import exit_status
 from words import number
 
 SCRATCH = "from scratch"
@@ -21,7 +23,7 @@ WORK = {"still": "nothing moves", "drift": "all move 2% of their size", "telepor
 
 
 def read(folders):
-    rows = pd.concat([records.read(folder) for folder in folders])
+    rows = pd.concat([records.read(folder, needs=["method", "set", "motion", "threads"]) for folder in folders])
     rows["theirs"] = rows.peer != ""
     wrong = records.wrong_answers(rows)
     records.say_left_out(rows[wrong].method + " on " + rows[wrong].set, "where their pairs differ")
@@ -88,4 +90,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(exit_status(main))

@@ -12,13 +12,15 @@ against the motion in leaf sizes).
 The law is that of law.py.
 """
 
+import sys
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
 import law
 import style
-from arguments import record_arguments
+from arguments import exit_status, record_arguments
 from ticks import log_ticks
 from words import number
 
@@ -186,4 +188,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(exit_status(main))

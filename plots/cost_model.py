@@ -9,6 +9,7 @@ RECORD holds cost-model.csv and unit-costs.json (bench_unit_costs --benchmark_fo
 """
 
 import json
+import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -18,9 +19,10 @@ import pandas as pd
 import charts
 import records
 import style
-from arguments import record_arguments
+from arguments import exit_status, record_arguments
 from figures import Figure
 from points import points_of
+from refused import Refused
 
 TERMS = {"posing_ns": ("posing $N_u C_u$", "#41a5c4"), "volumes_ns": ("volumes $N_v C_v$", "#1b1b1b"),
          "triangles_ns": ("triangles $N_p C_p$", "#d95f0e")}
@@ -49,6 +51,8 @@ def read(record):
     """The rows with the terms of T in ns and their sum, predicted_ns; unit costs of volumes and of triangles."""
     rows = records.read(record)
     records.wrong_answers(rows)
+    if not (Path(record) / "unit-costs.json").is_file():
+        raise Refused(f"{record}: has no unit-costs.json: it is the record of something else")
     costs, triangle = unit_costs(Path(record) / "unit-costs.json")
     records.say_left_out(rows[rows.peer != ""].peer, "which count nothing")
     attrs, rows = rows.attrs, rows[rows.peer == ""]
@@ -120,4 +124,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(exit_status(main))

@@ -9,21 +9,26 @@ record's definition: plots/draw.
 """
 
 import argparse
+import sys
 
 import pandas as pd
 
 import records
+from arguments import exit_status
+from refused import Refused
 
 PLACES = ["query", "polygons", "density", "motion"]  # what may tell one trace from another
 
 
 def read(record):
     """The median time a pair of each variant in each cell, where its answers are right; and the rows."""
-    rows = records.read(record)
+    rows = records.read(record, needs=["later_ns", "later_pairs"])
     wrong = records.wrong_answers(rows)
     records.say_left_out(rows[wrong].variant, "where their answers differ")
     rows = rows[~wrong].assign(us=rows.later_ns / rows.later_pairs / 1e3)
     places = [place for place in PLACES if place in rows and rows[place].nunique() > 1]
+    if not places or not (rows.peer != "").any():
+        raise Refused(f"{record}: has no peers, or none of {', '.join(PLACES)} that varies: it is the record of something else")
     middle = rows.groupby(places + ["peer", "strategy", "variant"], sort=False, as_index=False).us.median()
     return rows, middle, places
 
@@ -55,4 +60,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(exit_status(main))

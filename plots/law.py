@@ -28,7 +28,7 @@ FITTED_MOTION_MODELS = ["all bodies, all freedoms", "one body, one freedom"]
 
 def read(record):
     """One row per trace, volume and strategy: counts, median time, and the coherence of the trace."""
-    rows = records.read(record)
+    rows = records.read(record, needs=["entries"])
     records.wrong_answers(rows)
     records.say_left_out(rows[rows.peer != ""].peer, "which keep no front")
     rows = rows[rows.peer == ""]
@@ -79,7 +79,7 @@ def way_out(persistence, steps):
 def by_age(rows, defer, kappa):
     """Of each run since a list was rebuilt, shape (frames, rows): how likely the list still stands in it, and its tests
     over those of the recursion, near pairs only, by the law."""
-    near = rows.near_runs.to_numpy(float)
+    near = rows.near_runs.where(rows.near_runs > 0).to_numpy(float)  # NaN where nothing was near
     full = rows.tests.to_numpy() / near
     once = rows.again.to_numpy() / near
     gain = rows.growth.to_numpy()

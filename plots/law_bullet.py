@@ -16,6 +16,7 @@ import pandas as pd
 
 import law_unseen
 import records
+from hypotheses import print_hypotheses
 from law_unseen import LAST, LAW, OTHERS, PREFIX, SAME
 from refused import Refused
 
@@ -78,9 +79,7 @@ def print_tables(record, runs, said):
     for name in (LAW, LAST, SAME):
         print(f"  time   {PREFIX:14} {name:28}",
               law_unseen.shown(law_unseen.middle_and_most(off(timed[name], timed.measured)[known].to_numpy(), seeds[known])))
-    print("\nHypotheses:")
-    for number, holds, why in hypotheses(runs, said, timed[known]):
-        print(f"  {number}: {'holds' if holds else 'fails'}: {why}")
+    print_hypotheses(hypotheses(runs, said, timed[known]))
 
 
 def hypotheses(runs, said, timed):

@@ -22,6 +22,7 @@ import law
 import records
 import style
 from arguments import record_arguments
+from hypotheses import print_hypotheses
 from refused import Refused
 from ticks import log_ticks
 from words import number, plain
@@ -275,9 +276,7 @@ def print_tables(runs, said, fit):
     times = best_of_all(runs)
     print(f"\nThe best of these takes {times.median():.2f} (median) to {times.max():.1f} times the tests of the best of all; "
           f"it is within 1.1 of it in {100 * (times <= 1.1).mean():.0f} % of the cells.")
-    print("\nHypotheses:")
-    for name, holds, why in hypotheses(runs, said, fit):
-        print(f"  {name}: {'holds' if holds else 'fails'}: {why}")
+    print_hypotheses(hypotheses(runs, said, fit))
 
 
 def hypotheses(runs, said, fit):

@@ -9,13 +9,15 @@ nine-bunnies-runs (the talk's ten runs), nine-bunnies-tests (N_v per frame), nin
 (length of the front).
 """
 
+import sys
+
 import numpy as np
 import pandas as pd
 import matplotlib.pyplot as plt
 
 import records
 import style
-from arguments import record_arguments
+from arguments import exit_status, record_arguments
 
 # Li and Chen's table (li1998incremental): seconds for the recursive algorithm, the separation list
 # and the deferred one, runs 1 to 10.
@@ -31,7 +33,7 @@ BASE = "recursive"
 
 def read(record):
     """One row per (reading, density, seed, variant): median time over repetitions, mean counts."""
-    rows = records.read(record)
+    rows = records.read(record, needs=["reading", "density"])
     records.wrong_answers(rows)
     keys = ["reading", "density", "seed", "variant"]
     runs = rows.groupby(keys, sort=False).agg(
@@ -226,4 +228,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(exit_status(main))

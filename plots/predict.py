@@ -19,6 +19,7 @@ import pandas as pd
 import records
 import style
 from arguments import record_arguments
+from hypotheses import print_hypotheses
 from refused import Refused
 from ticks import decades
 from words import plain
@@ -142,9 +143,7 @@ def print_tables(cells):
     for strategy in dict.fromkeys(rows.strategy):
         times = always(rows, strategy)
         print(f"  always {strategy:16} fastest in {100 * (times <= 1).mean():3.0f} %, within 1.1 in {near(times):3.0f} %, at worst {times.max():.1f}")
-    print("\nHypotheses:")
-    for name, holds, why in hypotheses(cells):
-        print(f"  {name}: {'holds' if holds else 'fails'}: {why}")
+    print_hypotheses(hypotheses(cells))
 
 
 def draw_tests(axis, rows, size=3.5):

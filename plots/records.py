@@ -22,7 +22,7 @@ MEASURED_FROM = {"tightness": "nodes", "stability": "answers"}
 WRONG = ["differing", "wrong", "outside"]  # counts of answers that should not be
 
 
-def read(record, table=""):
+def read(record, table="", needs=()):
     """The rows of a record as a frame, one for each variant, scene, seed and repetition, in the order of its
     definition; of `table` "frames" or "disagreements", the rows of <name>.<table>.csv.
 
@@ -35,7 +35,8 @@ def read(record, table=""):
     where nothing was timed.
 
     attrs: name and kind (of the study, "" for an experiment), definition (a dictionary), settings (the columns that
-    say what was run), units (of each column: ns, B, radii, °, or ""). Refused where it is no record.
+    say what was run), units (of each column: ns, B, radii, °, or ""). Refused where it is no record, and where
+    a column that is needed is not there.
     """
     record = Path(record)
     definition = read_definition(record)
@@ -61,6 +62,8 @@ def read(record, table=""):
     if "variant" not in rows:
         rows["variant"] = variant_names(rows)
     units.setdefault("variant", "")
+    if missing := [column for column in needs if column not in rows]:
+        raise Refused(f"{record}: has no {', '.join(missing)}: it is the record of something else")
     rows = in_order(rows, definition, settings)
     rows.attrs.update(name=name, kind=kind, definition=definition, settings=settings, units=units)
     return rows
@@ -74,6 +77,12 @@ def read_toml(path):
         raise Refused(f"{path}: has no name") from None
     except (OSError, ValueError) as fault:
         raise Refused(f"{path}: {fault}".replace("\n", " ")) from None
+    for key in ("axis", "figure"):
+        tables = definition.get(key, [])
+        if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
+            raise Refused(f"{path}: {key} is no list of tables: it is written as [[{key}]]")
+    if not isinstance(definition.get("parameters", {}), dict):
+        raise Refused(f"{path}: parameters is no table")
     return definition
 
 

@@ -9,6 +9,7 @@ Volumes, and peers, that are wrong in the same way everywhere stand on one line.
 """
 
 import textwrap
+import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -16,12 +17,12 @@ from matplotlib.colors import LogNorm
 
 import records
 import style
-from arguments import record_arguments
+from arguments import exit_status, record_arguments
 from words import number
 
 
 def read(record):
-    rows = records.read(record)
+    rows = records.read(record, needs=["stressor", "false_positives", "false_negatives"])
     rows["wrong"] = rows.false_positives + rows.false_negatives
     return rows
 
@@ -100,4 +101,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(exit_status(main))

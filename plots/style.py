@@ -80,10 +80,15 @@ def labelled(axes):
 
 
 def save(figure, folder, name):
-    """Writes <folder>/<name>.pdf and .png, the same bytes for the same record."""
+    """Writes <folder>/<name>.pdf and .png, the same bytes for the same record, each whole or not at all."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     for ending, metadata in FORMATS.items():
-        figure.savefig(folder / f"{name}.{ending}", dpi=DPI, metadata=metadata)
+        unfinished = folder / f".{name}.{ending}.unfinished"
+        try:
+            figure.savefig(unfinished, format=ending, dpi=DPI, metadata=metadata)
+            unfinished.replace(folder / f"{name}.{ending}")
+        finally:
+            unfinished.unlink(missing_ok=True)
     plt.close(figure)
     return folder / f"{name}.png"

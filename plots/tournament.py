@@ -14,11 +14,13 @@ repetitions with replacement.
 """
 
 import argparse
+import sys
 
 import numpy as np
 import pandas as pd
 
 import records
+from arguments import exit_status
 
 PLACES = ["work", "polygons"]
 BOX_PLACES = ["set", "count", "motion"]
@@ -28,7 +30,7 @@ DRAWS = 1000
 def read(record):
     """Rows with the times of a pair, or of a frame of boxes: `ns` in the steady state, `cold_ns` in the first frame,
     `tail_ns` in the slowest of a hundred frames, where that was measured."""
-    rows = records.read(record)
+    rows = records.read(record, needs=["method"])
     wrong = records.wrong_answers(rows)
     records.say_left_out(rows[wrong].method, "where their answers differ")
     rows = rows[~wrong]
@@ -108,4 +110,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(exit_status(main))

@@ -6,19 +6,21 @@ per call, one panel for each set, the Pareto front drawn.
 usage: triangles_error.py RECORD [--out FOLDER]
 """
 
+import sys
+
 import numpy as np
 import pandas as pd
 import matplotlib.pyplot as plt
 
 import records
 import style
-from arguments import record_arguments
+from arguments import exit_status, record_arguments
 
 NONE = 3  # where zero stands on the logarithmic axis, in pairs per million
 
 
 def read(record):
-    rows = records.read(record)
+    rows = records.read(record, needs=["set", "test", "false_positives", "false_negatives"])
     rows["wrong"] = (rows.false_positives + rows.false_negatives) / rows.pairs * 1e6
     return rows, rows.attrs["name"]
 
@@ -111,4 +113,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(exit_status(main))

@@ -60,6 +60,8 @@ def called(column, kind=""):
 def number(value):
     """A number as it is read: 0.003, 5, 8000, 10^6."""
     value = float(value)
+    if not math.isfinite(value):
+        return "none" if math.isnan(value) else str(value)
     if value == int(value) and 1e4 <= abs(value) < 1e6 and value % 1000 == 0:
         return f"{value:,.0f}".replace(",", "\u2009")
     if value == 0 or 1e-4 <= abs(value) < 1e4:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The seed's sweeps (its section 3.3): a plane goes through the boxes along z; whoever enters asks
-/// a store of the rectangles that are in for those it overlaps, and leaves it again at its other
-/// end. O(n log n) for the ends, and what the store costs. With coherence the sorted ends are kept
-/// and repaired by insertion sort.
+/// The sweeps of koziara2005bounding (section 3.3): a plane goes through the boxes along z; whoever
+/// enters asks a store of the rectangles that are in for those it overlaps, and leaves it again at
+/// its other end. O(n log n) for the ends, and what the store costs. With coherence the sorted ends
+/// are kept and repaired by insertion sort.
 #pragma once
 
 #include "broadphase/structures/pair_list.hpp"

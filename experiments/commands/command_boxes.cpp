@@ -110,8 +110,9 @@ void run(Arguments arguments) {
   if (!Precisions::with(arguments.precision, [](auto) {}))
     throw Unusable("--precision",
                    "unknown name '" + arguments.precision + "'; there are " + Precisions::names());
-  require_place("--out", arguments.out);
-  require_place("--json", arguments.json);
+  const NamedFile read[] = {{"--trace", arguments.trace}};
+  const NamedFile written[] = {place_of_totals(arguments.json), {"--out", arguments.out}};
+  require_places(read, written);
   static constexpr std::size_t shape[] = {any_length, any_length, 6};
   const auto trace = read_npy_floating(arguments.trace, shape);
   const auto* wide = std::get_if<Array<double>>(&trace);
@@ -169,7 +170,7 @@ void add_boxes(CLI::App& app) {
                    "the pairs of the trace; float32: a float64 trace rounded outward, so no pair "
                    "is missed, and some that all but touch are called overlapping")
       ->capture_default_str();
-  command->add_option("--threads", arguments->threads)
+  command->add_option("--threads", arguments->threads, "that share a frame; the pairs are the same")
       ->check(whole_number(1, 1024))
       ->capture_default_str();
   command->add_option("--out", arguments->out,

@@ -68,8 +68,11 @@ void run(const Arguments& arguments) {
   check(arguments.variant);
   if (query != "touching" && query != "contacts")
     throw Unusable("--query", "predicted are touching and contacts, not " + query);
-  require_place("--json", arguments.json);
-  require_place("--csv", arguments.csv);
+  std::vector<NamedFile> read{{"--trace", arguments.trace}};
+  for (const auto& mesh : arguments.meshes) read.push_back({"--mesh", mesh});
+  const NamedFile written[] = {
+      {"the table", "/dev/stdout"}, {"--csv", arguments.csv}, {"--json", arguments.json}};
+  require_places(read, written);
   std::vector<TriangleMesh> meshes;
   for (const auto& file : arguments.meshes) meshes.push_back(read_mesh(file));
   const Trace trace = read_trace(arguments.trace);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/number.hpp"
 #include "experiments/commands/whole_number.hpp"
 #include "experiments/files/npy.hpp"
 #include "experiments/files/peak_bytes.hpp"
@@ -157,18 +158,32 @@ void write_page(const Arguments& arguments, std::span<const TriangleMesh> meshes
               scene_page(meshes, trace, arguments.variant, {names, name(arguments.trace)}));
 }
 
+/// In the words of who asked.
+std::string chosen(const Arguments& arguments) {
+  return arguments.configuration ? "--configuration " + *arguments.configuration
+                                 : "--tree " + arguments.variant.tree;
+}
+
 void check(const Arguments& arguments) {
   check(arguments.variant);
-  require_place("--out", arguments.out);
-  require_place("--json", arguments.json);
-  require_place("--page", arguments.page);
-  require_place("--x3d", arguments.x3d);
+  std::vector<NamedFile> read{{"--trace", arguments.trace}};
+  for (const auto& mesh : arguments.meshes) read.push_back({"--mesh", mesh});
+  const NamedFile written[] = {place_of_totals(arguments.json),
+                               {"--out", arguments.out},
+                               {"--page", arguments.page},
+                               {"--x3d", arguments.x3d}};
+  require_places(read, written);
+  if (!arguments.page.empty() && arguments.variant.tree != "binary")
+    throw Unusable("--page", "draws the volumes of binary trees; not with " + chosen(arguments));
   if (!arguments.budget) return;
   for (const auto& [option, file] : {std::pair("--page", arguments.page), {"--x3d", arguments.x3d}})
     if (!file.empty()) throw Unusable(option, "shows whole answers; not with --budget");
   if (arguments.variant.query != "touching")
     throw Unusable("--budget",
                    "answers whether surfaces touch; not with --query " + arguments.variant.query);
+  if (arguments.configuration)
+    throw Unusable("--budget", "starts from the roots of binary trees in every frame; not with " +
+                                   chosen(arguments));
   if (arguments.variant.strategy != "recursive")
     throw Unusable("--budget", "starts from the roots in every frame; not with --strategy " +
                                    arguments.variant.strategy);
@@ -257,6 +272,7 @@ void add_replay(CLI::App& app) {
   command
       ->add_option("--relative-error", arguments->variant.relative_error,
                    "distances may be at most this part above the exact one, never below")
+      ->check(number())
       ->capture_default_str();
   command->add_option("--precision", arguments->variant.precision, "see `bvlab list precisions`")
       ->capture_default_str();
@@ -266,7 +282,9 @@ void add_replay(CLI::App& app) {
           "at most this many volume tests for each pair and frame: 0 apart, 1 touching, 2 not "
           "known yet, with a bound on how deep")
       ->check(whole_number(0, 1u << 30));
-  command->add_option("--threads", arguments->threads)
+  command
+      ->add_option("--threads", arguments->threads,
+                   "that share the pairs of a frame; answers are the same")
       ->check(whole_number(1, 1024))
       ->capture_default_str();
   command->add_option("--count", arguments->count, "on: fill n_u, n_v, n_p (and time that)")

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/number.hpp"
 #include "experiments/commands/whole_number.hpp"
 #include "experiments/files/npy.hpp"
 #include "experiments/files/unusable.hpp"
@@ -52,7 +53,11 @@ void write_meshes(const std::string& directory, const std::vector<std::string>& 
 
 template <class S>
 void run(const S& scene, const Arguments& arguments) {
-  require_place("--out", arguments.out);
+  std::vector<NamedFile> read;
+  for (const auto& mesh : arguments.files) read.push_back({"--mesh", mesh});
+  if constexpr (requires { scene.trace; }) read.push_back({"--trace", scene.trace});
+  const NamedFile written[] = {{"--out", arguments.out}};
+  require_places(read, written);
   if constexpr (requires { scene.check(); }) scene.check();
   std::vector<std::string> names;
   std::vector<TriangleMesh> meshes;
@@ -90,6 +95,8 @@ struct Adding {
           ->default_str(text_of(value));
     } else if constexpr (std::is_unsigned_v<T>) {
       command.add_option(flag, value, text)->check(whole_number())->capture_default_str();
+    } else if constexpr (std::is_floating_point_v<T>) {
+      command.add_option(flag, value, text)->check(number())->capture_default_str();
     } else {
       command.add_option(flag, value, text)->capture_default_str();
     }

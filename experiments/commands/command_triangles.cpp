@@ -61,8 +61,9 @@ TriangleTest named_test(const std::string& name) {
 
 void triangles(const Arguments& arguments) {
   const TriangleTest test = named_test(arguments.precision);
-  require_place("--out", arguments.out);
-  require_place("--json", arguments.json);
+  const NamedFile read[] = {{"--pairs", arguments.pairs}};
+  const NamedFile written[] = {place_of_totals(arguments.json), {"--out", arguments.out}};
+  require_places(read, written);
   const std::vector<Triangle> corners = read_pairs(arguments.pairs);
   const auto start = std::chrono::steady_clock::now();
   const std::vector<std::uint8_t> verdicts = verdicts_on(corners, test);

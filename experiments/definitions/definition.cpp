@@ -94,6 +94,9 @@ void check_characters(std::string_view text, const std::string& name) {
   }
 }
 
+/// So that <name>.disagreements.csv is a name for a file.
+constexpr std::size_t longest_name = 200;
+
 /// Reads one definition; every complaint names the file and the line.
 class Reader {
  public:
@@ -112,7 +115,7 @@ class Reader {
     definition.file = name_;
     for (auto&& [key, node] : table) {
       if (key == "name")
-        definition.name = string(node, "name");
+        definition.name = name(node, "name");
       else if (key == "description")
         definition.description = string(node, "description");
       else if (key == "repetitions")
@@ -132,6 +135,8 @@ class Reader {
     }
     if (definition.name.empty() || definition.name.find('/') != std::string::npos)
       throw Unusable(name_, "needs a name (without '/')");
+    if (definition.name.size() > longest_name)
+      throw Unusable(name_, "the name is longer than " + std::to_string(longest_name) + " letters");
     check_size(definition.axes);
     check_series(definition);
     return definition;
@@ -169,6 +174,13 @@ class Reader {
   std::string string(const toml::node& node, const std::string& key) const {
     if (const auto value = node.value_exact<std::string>()) return *value;
     fail(node.source(), key + " must be a string");
+  }
+
+  /// Files and columns bear it.
+  std::string name(const toml::node& node, const std::string& key) const {
+    const std::string value = string(node, key);
+    if (value != one_line(value)) fail(node.source(), key + " holds a control character");
+    return value;
   }
 
   std::set<std::string> measures(const toml::node& node) const {
@@ -249,11 +261,23 @@ class Reader {
     std::vector<Definition::Axis> result;
     for (auto&& each : *array) {
       result.push_back(axis(table(each, "an axis")));
-      for (std::size_t i = 0; i + 1 < result.size(); ++i)
+      for (std::size_t i = 0; i + 1 < result.size(); ++i) {
         if (result[i].name == result.back().name)
           fail(each.source(), "a second axis '" + result[i].name + "'");
+        for (const auto& name : set_by(result[i]))
+          if (set_by(result.back()).contains(name))
+            fail(each.source(), "axis '" + result.back().name + "' sets '" + name + "', as axis '" +
+                                    result[i].name + "' does");
+      }
     }
     return result;
+  }
+
+  static std::set<std::string> set_by(const Definition::Axis& axis) {
+    std::set<std::string> names;
+    for (const auto& value : axis.values)
+      for (const auto& [name, ignored] : value.settings) names.insert(name);
+    return names;
   }
 
   Definition::Axis axis(const toml::table& from) const {
@@ -261,7 +285,8 @@ class Reader {
     const auto *name = from.get("name"), *values = from.get("values"), *tables = from.get("value");
     if (!name || !values == !tables)
       fail(from.source(), "an axis needs a name and either values or [[axis.value]]");
-    axis.name = string(*name, "an axis' name");
+    axis.name = this->name(*name, "an axis' name");
+    if (axis.name.empty()) fail(name->source(), "an axis' name is empty");
     for (auto&& [key, node] : from)
       if (key != "name" && key != "values" && key != "value")
         fail(key.source(), "unknown key '" + std::string(key.str()) + "' of an axis");

@@ -192,8 +192,11 @@ Array<T> read_npy(const std::filesystem::path& path, std::span<const std::size_t
 std::variant<Array<float>, Array<double>> read_npy_floating(const std::filesystem::path& path,
                                                             std::span<const std::size_t> shape) {
   const std::string bytes = read_whole(path);
-  if (parse_header(bytes, path.string()).type == descriptor<float>)
-    return parse_npy<float>(bytes, path.string(), shape);
+  const std::string type = parse_header(bytes, path.string()).type;
+  if (type == descriptor<float>) return parse_npy<float>(bytes, path.string(), shape);
+  if (type != descriptor<double>)
+    throw Unusable(path.string(), "holds '" + type + "' where '" + std::string(descriptor<float>) +
+                                      "' or '" + std::string(descriptor<double>) + "' is needed");
   return parse_npy<double>(bytes, path.string(), shape);
 }
 

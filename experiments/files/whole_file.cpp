@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
@@ -128,6 +129,21 @@ void write_beside(const std::filesystem::path& path, std::span<const std::string
   fail(path, error);
 }
 
+/// A file of its own, or standard output; a terminal or /dev/null has room for several.
+bool is_same_place(const std::filesystem::path& a, const std::filesystem::path& b) {
+  if (a.empty() || b.empty()) return false;
+  struct stat of_a, of_b;
+  const bool has_a = ::stat(a.c_str(), &of_a) == 0, has_b = ::stat(b.c_str(), &of_b) == 0;
+  if (has_a && has_b && S_ISREG(of_a.st_mode))
+    return of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+  if (a == "/dev/stdout" || (has_a && !S_ISCHR(of_a.st_mode))) return a == b;
+  const auto canonical = [](const std::filesystem::path& path) {
+    std::error_code ignored;
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
+  };
+  return !has_a && !has_b && canonical(a) == canonical(b);
+}
+
 }  // namespace
 
 std::string read_whole(const std::filesystem::path& path) {
@@ -189,6 +205,19 @@ void require_place(const std::string& option, const std::filesystem::path& path)
   if (!S_ISDIR(status.st_mode)) refuse("folder " + folder.string() + ": is no folder");
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
     refuse("folder " + folder.string() + ": " + std::strerror(errno));
+}
+
+void require_places(std::span<const NamedFile> read, std::span<const NamedFile> written) {
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    const auto& [option, path] = written[i];
+    require_place(option, path);
+    const auto apart = [&](const NamedFile& other) {
+      if (is_same_place(path, other.path))
+        throw Unusable(option + " " + path.string(), "is the place of " + other.option + ", too");
+    };
+    std::for_each(read.begin(), read.end(), apart);
+    std::for_each(written.begin(), written.begin() + static_cast<std::ptrdiff_t>(i), apart);
+  }
 }
 
 }  // namespace bvlab

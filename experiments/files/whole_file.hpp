@@ -31,4 +31,19 @@ void clear_left_behind(const std::filesystem::path& folder);
 /// An empty path asks for nothing.
 void require_place(const std::string& option, const std::filesystem::path& path);
 
+/// What is read or written, and the option that says so. Empty paths stand for nothing.
+struct NamedFile {
+  std::string option;
+  std::filesystem::path path;
+};
+
+/// The same of every result; further throws Unusable where one would replace another one, or what
+/// is read.
+void require_places(std::span<const NamedFile> read, std::span<const NamedFile> written);
+
+/// Where totals are written, for `require_places`.
+inline NamedFile place_of_totals(const std::string& json) {
+  return json.empty() ? NamedFile{"the totals", "/dev/stdout"} : NamedFile{"--json", json};
+}
+
 }  // namespace bvlab

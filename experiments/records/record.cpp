@@ -45,7 +45,8 @@ std::string line_of(const Row& row) {
   return line + '\n';
 }
 
-std::vector<Row> parse_csv(const std::string& text) {
+/// Of lines that have an end; whether all have.
+std::pair<std::vector<Row>, bool> parse_csv(const std::string& text) {
   std::vector<Row> rows;
   Row row;
   std::string field;
@@ -64,7 +65,7 @@ std::vector<Row> parse_csv(const std::string& text) {
       field += c;
     }
   }
-  return rows;
+  return {std::move(rows), !inside && row.empty() && field.empty()};
 }
 
 std::string after_colon(const std::string& file, const std::string& key) {
@@ -145,16 +146,29 @@ void hold_until_exit(const std::filesystem::path& record) {
   }
 }
 
+/// A record that was begun and refused, as for a mesh that there is not: of no use but to be begun
+/// again.
+bool is_without_rows(const std::filesystem::path& record) {
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(record)) {
+    const auto name = entry.path().filename();
+    if (name != "definition.toml" && name != "machine.json" && name != "command.txt") return false;
+    ++files;
+  }
+  return files == 3;
+}
+
 }  // namespace
 
 Table::Table(std::filesystem::path path, Row columns)
     : path_(std::move(path)), columns_(std::move(columns)) {
   if (!std::filesystem::exists(path_)) return;
-  auto rows = parse_csv(contents(path_));
+  auto [rows, is_whole] = parse_csv(contents(path_));
   const std::size_t held = rows.empty() ? 0 : rows[0].size();
   if (held == 0 || held > columns_.size() ||
       !std::equal(rows[0].begin(), rows[0].end(), columns_.begin()))
     throw Unusable(path_.string(), "has other columns");
+  if (!is_whole) throw Unusable(path_.string(), "is cut off: its last line has no end");
   for (std::size_t i = 1; i < rows.size(); ++i) {
     if (rows[i].size() != held)
       throw Unusable(path_.string(), "line " + std::to_string(i + 1) + " has " +
@@ -194,16 +208,16 @@ void open_record(const std::filesystem::path& record, const std::string& definit
   hold_until_exit(record);
   clear_left_behind(record);
   const auto held = record / "definition.toml";
-  if (std::filesystem::exists(held)) {
-    if (contents(held) != definition)
-      throw Unusable(record.string(), "is a record of another definition");
-  } else {
-    write_whole(held, definition);
-  }
-  if (!std::filesystem::exists(record / "machine.json"))
-    write_whole(record / "machine.json", machine());
-  if (!std::filesystem::exists(record / "command.txt"))
-    write_whole(record / "command.txt", command + "\n");
+  if (!std::filesystem::exists(held)) require_place("--record", held);
+  const bool anew = std::filesystem::exists(held) && contents(held) != definition;
+  if (anew && !is_without_rows(record))
+    throw Unusable(record.string(), "is a record of another definition");
+  const auto write = [&](const char* name, const std::string& text) {
+    if (anew || !std::filesystem::exists(record / name)) write_whole(record / name, text);
+  };
+  write("definition.toml", definition);
+  write("machine.json", machine());
+  write("command.txt", command + "\n");
 }
 
 }  // namespace bvlab

@@ -16,7 +16,8 @@ using Row = std::vector<std::string>;
 class Table {
  public:
   /// Reads the file if it is there; it must have these columns, or Unusable is thrown. The last of
-  /// them may be missing, as in a record from before there were such: then they are empty.
+  /// them may be missing, as in a record from before there were such: then they are empty. Unusable
+  /// is thrown, too, where its last line has no end.
   Table(std::filesystem::path path, Row columns);
 
   const Row& columns() const { return columns_; }
@@ -36,8 +37,9 @@ class Table {
 std::filesystem::path fresh_record(const std::filesystem::path& parent);
 
 /// Writes definition.toml, machine.json and command.txt unless they are there. A record of another
-/// definition is refused with Unusable, and so is one in the repository's experiments/record while
-/// the program was built from a tree with changes. Waits while another process has it open.
+/// definition is refused with Unusable (unless nothing but these three is in it, as after a run
+/// that was refused: then it is begun again), and so is one in the repository's experiments/record
+/// while the program was built from a tree with changes. Waits while another process has it open.
 void open_record(const std::filesystem::path& record, const std::string& definition,
                  const std::string& command);
 

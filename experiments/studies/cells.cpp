@@ -140,6 +140,8 @@ void check(const Cell& cell) {
   with_scene(cell, [](const auto& scene) {
     if constexpr (requires { scene.check(); }) scene.check();
   });
+  // Of other scenes, too: what is no number is a slip of the pen.
+  Scenes::for_each([&]<class S>(std::type_identity<S>) { S{}.visit_options(SettingOption{cell}); });
   if (!cell["peer"].empty() && !peer(cell["peer"]) && !is_absent_peer(cell["peer"]))
     throw Unusable("no peer '" + cell["peer"] + "'; there are " + peer_names());
 }

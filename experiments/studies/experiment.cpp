@@ -72,6 +72,29 @@ Row coherence_row(Row row, const CoherenceSums& c, const std::optional<BestRebui
   return row;
 }
 
+/// The columns of each table behind those that say what was run.
+const Row measured_columns{
+    "repetition", "time_ns", "first_ns", "build_ns", "pairs", "hits",  "differing",
+    "n_u",        "n_v",     "n_p",      "front",    "node",  "alone", "wall_per_processor",
+    "p99_ns"};
+const Row frame_columns{"frame", "n_u", "n_v", "n_p", "front", "hits"};
+const Row disagreement_columns{"frame",      "object_i", "object_j", "triangle_i",
+                               "triangle_j", "theirs",   "ours",     "exact"};
+const Row coherence_columns{"pair_runs",  "near_runs",     "moved_runs",  "still_runs",
+                            "tests",      "entries",       "kept",        "grown",
+                            "again",      "still_entries", "motion_leaf", "motion_gap",
+                            "best_tests", "best_rebuilds"};
+const Row prediction_columns{"strategy", "n_v", "n_p", "time_ns", "taken_ns"};
+
+/// A label has a column of its own.
+void check_axis_name(const Definition::Axis& axis) {
+  if (axis.is_parameter) return;
+  for (const Row* columns : {&measured_columns, &frame_columns, &disagreement_columns,
+                             &coherence_columns, &prediction_columns})
+    if (std::find(columns->begin(), columns->end(), axis.name) != columns->end())
+      throw Unusable("axis '" + axis.name + "': a record has a column of that name");
+}
+
 /// What was found of one trace: the rows of each table.
 struct Found {
   std::vector<const Cell*> cells;
@@ -87,22 +110,15 @@ class Experiment {
       : definition_(definition),
         options_(options),
         cells_(cells_with_answers(definition)),
-        rows_(record / (definition.name + ".csv"),
-              columns({"repetition", "time_ns", "first_ns", "build_ns", "pairs", "hits",
-                       "differing", "n_u", "n_v", "n_p", "front", "node", "alone",
-                       "wall_per_processor", "p99_ns"})),
-        frames_(record / (definition.name + ".frames.csv"),
-                axis_columns({"frame", "n_u", "n_v", "n_p", "front", "hits"})),
+        rows_(record / (definition.name + ".csv"), columns(measured_columns)),
+        frames_(record / (definition.name + ".frames.csv"), axis_columns(frame_columns)),
         disagreements_(record / (definition.name + ".disagreements.csv"),
-                       axis_columns({"frame", "object_i", "object_j", "triangle_i", "triangle_j",
-                                     "theirs", "ours", "exact"})),
-        coherence_(record / (definition.name + ".coherence.csv"),
-                   front_columns({"pair_runs", "near_runs", "moved_runs", "still_runs", "tests",
-                                  "entries", "kept", "grown", "again", "still_entries",
-                                  "motion_leaf", "motion_gap", "best_tests", "best_rebuilds"})),
+                       axis_columns(disagreement_columns)),
+        coherence_(record / (definition.name + ".coherence.csv"), front_columns(coherence_columns)),
         predictions_(record / (definition.name + ".predictions.csv"),
-                     front_columns({"strategy", "n_v", "n_p", "time_ns", "taken_ns"})) {
+                     front_columns(prediction_columns)) {
     check_measured(record);
+    check_rows(record);
     const auto traces = traces_of(cells_);
     const auto [number, of] = options.part;
     first_ = (number - 1) * traces.size() / of;
@@ -150,8 +166,39 @@ class Experiment {
                                                  : "holds counts alone: go on with --counts");
   }
 
+  /// Every cell has all of its rows or none: traces are saved whole. Rows of peers that this
+  /// program was built without stay.
+  void check_rows(const std::filesystem::path& record) const {
+    std::map<Row, std::size_t> held;
+    for (const Cell& cell : cells_) held[key_row(cell)];
+    const auto fail = [&](std::size_t row, const std::string& what) {
+      throw Unusable((record / (definition_.name + ".csv")).string(),
+                     "row " + std::to_string(row + 1) + " " + what);
+    };
+    const auto& rows = rows_.rows();
+    const auto key = [&](const Row& row) {
+      return Row(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(keys_));
+    };
+    const auto& columns = rows_.columns();
+    const auto peer = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), "peer") -
+                                               columns.begin());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto place = held.find(key(rows[i]));
+      if (place != held.end())
+        ++place->second;
+      else if (rows[i][peer].empty())
+        fail(i, "is of no cell of the definition");
+    }
+    const std::size_t wanted = is_timed() ? definition_.repetitions : 1;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (const auto place = held.find(key(rows[i]));
+          place != held.end() && place->second != wanted)
+        fail(i, "is of a cell that has " + std::to_string(place->second) + " rows, not " +
+                    std::to_string(wanted));
+  }
+
   /// Labels, then parameters, then what is measured.
-  Row columns(std::initializer_list<const char*> measured) {
+  Row columns(const Row& measured) {
     Row row;
     for (const auto& [name, value] : cells_.at(0).labels) row.push_back(name);
     for (const auto& [name, value] : cells_.at(0).parameters) row.push_back(name);
@@ -161,7 +208,7 @@ class Experiment {
   }
 
   /// Only what varies: a series is long.
-  Row axis_columns(std::initializer_list<const char*> measured) const {
+  Row axis_columns(const Row& measured) const {
     Row row;
     for (const auto& axis : definition_.axes) row.push_back(axis.name);
     row.insert(row.end(), measured.begin(), measured.end());
@@ -169,7 +216,7 @@ class Experiment {
   }
 
   /// What a front depends on, then what is measured of it.
-  Row front_columns(std::initializer_list<const char*> measured) const {
+  Row front_columns(const Row& measured) const {
     Row row;
     for (const auto& [name, value] : cells_.at(0).parameters)
       if (matters_to_front(name)) row.push_back(name);
@@ -391,6 +438,7 @@ class Experiment {
 
 void check(const Definition& definition) {
   try {
+    for (const auto& axis : definition.axes) check_axis_name(axis);
     std::map<std::string, bool> peers_asked;
     bool any_asked = false;
     for (const auto& cell : cells_of(definition)) {

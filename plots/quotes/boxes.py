@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Box intersection: ours beside peers, against displacement, and what the seed's figures say."""
+"""Box intersection: ours beside peers, against displacement, and what the published figures say."""
 
 import pandas as pd
 
@@ -66,13 +66,13 @@ def displacement(record):
     return {"over": Interval(over), "worst": worst[0], "at": 100 * worst[1], "sap": 100 * (1 - sap)}
 
 
-stated(RESULTS, "numbers of figures, and what the definition sets", "the seed's Figures [3](record/boxes-figure-3), "
+stated(RESULTS, "numbers of figures, and what the definition sets", "Koziara and Bićanić's Figures [3](record/boxes-figure-3), "
        "[4](record/boxes-figure-4) and [5](record/boxes-figure-5)", "of 1000 boxes", "**Boxes** (10 000 [beside the best peers]", "[200 000](record/boxes-fast-large)",
        "(from 200 000 on CGAL and FCL's tree alone)", "not from 200 000 boxes on")
 
 
 @quotes(["boxes-figure-3", "boxes-figure-4", "boxes-figure-5"], RESULTS,
-        "HYBRID is best of the seed's methods where boxes overlap much, from {dense_from:d} on, and on the sparse sphere from "
+        "HYBRID is best of their methods where boxes overlap much, from {dense_from:d} on, and on the sparse sphere from "
         "{sparse_from:d} on, where no coherent sweep overtakes it; SWEEP1, then HASH2, is best on adjacent cubes, up to "
         "{adjacent_to:d}, and HASH2 beyond.",
         "SWEEP4 falls behind HYBRID on the packed sphere well before 50 000 ({sweep4:.0f} ms against {hybrid:.0f} there), and coherence "

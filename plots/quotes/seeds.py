@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The seeds as they were: the talk's tree and prices, the motions of boxes."""
+"""What was published as it was: the talk's tree and prices, the motions of boxes."""
 
 import numpy as np
 

@@ -201,6 +201,13 @@ class Refuses(unittest.TestCase):
                                 mentions=["time_ns"])
             (record / "own.csv").unlink()
             self.refuse(record, mentions=["own.csv"])
+            with tempfile.TemporaryDirectory() as other:
+                self.refuse(own_record(other), "--out", str(record / "definition.toml" / "figures"),
+                            mentions=["definition.toml", "no folder"])
+            for text, mention in (("figure = 3", "[[figure]]"), ("axis = 3", "[[axis]]"), ("figure = [1]", "[[figure]]"),
+                                  ("parameters = 3", "no table")):
+                (record / "definition.toml").write_text(f"name = 'own'\n{text}\n")
+                self.refuse(record, mentions=[mention])
             (record / "definition.toml").write_text("name = \n")
             self.refuse(record, mentions=["definition.toml"])
 

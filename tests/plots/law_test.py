@@ -5,6 +5,7 @@ import contextlib
 import io
 import tempfile
 import unittest
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +39,15 @@ class Law(unittest.TestCase):
         grows = runs_of(stillness=0.0, growth=0.1, persistence=1.0)
         length = 1 + 0.1 * (np.arange(20, 100) - 1)
         self.assertAlmostEqual(law.window_over_recursion(grows, 0, 1, 20)[0], length.mean() / 2, places=2)  # nearly straight on
+
+
+    def test_says_nothing_where_nothing_was_near(self):
+        never = pd.concat([runs_of(), runs_of(near_runs=0, tests=0, again=0, growth=np.nan, stillness=np.nan)], ignore_index=True)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            found = law.list_over_recursion(never, 0, 0.5), law.window_over_recursion(never, 1, 0.5, 40)
+        for each in found:
+            self.assertEqual(np.isnan(each).tolist(), [False, True])
 
 
 class Unseen(unittest.TestCase):

@@ -3,6 +3,7 @@
 never been heard of: nothing fails, nothing is missing in silence, and no stranger looks like its neighbour."""
 
 import importlib
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -10,7 +11,7 @@ from pathlib import Path
 from unittest import mock
 
 from drawing import PLOTS, Seen
-from small_records import STRATEGIES, names_added, small_record, stranger
+from small_records import STRATEGIES, names_added, own_record, small_record, stranger
 
 RECURSIVE = dict(strategy="recursive")
 # Script: the record it draws, how much of it, and the strangers added, each like a name that is there.
@@ -52,6 +53,16 @@ class Scripts(unittest.TestCase):
                 seen.said += seen.printed if script in PRINTS else ""
                 pooled = [stranger(column) for column in POOLED.get(script, [])]
                 seen.check(self, [n for n in names_added(strangers, peer_like) if n not in pooled])
+
+    def test_what_is_no_record_of_theirs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            other = own_record(folder)
+            for script in sorted(set(SPECS) | ELSEWHERE):
+                for record, mention in ((other, "has"), (Path(folder) / "none", "no record")):
+                    done = subprocess.run([PLOTS / f"{script}.py", record], capture_output=True, text=True)
+                    with self.subTest(script=script, record=record):
+                        self.assertEqual(done.returncode, 2, done.stderr)
+                        self.assertRegex(done.stderr, rf"\A{script}.py: {record}: [^\n]*{mention}[^\n]*\n\Z")
 
 
 if __name__ == "__main__":

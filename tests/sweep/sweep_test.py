@@ -78,6 +78,12 @@ class Sweeps(SweepTest):
         self.refuse(sweep, mentions="definition")
         self.refuse(sweep, "absent.toml", "--record", "swept", "--bvlab", BVLAB, mentions="absent.toml")
         self.refuse(*self.command("--jobs", "0"), mentions="0")
+        given = [sweep, "small.toml", "--record", "swept", "--bvlab"]
+        for program, said in (("small.toml", "is no program"), (".", "is no program"), ("/bin/true", "is it bvlab?"),
+                              ("/bin/false", "is it bvlab?")):
+            self.refuse(*given, program, mentions=said)
+        (self.folder / "a-file").touch()
+        self.refuse(sweep, "small.toml", "--record", "a-file", "--bvlab", BVLAB, mentions="cannot be made")
         (self.folder / "bad.toml").write_text('name = "bad"\nnonsense = 1\n')
         self.refuse(sweep, "bad.toml", "--record", "swept", "--bvlab", BVLAB, mentions="line 2")
         (self.folder / "study.toml").write_text('name = "s"\nkind = "triangles"\n')

@@ -81,6 +81,7 @@ class Arrays(ProgramTest):
         for dtype in ("f2", "i4", "i8", ">f8", "c16", "?", "U3"):
             self.refuse_all(lambda good: good.astype(dtype), "holds", "needed")
         self.refuse_all(lambda good: good.astype("f4"), "holds", kinds=("replay", "triangles"))
+        self.refuse_all(lambda good: good.astype("i4"), "'<f4' or '<f8' is needed", kinds=["boxes"])
 
     def test_order(self):
         self.refuse_all(lambda good: np.asfortranarray(good), "Fortran")
@@ -242,6 +243,12 @@ class Names(ProgramTest):
         self.refuse(*self.replay, "--recommended", "--configuration", "as-published",
                     mentions=["--recommended", "--configuration"])
 
+    def test_of_configurations_in_their_own_words(self):
+        self.refuse(*self.replay, "--recommended", "--page", "page.html", mentions=["--page", "--configuration recommended"])
+        self.refuse(*self.replay, "--recommended", "--budget", "10", mentions=["--budget", "--configuration recommended"])
+        self.refuse(*self.replay, "--tree", "wide", "--volume", volumes_of("wide")[0], "--page", "page.html",
+                    mentions=["--page", "--tree wide"])
+
     def test_of_a_budget(self):
         for value in ("-1", "x", "1.5", ""):
             self.refuse(*self.replay, "--budget", value, mentions="--budget")
@@ -373,6 +380,8 @@ class Definitions(ProgramTest):
         self.refuse_definition("description = 'no name'\n", "name")
         self.refuse_definition("name = 'a/b'\n", "name")
         self.refuse_definition("name = 3\n", "line 1", "string")
+        self.refuse_definition('name = "a\\u0000b"\n', "line 1", "control character")
+        self.refuse_definition(f"name = '{'x' * 300}'\n", "longer than")
         for value in ("0", "-1", "1.5", "'three'", "100000"):
             self.refuse_definition(f"repetitions = {value}\n" + self.START, "line 1", "repetitions")
         self.refuse_definition("name = 'x'\nparameters = 3\n", "line 2", "table")
@@ -412,6 +421,13 @@ class Definitions(ProgramTest):
                                "values = [2]\n", "seed")
         self.refuse_definition(axis("name = 'way'\n[[axis.value]]\nmoving = 1\n"), "line 9", "name")
         self.refuse_definition(axis("name = 'seed'\n[[axis.value]]\nname = 'a'\n"), "seed", "values")
+        way = "name = 'way'\n[[axis.value]]\nname = 'a'\nseed = 1\n"
+        for other in ("name = 'seed'\nvalues = [2]\n", way.replace("'way'", "'road'")):
+            self.refuse_definition(axis(way) + "[[axis]]\n" + other, "line 12", "sets 'seed'", "'way'")
+        for name in ("time_ns", "differing", "repetition", "pairs", "frame", "kept", "n_v"):
+            self.refuse_definition(axis(way.replace("way", name)), f"axis '{name}'", "a column of that name")
+        self.refuse_definition(axis(way.replace("way", "")), "line 8", "name is empty")
+        self.refuse_definition(axis(way.replace("'way'", '"a\\nb"')), "line 8", "control character")
 
     def test_figures(self):
         for start, line in (("name = 'x'\n", 2), ("name = 'x'\nkind = 'triangles'\n", 3)):
@@ -453,6 +469,8 @@ class Definitions(ProgramTest):
         for value in ("-1", "200", "nan"):
             self.refuse_definition(self.START + f"degrees = {value}\n", "degrees")
         self.refuse_definition(self.START + "moving = 3\n", "moving")
+        for parameter in ("turns", "core", "wobble", "fall"):  # of scenes that are not asked for
+            self.refuse_definition(self.START + f"{parameter} = 'x'\n", parameter, "x")
 
     def test_billions_of_cells(self):
         numbers = ", ".join(map(str, range(100)))
@@ -475,6 +493,31 @@ class Definitions(ProgramTest):
         self.take("run", "good.toml", "--record", "kept")
         self.write("kept/small.csv", "seed,frob\n1,2\n")
         self.refuse("run", "good.toml", "--record", "kept", mentions="small.csv: has other columns")
+
+    def test_a_refused_run_is_begun_again(self):
+        """What it left in its record is no reason to refuse the definition once it is mended."""
+        self.write("mine.toml", self.START.replace('"box"', '"none.off"'))
+        done = self.run_bvlab("run", "mine.toml", "--record", "record")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.write("mine.toml", self.START)
+        self.take("run", "mine.toml", "--record", "record")
+        self.assertEqual((self.folder / "record/definition.toml").read_text(), self.START)
+        self.write("mine.toml", self.START + "seed = 2\n")
+        self.refuse("run", "mine.toml", "--record", "record", mentions="another definition")
+
+    def test_rows_that_bvlab_did_not_write(self):
+        self.write("good.toml", "repetitions = 2\n" + self.START + "[[axis]]\nname = 'seed'\nvalues = [1, 2]\n")
+        self.take("run", "good.toml", "--record", "record")
+        table = self.folder / "record/small.csv"
+        whole = table.read_text()
+        lines = whole.splitlines(keepends=True)
+        for text, said in ((whole[:-10], "is cut off"), (whole + '"', "is cut off"),
+                           ("".join(lines[:-1]), "row 3 is of a cell that has 1 rows, not 2"),
+                           (whole + lines[-1], "row 3 is of a cell that has 3 rows, not 2"),
+                           (whole.replace(",sphere,", ",cube,"), "row 1 is of no cell"),
+                           (lines[0] + "1,2\n", "line 2 has 2 fields")):
+            table.write_text(text)
+            self.refuse("run", "good.toml", "--record", "record", mentions=["record/small.csv: ", said])
 
 
 class Places(ProgramTest):
@@ -507,6 +550,26 @@ class Places(ProgramTest):
             self.refuse(*command, "--out", "folder", mentions=["--out", "folder", "directory"])
         self.refuse(*self.scene, "--out", "o.npy", "--meshes", "mesh.off", mentions="mesh.off")
 
+    def test_the_place_of_something_else(self):
+        """Nothing is written over what is read, nor one result over another."""
+        for command in self.commands:
+            given = command[command.index("--pairs" if "--pairs" in command else "--trace") + 1]
+            self.refuse(*command, "--out", given, mentions=["--out", given, "the place of"])
+            self.refuse(*command, "--out", "./" + given, mentions=["--out", given, "the place of"])
+            self.refuse(*command, "--json", given, mentions=["--json", given, "the place of"])
+            self.refuse(*command, "--out", "one", "--json", "./one", mentions=["--out one", "the place of --json"])
+            self.refuse(*command, "--out", "/dev/stdout", mentions=["--out /dev/stdout", "the totals"])
+        self.refuse(*self.commands[0], "--out", "mesh.off", mentions=["--out mesh.off", "--mesh"])
+        self.refuse(*self.commands[0], "--page", "one", "--out", "one", mentions=["--page one", "--out"])
+        self.refuse(*self.scene, "--out", "mesh.off", mentions=["--out mesh.off", "--mesh"])
+        predict = ["predict", "poses.npy", "--mesh", "mesh.off"]
+        self.refuse(*predict, "--csv", "one", "--json", "one", mentions=["--json one", "--csv"])
+        self.refuse(*predict, "--csv", "poses.npy", mentions=["--csv poses.npy", "--trace"])
+        self.refuse(*predict, "--json", "/dev/stdout", mentions=["--json /dev/stdout", "the table"])
+        (self.folder / "link.npy").symlink_to("poses.npy")
+        self.refuse(*self.commands[0], "--out", "link.npy", mentions=["--out link.npy", "--trace"])
+        self.take(*self.commands[1], "--out", "/dev/null", "--json", "/dev/null")
+
     def test_read_only_folder(self):
         nobody = {}
         if os.geteuid() == 0:
@@ -520,6 +583,8 @@ class Places(ProgramTest):
         for command in [*self.commands, self.scene]:
             given = [*command, "--out", "shut/out.npy"]
             self.refuse(*given, mentions=["--out", "shut", "Permission denied"], **nobody)
+        self.write("small.toml", "name = 'small'\n")
+        self.refuse("run", "small.toml", "--record", "shut", mentions=["--record", "shut", "Permission denied"], **nobody)
 
     def test_full_device(self):
         for command in [*self.commands, self.scene]:
