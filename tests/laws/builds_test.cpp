@@ -52,15 +52,14 @@ TEST(Builds, ThreadsChangeNoTopology) {
 
 TEST(Builds, ThreadsChangeNoTopologyFromBelow) {
   for (const auto& mesh : meshes())
-    for (const std::uint32_t leaf_size : {1u, 3u})
-      for (const std::uint32_t radius : {1u, 16u, 40u}) {
-        const BottomUp build{leaf_size, radius};
-        const Topology one = build(mesh);
-        for (const int count : {2, 3, 7}) {
-          Threads threads(count);
-          expect_same(one, build(mesh, threads));
-        }
+    for (const std::uint32_t radius : {4u, 16u}) {
+      const BottomUp build{3, radius};
+      const Topology one = build(mesh);
+      for (const int count : {2, 3, 7}) {
+        Threads threads(count);
+        expect_same(one, build(mesh, threads));
       }
+    }
 }
 
 /// Bits, so that not even a zero changes its sign.
