@@ -28,6 +28,11 @@ class MovingBody {
     follow();
     return displacement_bound_;
   }
+  /// The same of what its rotation matrices differ by, in the spectral norm.
+  double turn_bound() {
+    follow();
+    return turn_bound_;
+  }
 
  protected:
   /// Says whether the body has moved.
@@ -51,18 +56,22 @@ class MovingBody {
   void follow_here() {
     const ReferencePose now(pose_, extent_);
     // Rounded up, so that no step is lost in a long way.
-    if (displacement_bound_ < 0)
+    constexpr double up = 1 + 4 * unit_roundoff<double>;
+    if (displacement_bound_ < 0) {
       displacement_bound_ = 0;
-    else  // what is no number stays none
-      displacement_bound_ =
-          (displacement_bound_ + step_between(reference_pose_, now, extent_.radius)) *
-          (1 + 4 * unit_roundoff<double>);
+    } else {  // what is no number stays none
+      const double turn = turn_between(reference_pose_, now);
+      const double step = step_between(reference_pose_, now, turn, extent_.radius);
+      displacement_bound_ = (displacement_bound_ + step) * up;
+      turn_bound_ = (turn_bound_ + turn * (1 + 32 * unit_roundoff<double>)) * up;
+    }
     reference_pose_ = now;
   }
 
   HierarchyExtent extent_;
   ReferencePose reference_pose_;
-  double displacement_bound_ = -1;       // before the first reference pose
+  double displacement_bound_ = -1;  // before the first reference pose
+  double turn_bound_ = 0;
   std::uint32_t followed_ = never_done;  // the epoch that the reference pose is of
 };
 

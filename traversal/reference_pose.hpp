@@ -64,9 +64,11 @@ inline double turn_between(const ReferencePose& from, const ReferencePose& to) {
   return std::min(norm, (norm + defects) * M_SQRT1_2 + defects);
 }
 
-/// How far any point of a body that went from one pose to another can have come, at most.
-inline double step_between(const ReferencePose& from, const ReferencePose& to, double radius) {
-  return ((to.centre - from.centre).norm() + turn_between(from, to) * radius) *
+/// How far any point of a body that went from one pose to another, and turned by so much, can have
+/// come, at most.
+inline double step_between(const ReferencePose& from, const ReferencePose& to, double turn,
+                           double radius) {
+  return ((to.centre - from.centre).norm() + turn * radius) *
          (1 + 32 * unit_roundoff<double>)+(from.noise + to.noise);
 }
 

@@ -73,10 +73,9 @@ class Grid {
       const int held = static_cast<int>(std::min<std::uint32_t>(block_width, last - s));
       for (int lane = 0; lane < block_width; ++lane)
         block.put(lane, lane < held ? boxes[members_[s + lane]] : nowhere<T>());
-      const Loaded<T> loaded(block);
       for (std::uint32_t t = first; t < s + held; ++t) {
         const Box<T>& box = boxes[members_[t]];
-        LaneMask found = loaded.template overlapping<Contact>(box);
+        LaneMask found = overlapping_lanes<Contact>(block, box);
         if (t >= s) found &= all_lanes & (all_lanes << (t - s + 1));
         for (; found; found &= found - 1) {
           const std::uint32_t other = members_[s + std::countr_zero(found)];

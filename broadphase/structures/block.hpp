@@ -57,98 +57,54 @@ Box<T> enclosing(const Box<T>& a, const Box<T>& b) {
   return both;
 }
 
-/// A block held ready to be compared with many boxes.
-template <class T>
-class Loaded {
- public:
-  explicit Loaded(const Block<T>& block) : block_(block) {}
-
-  /// The lanes whose boxes overlap `box`.
-  template <class Contact>
-  LaneMask overlapping(const Box<T>& box) const {
-    LaneMask lanes = 0;
-    for (int first = 0; first < block_width; first += 4) {
-      auto four = all(0) == all(0);
-      for (int axis = 0; axis < 3; ++axis)
-        four &= Contact::reaches(all(box.hi[axis]), held(block_.lo[axis], first)) &
-                Contact::reaches(held(block_.hi[axis], first), all(box.lo[axis]));
-      lanes |= static_cast<LaneMask>(signs(reinterpret_cast<Four<T>>(four))) << first;
-    }
-    return lanes;
-  }
-
- private:
-  static Four<T> all(T x) { return Four<T>{x, x, x, x}; }
-  static Four<T> held(const T* numbers, int first) {
-    Four<T> four;
-    std::memcpy(&four, numbers + first, sizeof four);
-    return four;
-  }
-
-  const Block<T>& block_;
-};
+/// The lanes of `block` whose boxes overlap `box`. Six comparisons of sixteen lanes, or twelve of
+/// eight; the block is read where it stands.
+template <class Contact, class T>
+[[gnu::always_inline]] inline LaneMask overlapping_lanes(const Block<T>& block, const Box<T>& box) {
 #ifdef __AVX512F__
-/// The same in six registers: six comparisons, each masked by the ones before.
-template <>
-class Loaded<float> {
- public:
-  explicit Loaded(const Block<float>& block) {
-    for (int axis = 0; axis < 3; ++axis)
-      lo_[axis] = _mm512_load_ps(block.lo[axis]), hi_[axis] = _mm512_load_ps(block.hi[axis]);
-  }
-  template <class Contact>
-  LaneMask overlapping(const Box<float>& box) const {
-    constexpr int le = std::is_same_v<Contact, Closed> ? _CMP_LE_OQ : _CMP_LT_OQ;
-    constexpr int ge = std::is_same_v<Contact, Closed> ? _CMP_GE_OQ : _CMP_GT_OQ;
-    __mmask16 m = _mm512_cmp_ps_mask(lo_[0], _mm512_set1_ps(box.hi[0]), le);
-    __mmask16 n = _mm512_cmp_ps_mask(hi_[0], _mm512_set1_ps(box.lo[0]), ge);
-    m = _mm512_mask_cmp_ps_mask(m, lo_[1], _mm512_set1_ps(box.hi[1]), le);
-    n = _mm512_mask_cmp_ps_mask(n, hi_[1], _mm512_set1_ps(box.lo[1]), ge);
-    m = _mm512_mask_cmp_ps_mask(m, lo_[2], _mm512_set1_ps(box.hi[2]), le);
-    n = _mm512_mask_cmp_ps_mask(n, hi_[2], _mm512_set1_ps(box.lo[2]), ge);
+  constexpr int le = std::is_same_v<Contact, Closed> ? _CMP_LE_OQ : _CMP_LT_OQ;
+  constexpr int ge = std::is_same_v<Contact, Closed> ? _CMP_GE_OQ : _CMP_GT_OQ;
+  if constexpr (std::is_same_v<T, float>) {
+    __mmask16 m = 0xffff, n = 0xffff;  // each masked by the ones before
+    for (int axis = 0; axis < 3; ++axis) {
+      m = _mm512_mask_cmp_ps_mask(m, _mm512_load_ps(block.lo[axis]), _mm512_set1_ps(box.hi[axis]),
+                                  le);
+      n = _mm512_mask_cmp_ps_mask(n, _mm512_load_ps(block.hi[axis]), _mm512_set1_ps(box.lo[axis]),
+                                  ge);
+    }
     return static_cast<LaneMask>(m & n);
   }
-
- private:
-  __m512 lo_[3], hi_[3];
-};
-/// In twelve registers, eight lanes each.
-template <>
-class Loaded<double> {
- public:
-  explicit Loaded(const Block<double>& block) {
-    for (int axis = 0; axis < 3; ++axis)
-      for (int half = 0; half < 2; ++half) {
-        lo_[half][axis] = _mm512_load_pd(block.lo[axis] + 8 * half);
-        hi_[half][axis] = _mm512_load_pd(block.hi[axis] + 8 * half);
-      }
-  }
-  template <class Contact>
-  LaneMask overlapping(const Box<double>& box) const {
-    constexpr int le = std::is_same_v<Contact, Closed> ? _CMP_LE_OQ : _CMP_LT_OQ;
-    constexpr int ge = std::is_same_v<Contact, Closed> ? _CMP_GE_OQ : _CMP_GT_OQ;
+  if constexpr (std::is_same_v<T, double>) {
     LaneMask lanes = 0;
-    for (int half = 0; half < 2; ++half) {
-      __mmask8 m = _mm512_cmp_pd_mask(lo_[half][0], _mm512_set1_pd(box.hi[0]), le);
-      __mmask8 n = _mm512_cmp_pd_mask(hi_[half][0], _mm512_set1_pd(box.lo[0]), ge);
-      for (int axis = 1; axis < 3; ++axis) {
-        m = _mm512_mask_cmp_pd_mask(m, lo_[half][axis], _mm512_set1_pd(box.hi[axis]), le);
-        n = _mm512_mask_cmp_pd_mask(n, hi_[half][axis], _mm512_set1_pd(box.lo[axis]), ge);
+    for (int first = 0; first < block_width; first += 8) {
+      __mmask8 m = 0xff, n = 0xff;
+      for (int axis = 0; axis < 3; ++axis) {
+        m = _mm512_mask_cmp_pd_mask(m, _mm512_load_pd(block.lo[axis] + first),
+                                    _mm512_set1_pd(box.hi[axis]), le);
+        n = _mm512_mask_cmp_pd_mask(n, _mm512_load_pd(block.hi[axis] + first),
+                                    _mm512_set1_pd(box.lo[axis]), ge);
       }
-      lanes |= static_cast<LaneMask>(m & n) << (8 * half);
+      lanes |= static_cast<LaneMask>(m & n) << first;
     }
     return lanes;
   }
-
- private:
-  __m512d lo_[2][3], hi_[2][3];
-};
+#else
+  const auto all = [](T x) { return Four<T>{x, x, x, x}; };
+  LaneMask lanes = 0;
+  for (int first = 0; first < block_width; first += 4) {
+    const auto held = [&](const T* numbers) {
+      Four<T> four;
+      std::memcpy(&four, numbers + first, sizeof four);
+      return four;
+    };
+    auto four = all(0) == all(0);
+    for (int axis = 0; axis < 3; ++axis)
+      four &= Contact::reaches(all(box.hi[axis]), held(block.lo[axis])) &
+              Contact::reaches(held(block.hi[axis]), all(box.lo[axis]));
+    lanes |= static_cast<LaneMask>(signs(reinterpret_cast<Four<T> >(four))) << first;
+  }
+  return lanes;
 #endif
-
-/// The lanes whose boxes overlap `box`.
-template <class Contact, class T>
-inline LaneMask overlapping_lanes(const Block<T>& block, const Box<T>& box) {
-  return Loaded<T>(block).template overlapping<Contact>(box);
 }
 
 /// What encloses every lane; empty lanes do not count.
@@ -270,6 +226,25 @@ inline Pair* write_pairs(Pair* out, std::uint32_t id, const std::uint32_t* ids, 
 #else
   for (; lanes; lanes &= lanes - 1) *out++ = ordered(id, ids[std::countr_zero(lanes)]);
   return out;
+#endif
+}
+
+/// Writes `first` + lane for every lane of `lanes`, and `other` as often. Room as for
+/// `write_pairs`; returns how many they are.
+inline std::size_t write_lanes(std::uint32_t* out, std::uint32_t* others, std::uint32_t first,
+                               std::uint32_t other, LaneMask lanes) {
+#ifdef __AVX512F__
+  const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(
+                               static_cast<__mmask16>(lanes),
+                               _mm512_add_epi32(lane, _mm512_set1_epi32(static_cast<int>(first)))));
+  _mm512_storeu_si512(others, _mm512_set1_epi32(static_cast<int>(other)));
+  return static_cast<std::size_t>(std::popcount(lanes));
+#else
+  std::size_t count = 0;
+  for (; lanes; lanes &= lanes - 1, ++count)
+    out[count] = first + static_cast<std::uint32_t>(std::countr_zero(lanes)), others[count] = other;
+  return count;
 #endif
 }
 

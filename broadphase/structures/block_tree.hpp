@@ -122,8 +122,8 @@ class BlockTree {
                                             bounds(levels_[level - 1][k]));
   }
 
-  /// Calls visit(a, b) for a < b, two leaves whose bounds overlap, and visit(a, a) for every leaf,
-  /// from those under the blocks [first, last) of the top level's children on.
+  /// Calls visit(a, first, lanes) for leaves a whose bounds overlap those of the leaves `first` +
+  /// lane for every lane of `lanes`: a itself, and later ones. Each such pair is visited once.
   template <class Visit>
   void join(Visit&& visit) const {
     if (leaves() > 0) join_self(depth_ - 1, 0, visit);
@@ -136,7 +136,9 @@ class BlockTree {
   /// What the join consists of, in its order.
   void join_parts(std::vector<Part>& parts) const {
     parts.clear();
-    const auto add = [&](std::uint32_t a, std::uint32_t b) { parts.push_back({a, b}); };
+    const auto add = [&](std::uint32_t a, std::uint32_t first, LaneMask lanes) {
+      for (; lanes; lanes &= lanes - 1) parts.push_back({a, first + std::countr_zero(lanes)});
+    };
     if (leaves() > 0) join_self<1>(depth_ - 1, 0, add);
   }
   template <class Visit>
@@ -191,35 +193,42 @@ class BlockTree {
     ids_.resize(count * block_width);
   }
 
+  /// Down to the nodes of level kDown, which are visited.
   template <std::size_t kDown = 0, class Visit>
   void join_self(std::size_t level, std::uint32_t a, Visit& visit) const {
-    if (level == kDown) return visit(a, a);
+    if (level == kDown) return visit(a, a, LaneMask{1});
     const Block<T>& block = levels_[level][a];
-    const std::size_t first = std::size_t{a} * block_width;
-    const std::size_t count = std::min<std::size_t>(block_width, levels_[level - 1].size() - first);
-    for (std::size_t k = 0; k < count; ++k) {
-      join_self<kDown>(level - 1, static_cast<std::uint32_t>(first + k), visit);
-      LaneMask others =
-          overlapping_lanes<Closed>(block, block.box(static_cast<int>(k))) & (all_lanes << (k + 1));
-      for (; others; others &= others - 1)
-        join_two<kDown>(level - 1, static_cast<std::uint32_t>(first + k),
-                        static_cast<std::uint32_t>(first) + std::countr_zero(others), visit);
+    const std::uint32_t first = a * block_width;
+    const auto count = static_cast<std::uint32_t>(
+        std::min<std::size_t>(block_width, levels_[level - 1].size() - first));
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const LaneMask others = overlapping_lanes<Closed>(block, block.box(static_cast<int>(k)));
+      if (level == kDown + 1) {
+        visit(first + k, first, (others | LaneMask{1} << k) & (all_lanes << k));
+        continue;
+      }
+      join_self<kDown>(level - 1, first + k, visit);
+      for (LaneMask later = others & (all_lanes << (k + 1)); later; later &= later - 1)
+        join_two<kDown>(level - 1, first + k, first + std::countr_zero(later), visit);
     }
   }
 
   template <std::size_t kDown = 0, class Visit>
   void join_two(std::size_t level, std::uint32_t a, std::uint32_t b, Visit& visit) const {
-    if (level == kDown) return visit(a, b);
+    if (level == kDown) return visit(a, b, LaneMask{1});
     const Block<T>& left = levels_[level][a];
     const Block<T>& right = levels_[level][b];
     LaneMask rows =
         overlapping_lanes<Closed>(left, levels_[level + 1][b / block_width].box(b % block_width));
     for (; rows; rows &= rows - 1) {
       const int row = std::countr_zero(rows);
+      const std::uint32_t from = a * block_width + row, first = b * block_width;
       LaneMask others = overlapping_lanes<Closed>(right, left.box(row));
-      for (; others; others &= others - 1)
-        join_two<kDown>(level - 1, a * block_width + row,
-                        b * block_width + std::countr_zero(others), visit);
+      if (level == kDown + 1)
+        visit(from, first, others);
+      else
+        for (; others; others &= others - 1)
+          join_two<kDown>(level - 1, from, first + std::countr_zero(others), visit);
     }
   }
 

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <new>
@@ -14,10 +13,7 @@
 #include <utility>
 
 #include "broadphase/box.hpp"
-
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
+#include "hierarchies/geometry/pages.hpp"
 
 namespace bvlab {
 
@@ -81,8 +77,10 @@ class PairList {
   }
 
  private:
-  /// An eighth more than what was done lets expect; a start is no more than a hint.
+  /// An eighth more than what was done lets expect; a start is no more than a hint. From the first
+  /// time on so much that it need not be copied to grow.
   void grow_by_share(std::size_t least, double done) {
+    least = std::max(least, (std::size_t{1} << 18) / sizeof(Pair));
     const double expected = done > 0 ? 1.125 * static_cast<double>(size_) / done : 0;
     const double most = 16.0 * static_cast<double>(std::max(capacity_, least));
     grow(std::max(
@@ -95,23 +93,20 @@ class PairList {
                             : nullptr;
     if (!pairs) throw std::bad_alloc();
     pairs_ = static_cast<Pair*>(pairs), capacity_ = capacity;
+    if (capacity * sizeof(Pair) >= pages::worth_huge && huge_pages_)
+      pages::advise(pairs_, pairs_ + capacity_, true);
   }
 
-  /// Has the system provide the pages of the next megabyte at once: they cost two thirds of what
-  /// they cost one by one, as they are touched. Nothing depends on it.
+  /// Brings the pages that come next, an eighth of what there is, and no more than stays in the
+  /// cache until it is written to.
   void make_ready(std::size_t least) {
-    constexpr std::size_t chunk = (std::size_t{1} << 20) / sizeof(Pair);
-    const std::size_t ready =
-        capacity_ < 2 * chunk ? capacity_ : std::min(least + chunk, capacity_);
-#if defined(__linux__) && defined(MADV_POPULATE_WRITE)
-    if (ready > 2 * chunk) {
-      constexpr std::uintptr_t page = 4096;
-      const auto begin =
-          (reinterpret_cast<std::uintptr_t>(pairs_ + ready_) + page - 1) / page * page;
-      const auto end = reinterpret_cast<std::uintptr_t>(pairs_ + ready) / page * page;
-      if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_POPULATE_WRITE);
+    constexpr std::size_t fewest = (std::size_t{1} << 13) / sizeof(Pair),
+                          most = (std::size_t{1} << 18) / sizeof(Pair);
+    const std::size_t ready = std::min(least + std::clamp(least / 8, fewest, most), capacity_);
+    if (!pages::bring(pairs_ + ready_, pairs_ + ready) && huge_pages_) {
+      huge_pages_ = false;
+      pages::advise(pairs_, pairs_ + capacity_, false);
     }
-#endif
     ready_ = ready;
   }
 
@@ -119,6 +114,7 @@ class PairList {
   std::size_t size_ = 0;
   std::size_t ready_ = 0;  ///< to be written to without asking
   std::size_t capacity_ = 0;
+  bool huge_pages_ = true;  ///< while they come quickly
 };
 
 }  // namespace bvlab

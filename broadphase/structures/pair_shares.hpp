@@ -5,8 +5,7 @@
 /// thread takes from the beginning on stands where it belongs.
 ///
 /// That most pairs are written twice is what bounds two threads where there are millions of them,
-/// in a first call above all: the system takes as long to provide a page as its five hundred pairs
-/// take to be found.
+/// in a first call above all, where the system provides memory for both.
 #pragma once
 
 #include <cstddef>

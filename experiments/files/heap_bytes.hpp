@@ -13,4 +13,8 @@ inline std::size_t heap_bytes() {
   return info.uordblks + info.hblkhd;
 }
 
+/// What was freed goes back to the system, as far as it can: who allocates next gets pages that
+/// were not touched before.
+inline void give_back_heap() { malloc_trim(0); }
+
 }  // namespace bvlab

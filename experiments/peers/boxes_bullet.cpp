@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "broadphase/structures/pair_list.hpp"
 #include "experiments/peers/boxes_peers.hpp"
 
 namespace bvlab {
@@ -31,9 +32,9 @@ class Bullet final : public BoxPeer {
     const auto& cache = broadphase_->getOverlappingPairCache()->getOverlappingPairArray();
     for (int k = 0; k < cache.size(); ++k) {
       const Pair pair = ordered(index(cache[k].m_pProxy0), index(cache[k].m_pProxy1));
-      if (overlap<Closed>(boxes[pair.i], boxes[pair.j])) pairs_.push_back(pair);
+      if (overlap<Closed>(boxes[pair.i], boxes[pair.j])) pairs_.push(pair);
     }
-    return pairs_;
+    return pairs_.view();
   }
 
  private:
@@ -72,7 +73,7 @@ class Bullet final : public BoxPeer {
   Kind kind_;
   std::unique_ptr<btBroadphaseInterface> broadphase_;
   std::vector<btBroadphaseProxy*> proxies_;
-  std::vector<Pair> pairs_;
+  PairList pairs_;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <CGAL/box_intersection_d.h>
 #include <tbb/enumerable_thread_specific.h>
 
+#include "broadphase/structures/pair_list.hpp"
 #include "experiments/peers/boxes_peers.hpp"
 
 namespace bvlab {
@@ -35,10 +36,10 @@ class Cgal final : public BoxPeer {
       CGAL::box_self_intersection_d(
           items_.begin(), items_.end(),
           [this](const IndexedBox& a, const IndexedBox& b) {
-            pairs_.push_back(ordered(a.index, b.index));
+            pairs_.push(ordered(a.index, b.index));
           },
           cutoff_);
-      return pairs_;
+      return pairs_.view();
     }
     tbb::enumerable_thread_specific<std::vector<Pair>> found;
     CGAL::box_self_intersection_d<CGAL::Parallel_tag>(
@@ -47,15 +48,15 @@ class Cgal final : public BoxPeer {
           found.local().push_back(ordered(a.index, b.index));
         },
         cutoff_);
-    for (const auto& some : found) pairs_.insert(pairs_.end(), some.begin(), some.end());
-    return pairs_;
+    for (const auto& some : found) pairs_.append(some);
+    return pairs_.view();
   }
 
  private:
   std::ptrdiff_t cutoff_;
   Run run_;
   std::vector<IndexedBox> items_;
-  std::vector<Pair> pairs_;
+  PairList pairs_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 /// Embree's rtcCollide on user geometry, one thread.
 #include <embree3/rtcore.h>
 
+#include "broadphase/structures/pair_list.hpp"
 #include "experiments/peers/boxes_peers.hpp"
 
 namespace bvlab {
@@ -17,7 +18,7 @@ class Embree final : public BoxPeer {
   std::span<const Pair> overlapping(Boxes<float> boxes) override {
     boxes_ = boxes;
     pairs_.clear();
-    if (boxes.empty()) return pairs_;
+    if (boxes.empty()) return pairs_.view();
     if (boxes.size() != count_) enter();
     rtcCommitGeometry(rtcGetGeometry(scene_, 0));
     rtcCommitScene(scene_);
@@ -27,12 +28,11 @@ class Embree final : public BoxPeer {
           auto& peer = *static_cast<Embree*>(self);
           for (unsigned k = 0; k < count; ++k) {
             const auto a = found[k].primID0, b = found[k].primID1;
-            if (a < b && overlap<Closed>(peer.boxes_[a], peer.boxes_[b]))
-              peer.pairs_.push_back({a, b});
+            if (a < b && overlap<Closed>(peer.boxes_[a], peer.boxes_[b])) peer.pairs_.push({a, b});
           }
         },
         this);
-    return pairs_;
+    return pairs_.view();
   }
 
  private:
@@ -64,7 +64,7 @@ class Embree final : public BoxPeer {
   RTCScene scene_ = nullptr;
   std::size_t count_ = 0;
   Boxes<float> boxes_;
-  std::vector<Pair> pairs_;
+  PairList pairs_;
 };
 
 }  // namespace

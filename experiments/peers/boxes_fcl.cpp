@@ -7,6 +7,7 @@
 #include <fcl/broadphase/broadphase_interval_tree.h>
 #include <fcl/geometry/shape/sphere.h>
 
+#include "broadphase/structures/pair_list.hpp"
 #include "experiments/peers/boxes_peers.hpp"
 
 namespace bvlab {
@@ -39,10 +40,10 @@ class Fcl final : public BoxPeer {
     manager_->collide(
         this, [](fcl::CollisionObject<float>* a, fcl::CollisionObject<float>* b, void* self) {
           if (a->getAABB().overlap(b->getAABB()))
-            static_cast<Fcl*>(self)->pairs_.push_back(ordered(index(a), index(b)));
+            static_cast<Fcl*>(self)->pairs_.push(ordered(index(a), index(b)));
           return false;
         });
-    return pairs_;
+    return pairs_.view();
   }
 
  private:
@@ -54,7 +55,7 @@ class Fcl final : public BoxPeer {
   std::unique_ptr<Manager> manager_;
   std::vector<std::unique_ptr<fcl::CollisionObject<float>>> objects_;
   std::vector<fcl::CollisionObject<float>*> pointers_;
-  std::vector<Pair> pairs_;
+  PairList pairs_;
 };
 
 }  // namespace

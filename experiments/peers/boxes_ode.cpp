@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "broadphase/structures/pair_list.hpp"
 #include "experiments/peers/boxes_peers.hpp"
 
 namespace bvlab {
@@ -41,9 +42,9 @@ class Ode final : public BoxPeer {
     dSpaceCollide(space_, this, [](void* self, dGeomID a, dGeomID b) {
       auto& peer = *static_cast<Ode*>(self);
       const Pair pair = ordered(index(a), index(b));
-      if (overlap<Closed>(peer.boxes_[pair.i], peer.boxes_[pair.j])) peer.pairs_.push_back(pair);
+      if (overlap<Closed>(peer.boxes_[pair.i], peer.boxes_[pair.j])) peer.pairs_.push(pair);
     });
-    return pairs_;
+    return pairs_.view();
   }
 
  private:
@@ -65,7 +66,7 @@ class Ode final : public BoxPeer {
   dSpaceID space_ = nullptr;
   Boxes<float> boxes_;
   std::vector<dGeomID> geometries_;
-  std::vector<Pair> pairs_;
+  PairList pairs_;
 };
 
 }  // namespace

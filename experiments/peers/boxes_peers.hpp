@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Other libraries' broad phases on the same frames. Each keeps its own objects between frames,
-/// updates them from the boxes, and writes the pairs it reports into a list as ours do. What it
-/// costs to put the boxes into the library's own form is part of its time, as it is of ours.
+/// updates them from the boxes, and writes the pairs it reports into the same kind of list as ours
+/// (PairList), whose memory the system provides as cheaply. What it costs to put the boxes into the
+/// library's own form is part of its time, as it is of ours.
 #pragma once
 
 #include <memory>

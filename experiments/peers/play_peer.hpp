@@ -82,11 +82,11 @@ class PeerPlay {
 
   template <class Ask>
   void each_pair(const Ask& ask) {
-    std::vector<Pose> poses(trace_.objects);
+    PosesInTurn poses_in_turn(trace_);
     start_ = Clock::now();
     double last = 0;
     for (std::size_t frame = 0; frame < trace_.frames; ++frame) {
-      trace_.poses(frame, poses);
+      const auto poses = poses_in_turn.at(frame);
       for (std::size_t i = 0; i < poses.size(); ++i) world_.place(i, poses[i]);
       for (const auto& pair : pairs_) ask(frame, pair);
       if (frame == 0) result_.first_seconds = since_start();

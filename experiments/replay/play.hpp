@@ -115,17 +115,15 @@ class PlayedBy final : public Player {
  public:
   PlayedBy(Engine engine, const Trace& trace, const QueryOptions& how, const ReplayOptions& options,
            ReplayResult& result)
-      : trace_(trace),
-        result_(result),
+      : result_(result),
         options_(options),
         engine_(std::move(engine)),
         answers_(result, trace, options, how),
-        poses_(trace.objects) {}
+        poses_(trace) {}
 
   void play(std::size_t frame) override {
-    trace_.poses(frame, poses_);
     engine_.frame(
-        poses_, counter_, [&](std::size_t p) { return answers_.ask(p); },
+        poses_.at(frame), counter_, [&](std::size_t p) { return answers_.ask(p); },
         [&](std::size_t p, const Query& query) {
           answers_.take(frame, p, engine_.pairs()[p], query);
         });
@@ -148,12 +146,11 @@ class PlayedBy final : public Player {
   }
 
  private:
-  const Trace& trace_;
   ReplayResult& result_;
   const ReplayOptions& options_;
   Engine engine_;
   Answers<Query> answers_;
-  std::vector<Pose> poses_;
+  PosesInTurn poses_;
   Counter counter_;
 };
 

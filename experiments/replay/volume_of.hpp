@@ -42,13 +42,13 @@ BudgetedResult play_budgeted(std::span<const TriangleMesh> meshes, const Trace& 
   const auto pairs = all_object_pairs(static_cast<std::uint32_t>(trace.objects));
   result.known.reserve(trace.frames * pairs.size());
   result.bounds.reserve(trace.frames * pairs.size());
-  std::vector<Pose> poses(trace.objects);
+  PosesInTurn poses_in_turn(trace);
   Budgeted<NativeBatch<typename V::scalar>, V> ask;
   const auto play = [&](auto& counter) {
     Vec3<double> origin;
     start = Clock::now();
     for (std::size_t frame = 0; frame < trace.frames; ++frame) {
-      trace.poses(frame, poses);
+      const auto poses = poses_in_turn.at(frame);
       if (frame == 0) origin = middle_of(poses);
       bodies.move(poses, origin);
       for (const auto& [i, j] : pairs)

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <set>
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/named_mesh.hpp"
@@ -84,11 +86,116 @@ std::vector<Box<float>> triangles(std::size_t count) {
   return boxes;
 }
 
+using Corner = std::array<double, 3>;
+
+/// The boxes of a mesh's edges, each as it sweeps from where its corners are to where they go.
+std::vector<Box<float>> swept_edges(const std::vector<Corner>& from, const std::vector<Corner>& to,
+                                    const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  std::set<std::array<std::uint32_t, 2>> edges;
+  for (const auto& t : triangles)
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
+      edges.insert({low, high});
+    }
+  std::vector<Box<float>> boxes;
+  for (const auto& [a, b] : edges) {
+    Box<float> box;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [least, most] =
+          std::minmax({from[a][axis], from[b][axis], to[a][axis], to[b][axis]});
+      box.lo[axis] = rounded_down<float>(least), box.hi[axis] = rounded_up<float>(most);
+    }
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
+/// Smooth, from -1 to 1, once round as x goes on by one: parabolas, the same everywhere.
+double wave(double x) {
+  x -= std::floor(x);
+  const double u = x < 0.5 ? x : x - 0.5, height = 16 * u * (0.5 - u);
+  return x < 0.5 ? height : -height;
+}
+
+std::vector<Box<float>> swept_bunny(std::size_t count) {
+  const TriangleMesh mesh = named_mesh("bunny", std::max<std::size_t>(2 * count / 3, 4)).mesh;
+  std::vector<Corner> from, to;
+  for (const auto& v : mesh.vertices) from.push_back({v[0], v[1], v[2]});
+  double length = 0, size = 0;
+  for (const auto& t : mesh.triangles)
+    for (int axis = 0; axis < 3; ++axis) {
+      length += std::abs(from[t[0]][axis] - from[t[1]][axis]) /
+                static_cast<double>(2 * mesh.triangles.size());  // two such differences an edge
+      size = std::max(size, std::abs(from[t[0]][axis]));
+    }
+  for (const Corner& v : from) {
+    Corner moved = v;
+    for (int axis = 0; axis < 3; ++axis)
+      moved[axis] += 4.5 * length * wave(0.3 * axis + v[(axis + 1) % 3] / (2 * size));
+    to.push_back(moved);
+  }
+  auto boxes = swept_edges(from, to, mesh.triangles);
+  if (boxes.size() > count) boxes.resize(count);
+  return boxes;
+}
+
+/// Folds: waves across the unit square in random directions.
+class Folds {
+ public:
+  explicit Folds(Maker& make) {
+    for (Fold& fold : folds_)
+      fold = {1.9 * make.normal(),
+              1.9 * make.normal(),
+              make.uniform(0, 1),
+              {0.06 * make.normal(), 0.06 * make.normal(), 0.06 * make.normal()}};
+  }
+  Corner operator()(double u, double v) const {
+    Corner sum{};
+    for (const Fold& fold : folds_)
+      for (int axis = 0; axis < 3; ++axis)
+        sum[axis] += fold.height[axis] * wave(fold.along * u + fold.across * v + fold.phase);
+    return sum;
+  }
+
+ private:
+  struct Fold {
+    double along, across, phase;
+    Corner height;
+  };
+  std::array<Fold, 10> folds_;
+};
+
+/// A sheet of side x side corners and two triangles to a square, crumpled a little.
+std::vector<Box<float>> cloth(std::size_t count, Maker& make) {
+  std::uint32_t side = 2;
+  while (3 * std::size_t{side + 1} * (side + 1) - 4 * (side + 1) + 1 <= count) ++side;
+  const Folds shape(make), motion(make);
+  std::vector<Corner> from, to;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  const double step = 1.0 / side;
+  for (std::uint32_t k = 0; k < side * side; ++k) {
+    const double u = step * (k / side), v = step * (k % side);
+    Corner corner = shape(u, v);
+    const Corner moves = motion(u, v);
+    corner[0] += u, corner[1] += v;
+    for (double& x : corner) x += 0.2 * step * make.normal();
+    from.push_back(corner);
+    for (int axis = 0; axis < 3; ++axis) corner[axis] += 35 * step * moves[axis];
+    to.push_back(corner);
+    if (k / side + 1 == side || k % side + 1 == side) continue;
+    triangles.push_back({k, k + side, k + 1});
+    triangles.push_back({k + side, k + side + 1, k + 1});
+  }
+  auto boxes = swept_edges(from, to, triangles);
+  if (boxes.size() > count) boxes.resize(count);
+  return boxes;
+}
+
 }  // namespace
 
 std::vector<std::string> box_set_names() {
-  return {"random", "sphere-packed", "adjacent", "sphere-sparse", "clusters",
-          "mixed",  "elongated",     "flock",    "pile",          "triangles"};
+  return {"random",    "sphere-packed", "adjacent", "sphere-sparse", "clusters",    "mixed",
+          "elongated", "flock",         "pile",     "triangles",     "swept-edges", "cloth"};
 }
 std::vector<std::string> box_motion_names() {
   return {"still",      "drift",   "rigid",  "breathe", "part",
@@ -99,6 +206,8 @@ std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count,
   Maker make(seed);
   if (name == "adjacent") return adjacent(count, make);
   if (name == "triangles") return triangles(count);
+  if (name == "swept-edges") return swept_bunny(count);
+  if (name == "cloth") return cloth(count, make);
   const float spacing = 1 / std::cbrt(static_cast<float>(std::max<std::size_t>(count, 1)));
   std::vector<Centre> centres;
   for (int k = 0; k < 20; ++k) centres.push_back(make.in_cube());

@@ -3,7 +3,9 @@
 /// `random` (over-packed, k = O(n^2)), `sphere-packed` (the same on a sphere), `adjacent` (cubes
 /// that touch exactly), `sphere-sparse` (k = O(n)). Sets it left out: `clusters`, `mixed` (sizes
 /// over six decades), `elongated`, `flock` (velocities correlated), `pile` (most boxes at rest);
-/// and a real one: `triangles`, the boxes of a bunny's triangles.
+/// and real ones: `triangles`, the boxes of a bunny's triangles; `swept-edges`, those of its edges,
+/// each swept by a motion of three edge lengths, and `cloth`, the same of a crumpled sheet, as
+/// continuous collision detection asks for them (some forty pairs a box).
 #pragma once
 
 #include <array>
@@ -17,8 +19,8 @@ namespace bvlab {
 
 std::vector<std::string> box_set_names();
 
-/// `adjacent` has as many boxes as the largest cube of cubes within `count`; the others have
-/// `count`, or `triangles` what its mesh has to give. Throws Unusable for an unknown name.
+/// `adjacent` has as many boxes as the largest cube of cubes within `count`, `cloth` as the largest
+/// square sheet; the others have `count`, or what their mesh has to give. Throws Unusable for an unknown name.
 std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count, unsigned seed);
 
 /// Moves a set frame by frame:

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,6 +23,22 @@ struct Trace {
 
   /// The poses of one frame into `poses`, which has one entry for each object.
   void poses(std::size_t frame, std::span<Pose> poses) const;
+};
+
+/// A trace's poses, frame by frame. Who stands where it stood in the frame asked for before is not
+/// posed again: that is the work of no engine that is timed.
+class PosesInTurn {
+ public:
+  /// The trace must outlive this.
+  explicit PosesInTurn(const Trace& trace) : trace_(trace), poses_(trace.objects) {}
+
+  /// Of one frame, one for each object: until the next are asked for.
+  std::span<const Pose> at(std::size_t frame);
+
+ private:
+  const Trace& trace_;
+  std::vector<Pose> poses_;
+  std::optional<std::size_t> frame_;
 };
 
 /// Refuses what is not a trace: shape, NaN, infinity, zero quaternions, more frames or objects than

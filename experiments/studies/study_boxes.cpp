@@ -3,9 +3,11 @@
 /// and displacement all variants run the same frames, in an order drawn anew for each repetition,
 /// and every frame's pair set is compared with the reference's by count and by a sum of hashes.
 /// A frame's time is the mean over all but the first, since some methods save work up for later
-/// frames; beside it stand the median and the 99th percentile. A run that something else disturbed
-/// is made again. Processor time, which neighbours on the machine disturb less, stands beside that
-/// of the wall clock; `bytes` is the heap that a method holds after its last frame.
+/// frames; beside it stand the median and the 99th percentile. Memory that an earlier run freed is
+/// given back to the system first, so that the first frame is a first call. A run that something
+/// else disturbed is made again. Processor time, which neighbours on the machine disturb less,
+/// stands beside that of the wall clock; `bytes` is the heap that a method holds after its last
+/// frame.
 #include <algorithm>
 #include <random>
 #include <set>
@@ -177,6 +179,7 @@ class Player {
 Outcome play(const Variant& variant, const Frames& frames, double limit_ns) {
   Outcome outcome;
   std::vector<double> later, wall, events;
+  give_back_heap();
   const std::size_t heap = heap_bytes();
   Player player(variant);
   for (std::size_t f = 0; f < frames.size(); ++f) {

@@ -23,6 +23,7 @@
 /// be, for then float64 has lost it too.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -33,18 +34,41 @@ namespace bvlab {
 
 /// What there is to know of one body, once whenever it moves.
 struct OrthonormalPose {
-  Mat3<double> rotation = Mat3<double>::Identity();  ///< Q, orthonormal to 32u
+  using Four = Batch<double, 4>;
+
+  alignas(32) double rows[3][4] = {};  ///< of Q, orthonormal to 32u, and a zero: read as one
   Vec3<double> translation = Vec3<double>::Zero();
   double reach = 0;  ///< of the mesh, from its own origin
   double noise = 0;  ///< 8u (r + |t|) + |R - Q| r; infinite where R is off by more than 0.01
 
   OrthonormalPose() = default;
   OrthonormalPose(const Pose& pose, double reach_of_mesh)
-      : rotation(pose.rotation), translation(pose.translation), reach(reach_of_mesh) {
+      : translation(pose.translation), reach(reach_of_mesh) {
     constexpr double u = unit_roundoff<double>;
     noise = 8 * u * (reach + translation.lpNorm<1>());
+    if (squared_defect_of(pose.rotation) <= sound)
+      keep(pose.rotation);
+    else
+      keep(made_orthonormal(pose.rotation));
+  }
+
+  /// Q' v, v by its coordinates; the last number is 0.
+  [[gnu::always_inline]] Four transposed_times(double x, double y, double z) const {
+    const auto row = [&](int i) { return Four(rows[i], stdx::vector_aligned); };
+    return (row(0) * Four(x) + row(1) * Four(y)) + row(2) * Four(z);
+  }
+
+ private:
+  static constexpr double sound = 32 * 32 * unit_roundoff<double> * unit_roundoff<double>;
+
+  void keep(const Mat3<double>& rotation) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) rows[i][j] = rotation(i, j);
+  }
+
+  Mat3<double> made_orthonormal(const Mat3<double>& given) {
+    Mat3<double> rotation = given;
     double left = squared_defect_of(rotation);
-    if (left <= sound) return;
     // As Placement does: each step of Newton's iteration squares the defect.
     if (left <= 1e-4)
       for (int step = 0; step < 8 && !(left <= sound); ++step) {
@@ -52,15 +76,12 @@ struct OrthonormalPose {
         left = squared_defect_of(rotation);
       }
     if (left <= sound) {
-      noise += ((pose.rotation - rotation).norm() + 8 * u) * reach;
-    } else {
-      rotation = Mat3<double>::Identity();
-      noise = std::numeric_limits<double>::infinity();
+      noise += ((given - rotation).norm() + 8 * unit_roundoff<double>)*reach;
+      return rotation;
     }
+    noise = std::numeric_limits<double>::infinity();
+    return Mat3<double>::Identity();
   }
-
- private:
-  static constexpr double sound = 32 * 32 * unit_roundoff<double> * unit_roundoff<double>;
 
   /// |M'M - I|_F^2.
   static double squared_defect_of(const Mat3<double>& m) {
@@ -76,26 +97,33 @@ struct OrthonormalPose {
 
 /// a as seen from b.
 struct RelativePose {
-  Mat3<double> rotation;
-  Vec3<double> translation;
+  using Four = OrthonormalPose::Four;
+
+  std::array<Four, 3> column;  ///< of the rotation; the last number of each is 0
+  Four translation;
+  double length;  ///< of the translation: the sum of its numbers, all taken positive
   double noise;
 
   RelativePose(const OrthonormalPose& a, const OrthonormalPose& b) {
-    const Vec3<double> between = a.translation - b.translation;
-    rotation = b.rotation.transpose().lazyProduct(a.rotation);
-    translation = b.rotation.transpose().lazyProduct(between);
+    const double x = a.translation[0] - b.translation[0], y = a.translation[1] - b.translation[1],
+                 z = a.translation[2] - b.translation[2];
+    for (std::size_t j = 0; j < 3; ++j)
+      column[j] = b.transposed_times(a.rows[0][j], a.rows[1][j], a.rows[2][j]);
+    translation = b.transposed_times(x, y, z);
+    length = (std::abs(translation[0]) + std::abs(translation[1])) + std::abs(translation[2]);
     noise = a.noise + b.noise +
-            128 * unit_roundoff<double> * (a.reach + b.reach + between.template lpNorm<1>());
+            128 * unit_roundoff<double> *
+                (a.reach + b.reach + ((std::abs(x) + std::abs(y)) + std::abs(z)));
   }
 
-  /// b as seen from a. The same noise: the translation is off by one more multiplication, for which
-  /// there is room in the 128u.
-  RelativePose reversed() const {
-    RelativePose other = *this;
-    other.rotation = rotation.transpose();
-    other.translation = -(other.rotation.lazyProduct(translation));
-    return other;
+  Mat3<double> rotation() const {
+    Mat3<double> matrix;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        matrix(i, j) = column[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)];
+    return matrix;
   }
+  Vec3<double> shift() const { return {translation[0], translation[1], translation[2]}; }
 };
 
 }  // namespace bvlab

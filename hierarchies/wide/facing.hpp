@@ -73,10 +73,10 @@ struct PosedFacing {
   static FrameChange frame_change(const RelativePose& pose, double reach,
                                   double /*reach_of_lanes*/) {
     if constexpr (std::is_same_v<FrameChange, Placement<T>>)
-      return FrameChange(typename FrameChange::Orthonormal{}, pose.rotation, pose.translation,
-                         reach, pose.noise);
+      return FrameChange(typename FrameChange::Orthonormal{}, pose.rotation(), pose.shift(), reach,
+                         pose.noise);
     else
-      return FrameChange(Pose{pose.rotation, pose.translation}, Vec3<double>::Zero(), reach,
+      return FrameChange(Pose{pose.rotation(), pose.shift()}, Vec3<double>::Zero(), reach,
                          pose.noise);
   }
   static One one(const V& volume, T size, const FrameChange& frame_change) {

@@ -62,14 +62,8 @@ template <Scalar S>
   return S(1) / x;
 }
 
-/// Three numbers as four floats, the last 0: written as one, so that they can be read as one.
-inline Batch<float, 4> rounded_to_four(const Vec3<double>& v) {
-  return Batch<float, 4>([&](auto i) {
-    if constexpr (i() < 3)
-      return static_cast<float>(v[static_cast<int>(i())]);
-    else
-      return 0.0f;
-  });
+[[gnu::always_inline]] inline Batch<float, 4> rounded_to_float(const Batch<double, 4>& v) {
+  return stdx::static_simd_cast<Batch<float, 4>>(v);
 }
 
 namespace detail {

@@ -39,21 +39,21 @@ struct SlabBoxFacing<float> {
     float half[3], grown[3], middle, width, size;
   };
 
-  static FrameChange frame_change(const RelativePose& pose, double reach, double reach_of_lanes) {
+  [[gnu::always_inline]] static FrameChange frame_change(const RelativePose& pose, double reach,
+                                                         double reach_of_lanes) {
     constexpr double e = unit_roundoff<float>;
-    const double length = pose.translation.lpNorm<1>();
     FrameChange frame_change;
     using Four = Batch<float, 4>;
     for (int i = 0; i < 3; ++i) {
-      const Four column = rounded_to_four(pose.rotation.col(i));
+      const Four column = rounded_to_float(pose.column[static_cast<std::size_t>(i)]);
       column.copy_to(frame_change.column[i], stdx::vector_aligned);
       abs(column).copy_to(frame_change.absolute[i], stdx::vector_aligned);
     }
-    rounded_to_four(pose.translation).copy_to(frame_change.translation, stdx::vector_aligned);
+    rounded_to_float(pose.translation).copy_to(frame_change.translation, stdx::vector_aligned);
     // `slack` of Placement, and the rest.
-    frame_change.margin =
-        static_cast<float>((74 * e * (length + reach + reach_of_lanes) + pose.noise) * (1 + 8 * e) +
-                           std::ldexp(1.0, std::numeric_limits<float>::min_exponent / 2 + 2));
+    frame_change.margin = static_cast<float>(
+        (74 * e * (pose.length + reach + reach_of_lanes) + pose.noise) * (1 + 8 * e) +
+        std::ldexp(1.0, std::numeric_limits<float>::min_exponent / 2 + 2));
     return frame_change;
   }
 

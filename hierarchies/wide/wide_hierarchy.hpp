@@ -69,6 +69,12 @@ class WideHierarchy {
     Lane size;
   };
 
+  /// A ball around the triangles of a node.
+  struct alignas(16) Place {
+    float middle[3];
+    float radius;
+  };
+
   WideHierarchy(const TriangleMesh& mesh, const Topology& binary, Fit fit = Fit::published,
                 std::uint32_t leaf_size = F, Threads&& threads = Threads())
       : WideHierarchy(mesh, binary, fit, leaf_size, threads) {}
@@ -85,6 +91,7 @@ class WideHierarchy {
   WideHierarchy(const TriangleMesh& mesh, const WideTopology& topology, Fit fit, Threads& threads)
       : ball_(mesh), supports_(mesh, ball_.centre, threads) {
     nodes_.resize(topology.nodes.size());
+    places_.resize(topology.nodes.size());
     siblings_.resize(topology.nodes.size());
     std::vector<Fitting> fitting(threads.count());
     for (std::size_t i = 0; i < nodes_.size(); ++i)
@@ -97,6 +104,7 @@ class WideHierarchy {
       const V volume = fitted(mesh, topology, node.begin, node.end, fit, fitting[worker]);
       const auto lanes = static_cast<std::uint16_t>((1u << node.count) - 1);
       nodes_[i] = {volume, size_of(volume), node.first, lanes, node.leaf};
+      places_[i] = place_of(fitting[worker].points);
     });
     threads.share_out(nodes_.size(), 8,
                       [&](std::size_t begin, std::size_t end, std::size_t worker) {
@@ -113,6 +121,7 @@ class WideHierarchy {
 
   std::size_t size() const { return nodes_.size(); }
   const Node& node(std::uint32_t i) const { return nodes_[i]; }
+  const Place& place(std::uint32_t i) const { return places_[i]; }
   const Siblings& children(std::uint32_t i) const { return siblings_[i]; }
   /// Leaf `first / F`'s, of a node of that `first`.
   const TriangleLanes<scalar, F>& corners(std::uint32_t first) const { return corners_[first / F]; }
@@ -128,7 +137,7 @@ class WideHierarchy {
   const SupportMap& supports() const { return supports_; }
 
   std::size_t bytes() const {
-    return nodes_.size() * (sizeof(Node) + sizeof(Siblings)) +
+    return nodes_.size() * (sizeof(Node) + sizeof(Siblings) + sizeof(Place)) +
            corners_.size() * sizeof(TriangleLanes<scalar, F>) + triangles_.size() * 4 +
            supports_.bytes();
   }
@@ -153,6 +162,24 @@ class WideHierarchy {
       return V::enclosing(own.points, own.triangles);
     else
       return V::enclosing(own.points);
+  }
+
+  /// About the middle of their box.
+  static Place place_of(const std::vector<Vec3<double>>& points) {
+    Vec3<double> low = points[0], high = points[0];
+    for (const auto& point : points)
+      for (int i = 0; i < 3; ++i)
+        low[i] = std::min(low[i], point[i]), high[i] = std::max(high[i], point[i]);
+    Place place;
+    Vec3<double> middle;
+    for (int i = 0; i < 3; ++i) {
+      place.middle[i] = static_cast<float>(0.5 * low[i] + 0.5 * high[i]);
+      middle[i] = static_cast<double>(place.middle[i]);
+    }
+    double radius = 0;
+    for (const auto& point : points) radius = std::max(radius, stable_norm(point - middle));
+    place.radius = rounded_up<float>(radius * (1 + 16 * unit_roundoff<double>));
+    return place;
   }
 
   /// All nodes have their volumes.
@@ -183,6 +210,7 @@ class WideHierarchy {
   }
 
   std::vector<Node> nodes_;
+  std::vector<Place> places_;
   std::vector<Siblings> siblings_;
   std::vector<TriangleLanes<scalar, F>> corners_;
   std::vector<std::uint32_t> triangles_;

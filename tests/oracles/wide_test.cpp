@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Wide trees of boxes with slabs answer as brute force does: every query, fan-out and frame of
 /// comparison.
+#include <random>
+
 #include "hierarchies/wide/slab_box_facing.hpp"
 #include "tests/laws/frame_laws.hpp"
 #include "tests/oracles/wide_scenes.hpp"
@@ -111,6 +113,128 @@ TEST(Wide, DirectionsTellApart) {
     EXPECT_LE(told, apart);
     if (std::string_view(scene.name) == "sparse") EXPECT_GT(4 * told, 3 * apart);
   }
+}
+
+/// Some points of a body, wherever it stands.
+struct SomePoints : MovingBody {
+  std::vector<Vec3<double>> points;
+  double reach = 0;
+
+  explicit SomePoints(std::vector<Vec3<double>> of_mesh)
+      : MovingBody(HierarchyExtent{Vec3<double>::Zero(), reach_of(of_mesh), reach_of(of_mesh), 0}),
+        points(std::move(of_mesh)),
+        reach(reach_of(points)) {}
+
+  static double reach_of(const std::vector<Vec3<double>>& points) {
+    double reach = 0;
+    for (const auto& point : points) reach = std::max(reach, stable_norm(point));
+    return reach * (1 + 8 * unit_roundoff<double>);
+  }
+  void place(const Pose& pose) { MovingBody::place(pose, Vec3<double>::Zero()); }
+  std::vector<Vec3<double>> world() const {
+    std::vector<Vec3<double>> world;
+    for (const auto& point : points) world.push_back(pose()(point));
+    return world;
+  }
+  /// From the point of this that is nearest to the other to there.
+  Vec3<double> to(const SomePoints& other) const {
+    Vec3<double> least = Vec3<double>::Constant(std::numeric_limits<double>::infinity());
+    for (const auto& a : world())
+      for (const auto& b : other.world())
+        if (stable_norm(b - a) < stable_norm(least)) least = b - a;
+    return least;
+  }
+  OrthonormalPose orthonormal() const { return OrthonormalPose(pose(), reach); }
+};
+
+/// What a front promises is never more than the distance, whatever bodies do; where it has gone
+/// down by no more than they moved, it is of use.
+TEST(Wide, FrontsPromiseNoMoreThanThereIs) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> number(-1, 1);
+  const auto vector = [&] { return Vec3<double>(number(random), number(random), number(random)); };
+  const auto turned = [&](const Pose& pose, double angle) {
+    const Vec3<double> axis = 0.5 * angle * vector();
+    const Mat3<double> step =
+        pose_from(Vec3<double>::Zero(), 1, axis[0], axis[1], axis[2])->rotation;
+    return Pose{step * pose.rotation, pose.translation};
+  };
+  std::size_t useful = 0, asked = 0;
+  for (int round = 0; round < 3000; ++round) {
+    const double scale = std::exp2(std::array{0, -60, 60, -100, 3}[round % 5]);
+    const double far = round % 4 == 0 ? 1e6 * scale : scale;
+    const bool askew = round % 7 == 0;  // no rotation to the last digit
+    std::array<std::vector<Vec3<double>>, 2> points;
+    std::array<Vec3<double>, 2> middle;
+    const double size = std::exp2(-3 + 3 * number(random));
+    for (std::size_t side = 0; side < 2; ++side) {
+      middle[side] = scale * vector();
+      for (int k = 0; k < 8; ++k) points[side].push_back(middle[side] + scale * size * vector());
+      points[side].push_back(scale * 2 * vector());  // so that the ball is not all of the body
+    }
+    std::array<SomePoints, 2> body{SomePoints(points[0]), SomePoints(points[1])};
+    const Vec3<double> away = far * vector();
+    std::array<Pose, 2> pose;
+    for (std::size_t side = 0; side < 2; ++side) {
+      pose[side] = turned(Pose(), 10);
+      // The balls near each other.
+      pose[side].translation = away - pose[side].rotation * middle[side] +
+                               (side ? 1.0 : -1.0) * scale * size *
+                                   Vec3<double>(std::array{0.9, 1.2, 2.0}[round / 3 % 3], 0, 0);
+      if (askew) pose[side].rotation(0, 1) += 1e-9;
+      body[side].place(pose[side]);
+    }
+    const auto turn = [&] { return body[0].turn_bound() + body[1].turn_bound(); };
+    const auto between = [&] {
+      std::array<CornersBetween, 2> corners;
+      for (std::size_t side = 0; side < 2; ++side)
+        corners[side].begin(RelativePose(body[side].orthonormal(), body[1 - side].orthonormal()),
+                            body[side].reach, body[1 - side].reach);
+      return corners;
+    };
+    // Only the balls' points are promised to be apart.
+    std::array<SomePoints, 2> ball = body;
+    for (auto& each : ball) each.points.pop_back();
+    turn();
+    const std::size_t side = static_cast<std::size_t>(round / 2 % 2);
+    WideHierarchy<SlabBox<float>, 16>::Place around{};
+    double radius = 0;
+    for (int i = 0; i < 3; ++i) around.middle[i] = static_cast<float>(middle[side][i]);
+    for (const auto& point : ball[side].points)
+      radius = std::max(radius, stable_norm(point - Vec3<double>(around.middle[0], around.middle[1],
+                                                                 around.middle[2])));
+    around.radius = rounded_up<float>(radius * (1 + 1e-12));
+    const double apart = stable_norm(ball[0].to(ball[1]));
+    const float gap = next_down(static_cast<float>(apart));
+    WideFront front;
+    front.add({{}, 0, 0, 0});
+    front.is_apart(front.add({{}, 0, 0, 0}), gap, place_between(around, side, between()), turn());
+    const double speed = std::exp2(-4 + 4 * number(random));
+    for (int frame = 0; frame < 6; ++frame) {
+      const Vec3<double> nearest = ball[0].to(ball[1]);
+      for (std::size_t k = 0; k < 2; ++k) {
+        if (round % 3 == 0) {  // straight to the other
+          pose[k].translation += (k ? -0.07 : 0.07) * nearest;
+        } else if (round % 3 == 1) {  // on the spot
+          const Vec3<double> at = pose[k](middle[k]);
+          pose[k] = turned(pose[k], 8);
+          pose[k].translation += at - pose[k](middle[k]);
+        } else {
+          pose[k] = turned(pose[k], speed * size);
+          pose[k].translation += 0.1 * speed * size * scale * vector();
+        }
+        body[k].place(pose[k]), ball[k].place(pose[k]);
+        body[k].turn_bound();
+      }
+      const auto left = front.left(0, between()[0], turn());
+      EXPECT_FALSE(left[0] > 0);  // never measured
+      const double distance = stable_norm(ball[0].to(ball[1]));
+      EXPECT_FALSE(static_cast<double>(left[1]) > distance)
+          << round << " frame " << frame << ": " << left[1] << " of " << distance;
+      asked += far == scale && scale > 1e-25 && distance > 0.9 * apart, useful += left[1] > 0;
+    }
+  }
+  EXPECT_GT(3 * useful, asked);
 }
 
 bool surfaces_touch(const TriangleMesh& mesh, const Frame& frame) {

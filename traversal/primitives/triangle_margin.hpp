@@ -264,4 +264,20 @@ template <class = double>
   return touching;
 }
 
+/// Margins of those pairs (*a[i], *b[i]), i < count, of which an edge of one crosses the other for
+/// certain; not positive for all others.
+template <class = double>
+[[gnu::flatten]] void crossing_margins(const Triangle* const* a, const Triangle* const* b,
+                                       int count, double* margins) {
+  constexpr int width = std::clamp(native_width<float>, 4, 8);
+  using S = Batch<float, width>;
+  for (int first = 0; first < count; first += width) {
+    const int used = std::min(width, count - first);
+    const margin::Scaled<width> pairs(a + first, b + first, used);
+    const S margin = margin::crossing<S>(pairs.a, pairs.b);
+    for (int lane = 0; lane < used; ++lane)
+      margins[first + lane] = margin[lane] * pairs.scale[lane];
+  }
+}
+
 }  // namespace bvlab

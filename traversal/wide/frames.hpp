@@ -7,6 +7,7 @@
 ///   one(side, node), one_child(...)        one volume, ready to be tested
 ///   compared(side, node, one), gaps(...)   tests it against the children of a node of `side`
 ///   corners()                              takes corners of a to where b's mesh is given
+///   place(side, node)                      a ball around a node, as both bodies have it
 #pragma once
 
 #include <algorithm>
@@ -68,13 +69,14 @@ class CornersBetween {
   /// Corners are rounded (e r), as are rotation and translation; then come three products and sums.
   void begin(const RelativePose& a_from_b, double reach_a, double reach_b) {
     constexpr double e = unit_roundoff<float>;
-    const double length = a_from_b.translation.lpNorm<1>();
-    off_ = static_cast<float>((16 * e * (reach_a + length) + 2 * e * reach_b + a_from_b.noise) *
-                              (1 + 8 * e)) +
+    off_ = static_cast<float>(
+               (16 * e * (reach_a + a_from_b.length) + 2 * e * reach_b + a_from_b.noise) *
+               (1 + 8 * e)) +
            std::numeric_limits<float>::min();
     for (int i = 0; i < 3; ++i)
-      rounded_to_four(a_from_b.rotation.col(i)).copy_to(column_[i], stdx::vector_aligned);
-    rounded_to_four(a_from_b.translation).copy_to(translation_, stdx::vector_aligned);
+      rounded_to_float(a_from_b.column[static_cast<std::size_t>(i)])
+          .copy_to(column_[i], stdx::vector_aligned);
+    rounded_to_float(a_from_b.translation).copy_to(translation_, stdx::vector_aligned);
   }
 
   /// The fourth number is none of its coordinates.
@@ -85,6 +87,17 @@ class CornersBetween {
                                    fused<Four>(from(column_[0]), Four(x), from(translation_))));
   }
 
+  /// The same of several points.
+  template <Batched S>
+  [[gnu::always_inline]] std::array<S, 3> turned(const S& x, const S& y, const S& z) const {
+    std::array<S, 3> turned;
+    for (std::size_t i = 0; i < 3; ++i)
+      turned[i] = fused<S>(
+          S(column_[2][i]), z,
+          fused<S>(S(column_[1][i]), y, fused<S>(S(column_[0][i]), x, S(translation_[i]))));
+    return turned;
+  }
+
   /// How far any corner can be from where it is said to be, in each coordinate.
   float off() const { return off_; }
 
@@ -92,6 +105,25 @@ class CornersBetween {
   alignas(16) float column_[3][4], translation_[4];
   float off_;
 };
+
+/// A ball around some of the triangles of a or b, and where its middle is.
+struct Place {
+  alignas(16) std::array<float, 4> of_a, of_b;  ///< where each mesh is given; the last is none
+  float radius, off;                            ///< in each coordinate, at most
+};
+
+template <class Ball>
+[[gnu::always_inline]] inline Place place_between(const Ball& ball, std::size_t side,
+                                                  const std::array<CornersBetween, 2>& corners) {
+  Place place;
+  auto &own = side == 0 ? place.of_a : place.of_b, &other = side == 0 ? place.of_b : place.of_a;
+  std::copy_n(ball.middle, 3, own.begin());
+  corners[side]
+      .turned(ball.middle[0], ball.middle[1], ball.middle[2])
+      .copy_to(other.data(), stdx::vector_aligned);
+  place.radius = ball.radius, place.off = corners[side].off();
+  return place;
+}
 
 /// Bodies stay as their meshes are given; the relative pose takes one node at a time into the frame
 /// of the other. A body is its pose.
@@ -116,9 +148,13 @@ struct RelativeFrame {
       hierarchies_ = {&a.hierarchy(), &b.hierarchy()};
       const RelativePose a_from_b(a.orthonormal_pose(), b.orthonormal_pose());
       const double reach_a = a.hierarchy().reach(), reach_b = b.hierarchy().reach();
-      frame_change_[1] = Facing::frame_change(a_from_b, reach_a, reach_b);
-      frame_change_[0] = Facing::frame_change(a_from_b.reversed(), reach_b, reach_a);
-      corners_.begin(a_from_b, reach_a, reach_b);
+      const RelativePose b_from_a(b.orthonormal_pose(), a.orthonormal_pose());
+      // In place: what is copied in larger pieces than it was written in is waited for.
+      using FrameChange = typename Facing::FrameChange;
+      ::new (&frame_change_[1]) FrameChange(Facing::frame_change(a_from_b, reach_a, reach_b));
+      ::new (&frame_change_[0]) FrameChange(Facing::frame_change(b_from_a, reach_b, reach_a));
+      corners_[0].begin(a_from_b, reach_a, reach_b);
+      corners_[1].begin(b_from_a, reach_b, reach_a);
     }
 
     /// A volume of `side`, for the other side's lanes.
@@ -163,12 +199,15 @@ struct RelativeFrame {
         return {gaps(side, node, one, counter), compared(side, node, one, counter).order};
       }
     }
-    const CornersBetween& corners() const { return corners_; }
+    const CornersBetween& corners() const { return corners_[0]; }
+    Place place(std::size_t side, std::uint32_t node) const {
+      return place_between(hierarchies_[side]->place(node), side, corners_);
+    }
 
    private:
     std::array<const WideHierarchy<V, F>*, 2> hierarchies_;
     std::array<typename Facing::FrameChange, 2> frame_change_;  // into the frame of that side
-    CornersBetween corners_;
+    std::array<CornersBetween, 2> corners_;                     // of a to b, and back
   };
 };
 
@@ -240,8 +279,9 @@ struct WorldFrame {
 
     void begin(Body<V, F>& a, Body<V, F>& b) {
       bodies_ = {&a, &b};
-      corners_.begin(RelativePose(a.orthonormal_pose(), b.orthonormal_pose()),
-                     a.hierarchy().reach(), b.hierarchy().reach());
+      const double reach_a = a.hierarchy().reach(), reach_b = b.hierarchy().reach();
+      corners_[0].begin(RelativePose(a.orthonormal_pose(), b.orthonormal_pose()), reach_a, reach_b);
+      corners_[1].begin(RelativePose(b.orthonormal_pose(), a.orthonormal_pose()), reach_b, reach_a);
     }
 
     template <class Counter>
@@ -270,11 +310,14 @@ struct WorldFrame {
                            Counter& counter) const {
       return {gaps(side, node, one, counter), compared(side, node, one, counter).order};
     }
-    const CornersBetween& corners() const { return corners_; }
+    const CornersBetween& corners() const { return corners_[0]; }
+    Place place(std::size_t side, std::uint32_t node) const {
+      return place_between(bodies_[side]->hierarchy().place(node), side, corners_);
+    }
 
    private:
     std::array<Body<V, F>*, 2> bodies_;
-    CornersBetween corners_;
+    std::array<CornersBetween, 2> corners_;  // of a to b, and back
   };
 };
 

@@ -9,25 +9,23 @@
 /// (MovingBody::displacement_bound). Where displacements are long because bodies jitter or go
 /// together, the bound between reference poses is looked at before the pair is.
 ///
-/// Bodies that touch go on to touch until one edge that crosses a triangle can have left it
-/// (triangle_margin.hpp); after that they are looked at where they did, first.
+/// Bodies that touch go on to touch until one edge that crosses a triangle can have left it; after
+/// that these two are looked at (triangle_margin.hpp), of several pairs of bodies at once, and only
+/// then the bodies, first where they touched.
 ///
-/// Bodies that were apart twice, but hardly, get a front (WideFront), of which those entries are
-/// looked at again whose deadlines have passed. Where most have, there is none for a while: four
-/// traversals, four times as many whenever that comes again, 256 at most.
+/// Bodies that were apart twice, but hardly, get a front (WideFront), of which only that is looked
+/// at again which can have come together. Where that is most of it, there is none for a while:
+/// sixteen traversals, four times as many whenever that comes again, 256 at most.
 ///
 /// Tried and not kept: to open volumes that are hardly apart so that the least gap grows. Triangles
 /// of two surfaces are near each other in many places, and to know the nearest is to know the
 /// distance, at five times the price. Nor does it pay to measure triangles that are apart by more
-/// than the volumes they have anyway: a third of the tests is left, and each gap costs four.
-/// Nor to measure each gap from where the bodies then stood, so that motions to and fro cancel:
-/// with eight such poses at ever greater intervals two thirds of the entries come up, but the
-/// clocks take what that saves; with exact gaps of triangles, and lanes opened before they are due,
-/// a third, and 0.9 of the time where 500 polygons move slowly, but 1.0 to 1.3 with 8000, where
-/// many triangles are within a step or two of each other, and 1.15 in a planner's motion.
+/// than the volumes they have anyway, exactly or not: a third of the tests is left, each gap costs
+/// four, and of 8000 polygons many are within a step or two of each other.
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -52,6 +50,11 @@ struct Forgetful {
   using Measure = NotMeasuring;
 };
 
+/// Triangles that cross for certain, by their numbers in their meshes.
+struct Crossing {
+  std::uint32_t a, b;
+};
+
 /// Finds out how far apart two bodies are, at least, while it finds that they do not touch.
 template <int F>
 class MeasuringGap {
@@ -60,68 +63,83 @@ class MeasuringGap {
  public:
   static constexpr bool measures = true;
 
-  /// A front that is not complete is written anew.
-  void begin(WideFront* front, const RelativeMotionBound& clock) {
-    front_ = front, now_ = clock.now(), zero_ = clock.deadline(0);
+  /// A front that is not complete is written anew. Both bodies have turned by `turn` since the
+  /// first frame.
+  void begin(WideFront* front, double turn) {
+    front_ = front, turn_ = turn;
     sweeps_ = front && front->is_complete(), swept_ = false, due_ = 0;
     if (front && !sweeps_) front->clear();
-    least_ = S(std::numeric_limits<float>::infinity()), touched_.reset(), crossing_.reset();
+    least_ = S(infinity), least_left_ = WideFront::S(infinity);
+    touched_.reset(), crossing_.reset();
   }
 
   /// Whether it starts from a front, and whether that has been looked at.
   bool sweeps() const { return sweeps_; }
   bool swept() const { return swept_; }
   WideFront& sweep() { return swept_ = true, *front_; }
-  /// By the clock of the bodies.
-  double now() const { return now_; }
   bool front() const { return front_; }
   std::size_t due() const { return due_; }
+
+  /// Which of the entries `first` and up, so many, can have come together.
+  [[gnu::always_inline]] std::uint64_t due(std::size_t first, std::size_t entries,
+                                           const CornersBetween& corners) {
+    const WideFront::S left = front_->left(first, corners, turn_);
+    const std::size_t lanes = std::min<std::size_t>(entries, WideFront::width);
+    const auto apart = left > WideFront::S(0.0f);
+    stdx::where(apart, least_left_) = stdx::min(least_left_, left);
+    const std::uint64_t due = ~bits(apart) & ((std::uint64_t{1} << lanes) - 1);
+    due_ += static_cast<std::size_t>(std::popcount(due));
+    return due;
+  }
 
   /// Which of the volumes so far apart are to be opened. Lanes without a child repeat one.
   [[gnu::always_inline]] std::uint64_t opened(const S& separation) {
     const auto apart = separation > S(0.0f);
-    last_ = S(std::numeric_limits<float>::infinity());
+    last_ = S(infinity);
     stdx::where(apart, last_) = separation;
     least_ = stdx::min(least_, last_);
     return ~bits(apart);
   }
-  /// The same of a pair of nodes: those which have not been opened before.
+  /// The same of a pair of nodes: those which have not been opened before. The one of `side` has
+  /// been tested against the lanes.
+  template <class Between>
   [[gnu::always_inline]] std::uint64_t left(const NodePair& pair, std::uint64_t lanes,
-                                            std::size_t entry) {
+                                            std::size_t entry, const Between& between,
+                                            std::size_t side, std::uint32_t node) {
     if (!front_) return lanes;
-    const double deadline = deadline_of(stdx::hmin(last_));
+    std::uint64_t fresh = lanes;
     if (entry == WideFront::none) {
-      front_->add({pair, static_cast<std::uint16_t>(lanes), 0, 0}, deadline);
-      return lanes;
+      entry = front_->add({pair, static_cast<std::uint16_t>(lanes), 0, 0});
+    } else {
+      auto& opened = (*front_)[entry].opened;
+      fresh = lanes & ~std::uint64_t{opened};
+      opened = static_cast<std::uint16_t>(opened | fresh);
     }
-    ++due_;
-    auto& opened = (*front_)[entry].opened;
-    const std::uint64_t fresh = lanes & ~std::uint64_t{opened};
-    opened = static_cast<std::uint16_t>(opened | fresh);
-    front_->deadline(entry) = deadline;
+    front_->is_apart(entry, stdx::hmin(last_), between.place(side, node), turn_);
     return fresh;
   }
   /// A triangle of a has been tested against a leaf of b; whether it may touch any. Says whether
   /// their gap is to be measured.
   bool triangles(const NodePair& pair, bool touching, std::size_t entry) {
-    least_ = S(0.0f);
     if (touching) touched_ = pair;
-    if (!front_) return false;
-    if (entry == WideFront::none) {
-      front_->add({pair, 0, 1, 0}, WideFront::passed);
+    if (!front_ || entry == WideFront::none) {
+      least_ = S(0.0f);
+      if (front_) front_->add({pair, 0, 1, 0});
       return false;
     }
-    ++due_;
     auto& rest = (*front_)[entry].rest;
     if (rest > 0) --rest;
-    return !touching && rest == 0;
+    if (!touching && rest == 0) return true;
+    least_ = S(0.0f);
+    return false;
   }
-  /// These triangles cross for certain, by their numbers in their meshes.
   void crossing(std::uint32_t a, std::uint32_t b) { crossing_ = {a, b}; }
-  const std::optional<NodePair>& crossing() const { return crossing_; }
-  void triangles_are(const S& gaps, std::size_t entry) {
-    const float gap = stdx::hmin(select(gaps > S(0.0f), gaps, S(0.0f)));
-    front_->deadline(entry) = deadline_of(gap);
+  const std::optional<Crossing>& crossing() const { return crossing_; }
+  void triangles_are(const S& gaps, std::size_t entry, const Place& place) {
+    const S known = select(gaps > S(0.0f), gaps, S(0.0f));
+    least_ = stdx::min(least_, known);
+    const float gap = stdx::hmin(known);
+    front_->is_apart(entry, gap, place, turn_);
     if (!(gap > 0)) (*front_)[entry].rest = 8;
   }
 
@@ -129,21 +147,19 @@ class MeasuringGap {
   const std::optional<NodePair>& touched() const { return touched_; }
   /// What separations are short of distances by is in this (see slab_box_facing.hpp, gaps).
   double gap() const {
-    const double least = stdx::hmin(least_);
+    const double least = std::min(stdx::hmin(least_), stdx::hmin(least_left_));
     return least > 0 ? least * (1 - 32 * unit_roundoff<float>) : 0;
   }
 
  private:
-  /// As RelativeMotionBound::deadline; a sum is rounded here.
-  double deadline_of(float gap) const {
-    if (!(gap > 0)) return WideFront::passed;
-    return (zero_ + gap * (1 - 32.0 * unit_roundoff<float>)) * (1 - 8 * unit_roundoff<double>);
-  }
+  static constexpr float infinity = std::numeric_limits<float>::infinity();
 
   S least_, last_;
-  std::optional<NodePair> touched_, crossing_;
+  WideFront::S least_left_;
+  std::optional<NodePair> touched_;
+  std::optional<Crossing> crossing_;
   WideFront* front_ = nullptr;
-  double now_ = 0, zero_ = 0;
+  double turn_ = 0;
   std::size_t due_ = 0;
   bool sweeps_ = false, swept_ = false;
 };
@@ -158,7 +174,7 @@ class WideMargins {
 
   void add_body(const MeshBall& ball, double reach) {
     bodies_.emplace_back(HierarchyExtent{ball.centre, ball.radius, reach, 0});
-    displacements_.push_back(0), steps_.push_back(0), epochs_.push_back(0);
+    displacements_.push_back(0), steps_.push_back(0), turns_.push_back(0), epochs_.push_back(0);
   }
   void resize(std::size_t pairs) { answers_.resize(pairs), kept_.resize(pairs); }
 
@@ -167,7 +183,8 @@ class WideMargins {
     answers_[p] = {};
     Kept& kept = kept_[p];
     kept.deadline = 0, kept.was_apart = kept.touched_again = false;
-    kept.rest = 0, kept.pause = 0, kept.next_pause = shortest_pause;
+    kept.crossing.reset(), kept.rest = 0, kept.next_rest = 1, kept.pause = 0,
+                           kept.next_pause = shortest_pause;
     kept.front.clear();
   }
 
@@ -186,7 +203,8 @@ class WideMargins {
     if (!body.place(pose)) return false;
     const double displacement = body.displacement_bound();
     steps_[i] = displacement - displacements_[i];
-    displacements_[i] = displacement, epochs_[i] = body.epoch();
+    displacements_[i] = displacement, turns_[i] = body.turn_bound();
+    epochs_[i] = body.epoch();
     return true;
   }
   /// Where it stood in the last.
@@ -213,29 +231,26 @@ class WideMargins {
   void apart(std::size_t p, const ObjectPair& pair, double gap) {
     Kept& kept = kept_[p];
     answers_[p] = {unknown, epochs(pair), false};
-    kept.clock.restart(bodies_[pair.i], bodies_[pair.j]);
-    kept.deadline = kept.clock.deadline(gap);
-    kept.front.clear();
+    kept.crossing.reset(), kept.front.clear();
     kept.was_apart = true, kept.touched_again = false;
-    hold(p, pair, gap);
+    stays_for(p, pair, gap);
   }
 
-  /// Whether it is worth while to ask for how long they go on touching: not where that was no
-  /// longer than it takes to ask.
-  bool asks_how_long(std::size_t p) {
-    Kept& kept = kept_[p];
-    return kept.rest == 0 || --kept.rest == 0;
+  /// What crossed when the pair was looked at last: all that is asked of it, if one hit is enough,
+  /// while those triangles still do.
+  const std::optional<Crossing>& crossing(std::size_t p) const { return kept_[p].crossing; }
+  /// They do, until the bodies have come so far.
+  void goes_on_crossing(std::size_t p, const ObjectPair& pair, double margin) {
+    answers_[p] = {unknown, epochs(pair), true};
+    kept_[p].deadline = 0, kept_[p].touched_again = true;
+    kept_[p].next_rest = std::max(1, kept_[p].next_rest / 2);
+    if (margin > steps_[pair.i] + steps_[pair.j]) stays_for(p, pair, margin);
   }
-  /// They touch until they have come so far.
-  void goes_on_touching(std::size_t p, const ObjectPair& pair, double margin) {
+  /// They do no longer, or hardly: motions are so large that what crosses next is not worth asking.
+  void stops_crossing(std::size_t p) {
     Kept& kept = kept_[p];
-    if (!(margin > 2 * (steps_[pair.i] + steps_[pair.j]))) {
-      kept.rest = 64;
-      return;
-    }
-    kept.clock.restart(bodies_[pair.i], bodies_[pair.j]);
-    kept.deadline = kept.clock.deadline(margin);
-    hold(p, pair, margin);
+    kept.rest = kept.next_rest;
+    kept.next_rest = std::min(4 * kept.next_rest, longest_rest);
   }
   /// Whether they touched the last two times that they were looked at.
   bool goes_on(std::size_t p) const { return kept_[p].touched_again; }
@@ -255,18 +270,8 @@ class WideMargins {
   }
   /// Whether it is known which lanes are apart by how much.
   bool has_front(std::size_t p) const { return kept_[p].front.is_complete(); }
-  /// Goes on from here; begins at zero where no front goes by it.
-  const RelativeMotionBound& clock(std::size_t p, const ObjectPair& pair) {
-    Kept& kept = kept_[p];
-    MovingBody &a = bodies_[pair.i], &b = bodies_[pair.j];
-    if (!kept.front.is_complete()) {
-      kept.clock.restart(a, b);
-    } else {
-      kept.clock.advance(a, b);
-      if (kept.clock.since() > 2 * (steps_[pair.i] + steps_[pair.j])) kept.clock.refer(a, b);
-    }
-    return kept.clock;
-  }
+  /// What both have turned by since the first frame, at most.
+  double turn(const ObjectPair& pair) const { return turns_[pair.i] + turns_[pair.j]; }
   /// Puts a body where it stands among those whose directions are looked along.
   void stand(std::size_t i, SeparatingDirections& directions, std::int32_t map,
              const Vec3<double>& origin) {
@@ -298,10 +303,15 @@ class WideMargins {
     answer = {unknown, epochs(pair), found.touched().has_value()};
     if constexpr (says_all<Query>) answer.touching = query.touching();
     kept.deadline = 0;
+    kept.crossing.reset();
     kept.touched_again = answer.touching && !kept.was_apart;
     kept.was_apart = !answer.touching;
     if (answer.touching) {
       kept.touched = *found.touched();
+      if (kept.rest > 0)
+        --kept.rest;
+      else
+        kept.crossing = found.crossing();
       kept.front.clear();
       return;
     }
@@ -318,17 +328,11 @@ class WideMargins {
       } else {
         kept.next_pause = shortest_pause;
       }
-      if (worn || front.overgrown()) return front.clear();
-      kept.deadline = front.earliest();
-      const double left = kept.deadline - kept.clock.now();
-      if (left > 0) hold(p, pair, left * (1 - 4 * unit_roundoff<double>));
-      return;
+      if (worn || front.overgrown()) front.clear();
     }
     // Less would hardly last until the next frame.
     const double gap = found.gap();
-    if (!(gap > steps_[pair.i] + steps_[pair.j])) return;
-    kept.deadline = kept.clock.deadline(gap);
-    hold(p, pair, gap);
+    if (gap > steps_[pair.i] + steps_[pair.j]) stays_for(p, pair, gap);
   }
 
  private:
@@ -338,7 +342,8 @@ class WideMargins {
     bool place(const Pose& pose) { return MovingBody::place(pose, Vec3<double>::Zero()); }
   };
 
-  static constexpr int shortest_pause = 4, longest_pause = 256;  // traversals without a front
+  static constexpr int shortest_pause = 16, longest_pause = 256;  // traversals without a front
+  static constexpr int longest_rest = 64;                     // traversals without a crossing
 
   struct Answer {
     double until = unknown;  ///< as a sum of displacements; negative where only rest keeps it
@@ -352,7 +357,8 @@ class WideMargins {
     NodePair touched{};
     WideFront front;
     int pause = 0, next_pause = shortest_pause;
-    int rest = 0;  // how many times it is not to be asked how long they touch
+    std::optional<Crossing> crossing;
+    int rest = 0, next_rest = 1;  // how many times what crosses is not to be kept
     bool was_apart = false, touched_again = false;
   };
 
@@ -366,6 +372,14 @@ class WideMargins {
   /// Changes whenever one of the bodies moves.
   std::uint32_t epochs(const ObjectPair& pair) const { return epochs_[pair.i] + epochs_[pair.j]; }
 
+  /// The answer stays until the bodies have come so much nearer.
+  void stays_for(std::size_t p, const ObjectPair& pair, double gap) {
+    Kept& kept = kept_[p];
+    kept.clock.restart(bodies_[pair.i], bodies_[pair.j]);
+    kept.deadline = kept.clock.deadline(gap);
+    hold(p, pair, gap);
+  }
+
   /// The bodies are `gap` apart. Sums of displacements are rounded here and where they are
   /// compared.
   void hold(std::size_t p, const ObjectPair& pair, double gap) {
@@ -374,7 +388,7 @@ class WideMargins {
   }
 
   std::vector<Followed> bodies_;
-  std::vector<double> displacements_, steps_;
+  std::vector<double> displacements_, steps_, turns_;
   std::vector<std::uint32_t> epochs_;
   std::vector<Answer> answers_;
   std::vector<Kept> kept_;

@@ -21,6 +21,7 @@
 
 #include "hierarchies/geometry/threads.hpp"
 #include "traversal/all_pairs.hpp"
+#include "traversal/primitives/triangle_margin.hpp"
 #include "traversal/wide/separating_direction.hpp"
 #include "traversal/wide/wide_margins.hpp"
 
@@ -206,10 +207,12 @@ class WidePairs {
     const std::uint64_t before = counter.n_v + counter.n_p;
     counter.tested(worker.near_count);
     if constexpr (!SeeksDistance<Query>) {
-      if constexpr (Memory::remembers)
+      if constexpr (Memory::remembers) {
         tell_what_stays(worker);
-      else
+        if constexpr (Query::one_hit_is_enough) tell_by_crossings(worker, counter);
+      } else {
         tell_by_balls(worker);
+      }
       tell_by_directions(worker, counter);
       for (std::size_t k = 0; k < worker.far_count; ++k) {
         const auto p = static_cast<std::size_t>(worker.far[k]);
@@ -238,6 +241,51 @@ class WidePairs {
       worker.put(p, !memory_.stays_after_all(static_cast<std::size_t>(p),
                                              pairs_[static_cast<std::size_t>(p)]));
     }
+  }
+  /// By the triangles that crossed last time.
+  template <class Counter>
+  void tell_by_crossings(Worker& worker, Counter& counter) {
+    constexpr std::size_t at_a_time = 8;
+    std::array<std::array<Triangle, at_a_time>, 2> triangles;
+    std::array<std::array<const Triangle*, at_a_time>, 2> pointers;
+    for (std::size_t side = 0; side < 2; ++side)
+      for (std::size_t k = 0; k < at_a_time; ++k) pointers[side][k] = &triangles[side][k];
+    std::array<std::int32_t, at_a_time> waiting;
+    std::array<double, at_a_time> margins;
+    std::size_t used = 0;
+    const auto ask = [&] {
+      crossing_margins<>(pointers[0].data(), pointers[1].data(), static_cast<int>(used),
+                         margins.data());
+      counter.primitives(used);
+      for (std::size_t k = 0; k < used; ++k) {
+        const auto p = static_cast<std::size_t>(waiting[k]);
+        if (margins[k] > 0)
+          memory_.goes_on_crossing(p, pairs_[p], margins[k]);
+        else
+          memory_.stops_crossing(p);
+        worker.put(waiting[k], !(margins[k] > 0));
+      }
+      used = 0;
+    };
+    // What is put back among those near is behind the one that is read.
+    const std::size_t count = std::exchange(worker.near_count, 0);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto p = static_cast<std::size_t>(worker.near[k]);
+      const auto& crossing = memory_.crossing(p);
+      if (!crossing) {
+        worker.near[worker.near_count++] = worker.near[k];
+        continue;
+      }
+      const std::array<std::uint32_t, 2> body{pairs_[p].i, pairs_[p].j},
+          triangle{crossing->a, crossing->b};
+      for (std::size_t side = 0; side < 2; ++side)
+        for (std::size_t i = 0; i < 3; ++i)
+          triangles[side][used][i] =
+              poses_[body[side]](meshes_[body[side]]->corners(triangle[side])[i]);
+      waiting[used++] = worker.near[k];
+      if (used == at_a_time) ask();
+    }
+    if (used > 0) ask();
   }
   /// All but those of which more is known.
   template <class Counter>
@@ -299,7 +347,7 @@ class WidePairs {
       if constexpr (Measure::measures)
         running[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter,
                              memory_.template touched<Query>(pair[slot]), memory_.front(pair[slot]),
-                             memory_.clock(pair[slot], pairs_[pair[slot]]));
+                             memory_.turn(pairs_[pair[slot]]));
       else
         running[slot]->begin(bodies_[i], bodies_[j], ask(pair[slot]), counter);
     };
@@ -314,7 +362,9 @@ class WidePairs {
           continue;
         }
         counter.asked(before);
-        if constexpr (Memory::remembers) remember(pair[slot], *running[slot]);
+        if constexpr (Memory::remembers)
+          memory_.remember(pair[slot], pairs_[pair[slot]], running[slot]->query(),
+                           running[slot]->measure());
         take(pair[slot], running[slot]->query());
         if (next < near.size()) {
           begin(slot++);
@@ -322,23 +372,6 @@ class WidePairs {
           --active;
           std::swap(running[slot], running[active]), std::swap(pair[slot], pair[active]);
         }
-      }
-  }
-
-  template <class Traversal>
-  void remember(std::size_t p, const Traversal& traversal) {
-    using Query = std::remove_cvref_t<decltype(traversal.query())>;
-    const ObjectPair& pair = pairs_[p];
-    memory_.remember(p, pair, traversal.query(), traversal.measure());
-    if constexpr (!SeeksDistance<Query> && Query::one_hit_is_enough)
-      if (const auto crossing = traversal.measure().crossing();
-          crossing && memory_.asks_how_long(p)) {
-        const Triangle a = bodies_[pair.i].triangle(crossing->a),
-                       b = bodies_[pair.j].triangle(crossing->b);
-        const Triangle *first = &a, *second = &b;
-        double margin = 0;
-        if (touching_with_margins<>(&first, &second, 1, intersect_batch<Exact>, &margin))
-          memory_.goes_on_touching(p, pair, margin);
       }
   }
 

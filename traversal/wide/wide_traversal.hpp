@@ -13,6 +13,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -22,7 +23,6 @@
 
 #include "traversal/primitives/triangle_filter.hpp"
 #include "traversal/queries/candidate.hpp"
-#include "traversal/relative_motion_bound.hpp"
 #include "traversal/wide/frames.hpp"
 #include "traversal/wide/frontier.hpp"
 #include "traversal/wide/wide_front.hpp"
@@ -69,13 +69,13 @@ class WideTraversal {
   }
 
   /// `touched`, a triangle of a and a leaf of b, is looked at first, then its leaf. What the bodies
-  /// are known to be apart by is in `front`, if that is complete; else it is written there. `clock`
-  /// is what deadlines go by.
+  /// are known to be apart by is in `front`, if that is complete; else it is written there. `turn`
+  /// is what both have turned by since the first frame.
   void begin(Body& a, Body& b, Query query, Counter& counter,
              const std::optional<NodePair>& touched, WideFront* front,
-             const RelativeMotionBound& clock) requires(Measure::measures) {
+             double turn) requires(Measure::measures) {
     begin(a, b, std::move(query), counter);
-    measure_.begin(front, clock);
+    measure_.begin(front, turn);
     if (measure_.sweeps()) {
       frontier_.clear();
     } else if (touched) {
@@ -142,18 +142,20 @@ class WideTraversal {
     return false;
   }
 
-  /// Looks again at the entries of the front that are due. Says whether that is enough.
+  /// Looks again at what can have come together. Says whether that is enough.
   bool sweep() requires(Measure::measures) {
     WideFront& front = measure_.sweep();
     const std::size_t size = front.size();  // what is added needs no second look
-    for (std::size_t i = 0; i < size; ++i) {
-      if (front.deadline(i) > measure_.now()) continue;
-      const WideFront::Entry entry = front[i];
-      if (!entry.triangle)
-        step(entry.pair, i);
-      else if (open_triangle(entry.pair, i))
-        return true;
-    }
+    for (std::size_t first = 0; first < size; first += WideFront::width)
+      for (std::uint64_t due = measure_.due(first, size - first, between_.corners()); due;
+           due &= due - 1) {
+        const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(due));
+        const WideFront::Entry entry = front[i];
+        if (!entry.triangle)
+          step(entry.pair, i);
+        else if (open_triangle(entry.pair, i))
+          return true;
+      }
     while (!triangles_.empty())
       if (open_triangle(triangles_.take_last())) return true;
     return false;
@@ -180,7 +182,8 @@ class WideTraversal {
       next.template push_lanes<F>(static_cast<int>(side), left, many.first, node[1 - side], gaps);
     } else if constexpr (Measure::measures) {
       const auto seen = between_.separated(side, node[side], one, *counter_);
-      const std::uint64_t left = measure_.left(pair, many.lanes & measure_.opened(seen.gap), entry);
+      const std::uint64_t left = measure_.left(pair, many.lanes & measure_.opened(seen.gap), entry,
+                                               between_, 1 - side, node[1 - side]);
       next.template push_lanes<F>(static_cast<int>(side), left, many.first, node[1 - side],
                                   seen.order);
     } else {
@@ -226,10 +229,31 @@ class WideTraversal {
       }
     std::uint64_t open = leaf.lanes & ~bits(verdict.apart) & ~met;
     if constexpr (Measure::measures)
-      if (measure_.triangles(pair, open != 0, entry)) measure_.triangles_are(gaps_of(pair), entry);
+      if (measure_.triangles(pair, open != 0, entry))
+        measure_.triangles_are(gaps_of(pair), entry, place_of(own, lane, turned));
     for (; open; open &= open - 1)
       if (hold(triangle, triangle_of_b(leaf.first, open))) return true;
     return false;
+  }
+
+  /// A ball around a triangle of a about its first corner.
+  template <class Own, class Turned>
+  Place place_of(const Own& own, std::size_t lane, const Turned& turned) const {
+    Place place;
+    for (std::size_t k = 0; k < 3; ++k)
+      place.of_a[k] = own[0][k][lane], place.of_b[k] = turned[0][k];
+    float squared = 0;
+    for (std::size_t i = 1; i < 3; ++i) {
+      float length = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const float side = own[i][k][lane] - own[0][k][lane];
+        length += side * side;
+      }
+      squared = std::max(squared, length);
+    }
+    place.radius = std::sqrt(squared) * (1 + 16 * unit_roundoff<float>);
+    place.off = between_.corners().off();
+    return place;
   }
 
   /// How far the volume of a triangle of a is from those of all of a leaf of b.

@@ -138,9 +138,13 @@ class FollowedBlocks {
         });
     tree_.refit_above();
     candidates_.clear();
-    visits_ = joined_.join_into(
+    const std::uint32_t* ids = tree_.ids(0);
+    visits_ = joined_.template join_into<Closed>(
         candidates_.list(),
-        [this](PairList& list, std::uint32_t a, std::uint32_t b) { add_candidates(list, a, b); });
+        [ids](Pair* out, std::uint32_t slot, std::uint32_t leaf, LaneMask lanes) {
+          const std::uint32_t first = leaf * block_width;
+          return write_pairs_by_id(out, slot, ids[slot], first, ids + first, lanes);
+        });
     if (sorted_) visits_when_sorted_ = visits_, sorted_ = false;
     candidates_at_first_ = candidates_.size();
     count_ = boxes.size();
@@ -208,22 +212,6 @@ class FollowedBlocks {
     }
     constexpr T limit = std::numeric_limits<T>::max();
     return {most<T>(fat.lo, zero - limit), least<T>(fat.hi, zero + limit)};
-  }
-
-  void add_candidates(PairList& list, std::uint32_t a, std::uint32_t b) const {
-    const Block<T>& left = tree_.leaf(a);
-    const Loaded<T> right(tree_.leaf(b));
-    const std::uint32_t* ids = tree_.ids(a);
-    Pair* out = list.room_for(block_width * block_width + block_width, a, tree_.leaves());
-    LaneMask rows = a == b ? all_lanes : overlapping_lanes<Closed>(left, tree_.leaf_bounds(b));
-    for (; rows; rows &= rows - 1) {
-      const int row = std::countr_zero(rows);
-      LaneMask lanes = right.template overlapping<Closed>(left.box(row));
-      if (a == b) lanes &= all_lanes << (row + 1);
-      out = write_pairs_by_id(out, a * block_width + static_cast<std::uint32_t>(row), ids[row],
-                              b * block_width, tree_.ids(b), lanes & all_lanes);
-    }
-    list.end_at(out);
   }
 
   // ---- one frame ----------------------------------------------------------------------------
@@ -339,9 +327,9 @@ class FollowedBlocks {
     const std::uint32_t* ids = tree_.ids(0);
     tree_.widen(slot, fat);
     tree_.find(fat, [&](std::uint32_t k) {
-      const Loaded<T> block(tree_.leaf(k));
+      const Block<T>& block = tree_.leaf(k);
       LaneMask lanes =
-          block.template overlapping<Closed>(fat) & ~block.template overlapping<Closed>(old);
+          overlapping_lanes<Closed>(block, fat) & ~overlapping_lanes<Closed>(block, old);
       for (; lanes; lanes &= lanes - 1) {
         const std::uint32_t other = k * block_width + std::countr_zero(lanes);
         if (other != slot) candidates_.add(slot, ids[slot], other, ids[other]);

@@ -8,6 +8,7 @@
 
 #include "broadphase/settings.hpp"
 #include "broadphase/structures/block_tree.hpp"
+#include "broadphase/structures/leaf_join.hpp"
 #include "broadphase/structures/pair_shares.hpp"
 #include "broadphase/structures/reported_pairs.hpp"
 #include "broadphase/structures/row.hpp"
@@ -79,27 +80,32 @@ class JoinedBlocks {
     return true;
   }
 
-  /// Calls add(list, a, b) for each pair of leaves that the join visits, and says how many they
-  /// are. Threads have lists of their own, which are put together in the order of one.
-  template <class Add>
-  std::size_t join_into(PairList& list, const Add& add) {
+  /// Writes the pairs of boxes that overlap in the sense of `Sense` to the list by `write`, as
+  /// LeafJoin does, and says how many pairs of leaves were visited. Threads have lists of their
+  /// own, which are put together in the order of one.
+  template <class Sense, class Write>
+  std::size_t join_into(PairList& list, const Write& write) {
     std::size_t visits = 0;
     if (shares_.threads().count() == 1 || tree_.leaves() < leaves_worth_sharing) {
-      tree_.join([&](std::uint32_t a, std::uint32_t b) {
-        ++visits;
-        add(list, a, b);
+      LeafJoin<T, Sense, Write> join(tree_, list, write);
+      tree_.join([&](std::uint32_t a, std::uint32_t first, LaneMask lanes) {
+        visits += static_cast<std::size_t>(std::popcount(lanes));
+        join.add(a, first, lanes);
       });
+      join.flush();
       return visits;
     }
     tree_.join_parts(parts_);
     std::vector<std::size_t> visited(shares_.threads().count() * 64);
     shares_(list, visited.size(), [&](std::size_t share, std::size_t of, PairList& to) {
+      LeafJoin<T, Sense, Write> join(tree_, to, write);
       std::size_t count = 0;
       for (std::size_t k = parts_.size() * share / of; k < parts_.size() * (share + 1) / of; ++k)
-        tree_.join(parts_[k], [&](std::uint32_t a, std::uint32_t b) {
-          ++count;
-          add(to, a, b);
+        tree_.join(parts_[k], [&](std::uint32_t a, std::uint32_t first, LaneMask lanes) {
+          count += static_cast<std::size_t>(std::popcount(lanes));
+          join.add(a, first, lanes);
         });
+      join.flush();
       visited[share] = count;
     });
     for (const std::size_t count : visited) visits += count;
@@ -121,42 +127,13 @@ class JoinedBlocks {
     if (compare) pairs.keep_before();
     PairList& list = pairs.all;
     list.clear();
-    visits_ = join_into(list, [this](PairList& to, std::uint32_t a, std::uint32_t b) {
-      Pair* out = to.room_for(block_width * block_width + block_width, a, tree_.leaves());
-      to.end_at(a == b ? pairs_within(out, a) : pairs_between(out, a, b));
-    });
+    const std::uint32_t* ids = tree_.ids(0);
+    visits_ = join_into<Contact>(
+        list, [ids](Pair* out, std::uint32_t slot, std::uint32_t leaf, LaneMask lanes) {
+          return write_pairs(out, ids[slot], ids + std::size_t{leaf} * block_width, lanes);
+        });
     if (compare) pairs.compare_with_kept();
   }
-  Pair* pairs_within(Pair* out, std::uint32_t a) const {
-    const Block<T>& block = tree_.leaf(a);
-    const Loaded<T> loaded(block);
-    const std::uint32_t* ids = tree_.ids(a);
-    for (int row = 0; row < block_width - 1; ++row)
-      out = write_pairs(
-          out, ids[row], ids,
-          loaded.template overlapping<Contact>(block.box(row)) & (all_lanes << (row + 1)));
-    return out;
-  }
-  Pair* pairs_between(Pair* out, std::uint32_t a, std::uint32_t b) const {
-    const Loaded<T> left(tree_.leaf(a)), right(tree_.leaf(b));
-    const LaneMask rows = left.template overlapping<Closed>(tree_.leaf_bounds(b));
-    const LaneMask columns = right.template overlapping<Closed>(tree_.leaf_bounds(a));
-    if (std::popcount(rows) <= std::popcount(columns)) return pairs_of_rows(out, a, b, right, rows);
-    return pairs_of_rows(out, b, a, left, columns);
-  }
-  Pair* pairs_of_rows(Pair* out, std::uint32_t a, std::uint32_t b, const Loaded<T>& right,
-                      LaneMask rows) const {
-    const Block<T>& left = tree_.leaf(a);
-    const std::uint32_t* left_ids = tree_.ids(a);
-    const std::uint32_t* right_ids = tree_.ids(b);
-    for (; rows; rows &= rows - 1) {
-      const int row = std::countr_zero(rows);
-      out = write_pairs(out, left_ids[row], right_ids,
-                        right.template overlapping<Contact>(left.box(row)));
-    }
-    return out;
-  }
-
   MethodSettings settings_;
   SpatialOrder<T> order_;
   BlockTree<T> tree_;
