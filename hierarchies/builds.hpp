@@ -54,6 +54,10 @@ struct BottomUpLocal {
   static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size) {
     return BottomUp{leaf_size}(mesh);
   }
+  /// The same, by several threads.
+  static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size, Threads& threads) {
+    return BottomUp{leaf_size}(mesh, threads);
+  }
 };
 
 }  // namespace builds

@@ -11,6 +11,7 @@
 
 #include "hierarchies/bounding_volume.hpp"
 #include "hierarchies/build/topology.hpp"
+#include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 #include "hierarchies/geometry/written_out.hpp"
 #include "hierarchies/hierarchy_extent.hpp"
@@ -29,13 +30,21 @@ class Hierarchy {
   /// Fits V to a topology of the mesh, which must have a triangle. A parent takes the smaller of
   /// what encloses its two children and what encloses its triangles (quinlan1994efficient).
   /// O(n log n) for balanced trees.
-  Hierarchy(const TriangleMesh& mesh, const Topology& topology, Fit fit = Fit::published)
+  Hierarchy(const TriangleMesh& mesh, const Topology& topology, Fit fit = Fit::published,
+            Threads&& threads = Threads())
+      : Hierarchy(mesh, topology, fit, threads) {}
+  /// By several threads, who share what encloses triangles: the same, whatever their number.
+  Hierarchy(const TriangleMesh& mesh, const Topology& topology, Fit fit, Threads& threads)
       : primitives_(topology.primitives), volumes_(topology.nodes.size()) {
     nodes_.reserve(topology.nodes.size());
     for (const auto& [first, count] : topology.nodes) nodes_.push_back({first, count, 0});
     ranges_of(topology);
+    std::vector<Fitting> fitting(threads.count());
+    // The first enclose most.
+    threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
+      enclose(i, begin_[i], end_[i], mesh, fit, fitting[worker]);
+    });
     for (std::size_t i = nodes_.size(); i-- > 0;) {
-      enclose(i, begin_[i], end_[i], mesh, fit);
       if (const Node& node = nodes_[i]; node.count == 0)
         take_smaller(i, merge(volumes_[node.first], volumes_[node.first + 1]));
       nodes_[i].size = size_of(volumes_[i]);
@@ -50,9 +59,10 @@ class Hierarchy {
   /// the looser the more the mesh has changed its shape. Bodies over it, and strategies that have
   /// run on them, are to be made anew.
   void refit(const TriangleMesh& mesh) {
+    Fitting fitting;
     for (std::size_t i = nodes_.size(); i-- > 0;) {
       if (const Node& node = nodes_[i]; node.count > 0) {
-        enclose(i, node.first, node.first + node.count, mesh, Fit::published);
+        enclose(i, node.first, node.first + node.count, mesh, Fit::published, fitting);
       } else {
         volumes_[i] = merge(volumes_[node.first], volumes_[node.first + 1]);
       }
@@ -117,30 +127,37 @@ class Hierarchy {
     }
   }
 
+  /// What a thread needs for itself while volumes are fitted.
+  struct alignas(128) Fitting {
+    std::vector<std::uint32_t> corners;
+    std::vector<Vec3<double>> points;
+    std::vector<Triangle> triangles;
+  };
   void enclose(std::size_t i, std::uint32_t begin, std::uint32_t end, const TriangleMesh& mesh,
-               Fit fit) {
-    corners_.clear();
+               Fit fit, Fitting& own) {
+    auto& [corners, points, triangles] = own;
+    corners.clear();
     for (std::uint32_t place = begin; place < end; ++place)
-      for (const auto vertex : mesh.triangles[primitives_[place]]) corners_.push_back(vertex);
-    std::sort(corners_.begin(), corners_.end());
-    corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
-    points_.clear();
-    for (const auto vertex : corners_) points_.push_back(mesh.vertices[vertex]);
+      for (const auto vertex : mesh.triangles[primitives_[place]]) corners.push_back(vertex);
+    std::sort(corners.begin(), corners.end());
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+    points.clear();
+    for (const auto vertex : corners) points.push_back(mesh.vertices[vertex]);
     if constexpr (FittedToTriangles<V> || FittedTightly<V>) {
-      triangles_.clear();
+      triangles.clear();
       for (std::uint32_t place = begin; place < end; ++place)
-        triangles_.push_back(mesh.corners(primitives_[place]));
+        triangles.push_back(mesh.corners(primitives_[place]));
     }
     if constexpr (FittedTightly<V>) {
       if (fit == Fit::tight) {
-        volumes_[i] = V::tight(points_, triangles_);
+        volumes_[i] = V::tight(points, triangles);
         return;
       }
     }
     if constexpr (FittedToTriangles<V>)
-      volumes_[i] = V::enclosing(points_, triangles_);
+      volumes_[i] = V::enclosing(points, triangles);
     else
-      volumes_[i] = V::enclosing(points_);
+      volumes_[i] = V::enclosing(points);
   }
 
   void take_smaller(std::size_t i, const V& other) {
@@ -153,10 +170,7 @@ class Hierarchy {
   std::vector<V> volumes_;
   std::vector<Above> above_;  // one for two siblings
   HierarchyExtent extent_;
-  // Only while fitting:
-  std::vector<std::uint32_t> begin_, end_, corners_;
-  std::vector<Vec3<double>> points_;
-  std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> begin_, end_;  // only while fitting
 };
 
 }  // namespace bvlab

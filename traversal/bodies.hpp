@@ -59,7 +59,7 @@ class Bodies {
     for (auto& body : bodies_) body.make_room();
   }
 
-  /// See MovingBody::asked_by.
+  /// See Body::asked_by.
   void asked_by(Askers askers) {
     for (auto& body : bodies_) body.asked_by(askers);
   }

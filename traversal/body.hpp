@@ -8,7 +8,6 @@
 /// for one pair serves all the others.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <new>
 #include <vector>
@@ -37,9 +36,15 @@ class Body : public MovingBody {
   /// Room for what is posed, which a body that nobody comes near does not need.
   void make_room() {
     volumes_.resize(hierarchy_->size());
-    volume_epochs_.assign(hierarchy_->size() / 2 + 1, 0);
+    volumes_posed_.make_room(hierarchy_->size() / 2 + 1, askers_);
     triangles_.resize(hierarchy_->primitives());
-    triangle_epochs_.assign(hierarchy_->primitives(), 0);
+    triangles_posed_.make_room(hierarchy_->primitives(), askers_);
+  }
+
+  /// Who asks from now on, until it is moved: several threads may.
+  void asked_by(Askers askers) {
+    askers_ = askers;
+    volumes_posed_.asked_by(askers), triangles_posed_.asked_by(askers);
   }
 
   const TriangleMesh& mesh() const { return *mesh_; }
@@ -49,15 +54,16 @@ class Body : public MovingBody {
   template <class Counter>
   void require(std::uint32_t node, Counter& counter) {
     const std::uint32_t siblings = (node + 1) / 2;
-    if (is_done(volume_epochs_[siblings], epoch_)) return;
+    if (volumes_posed_.done_alone(siblings, epoch_)) return;
     if (pose_siblings(siblings)) counter.posed(siblings == 0 ? 1 : 2);
   }
 
   /// How many volumes have been posed since the body moved. O(nodes).
-  std::size_t posed_volumes() const {
+  std::size_t posed_volumes() {
+    if (volumes_.empty()) return 0;
     std::size_t count = 0;
-    for (std::size_t siblings = 0; siblings < volume_epochs_.size(); ++siblings)
-      if (volume_epochs_[siblings] == epoch_) count += siblings == 0 ? 1 : 2;
+    for (std::size_t siblings = 0; siblings < hierarchy_->size() / 2 + 1; ++siblings)
+      if (volumes_posed_.done(siblings, epoch_)) count += siblings == 0 ? 1 : 2;
     return count;
   }
 
@@ -66,7 +72,7 @@ class Body : public MovingBody {
 
   /// The triangle at a place of the hierarchy's primitives, in the world.
   const Triangle& triangle(std::uint32_t place) {
-    if (!is_done(triangle_epochs_[place], epoch_)) pose_triangle(place);
+    if (!triangles_posed_.done_alone(place, epoch_)) pose_triangle(place);
     return triangles_[place];
   }
 
@@ -74,32 +80,19 @@ class Body : public MovingBody {
   /// By itself: it is compiled once for all loops, and what calls it stays small. Says whether
   /// nobody else has.
   [[gnu::noinline]] bool pose_siblings(std::uint32_t siblings) {
-    if (askers_ == Askers::several) return pose_siblings_once(siblings);
-    volume_epochs_[siblings] = epoch_;
-    if (prepared_ != epoch_) prepare(), prepared_ = epoch_;
-    put_siblings(siblings);
-    return true;
-  }
-  [[gnu::noinline]] bool pose_siblings_once(std::uint32_t siblings) {
-    return once(volume_epochs_[siblings], epoch_, [&] {
-      once(prepared_, epoch_, [this] { prepare(); });
-      put_siblings(siblings);
+    return volumes_posed_(siblings, epoch_, askers_, [this, siblings] {
+      once(prepared_, epoch_, askers_, [this] { prepare(); });
+      if (siblings == 0) return put(0);
+      put(2 * siblings - 1);
+      put(2 * siblings);
     });
   }
-  void put_siblings(std::uint32_t siblings) {
-    if (siblings == 0) return put(0);
-    put(2 * siblings - 1);
-    put(2 * siblings);
-  }
 
-  void pose_triangle(std::uint32_t place) {
-    const auto pose = [&] {
+  [[gnu::noinline]] void pose_triangle(std::uint32_t place) {
+    triangles_posed_(place, epoch_, askers_, [this, place] {
       const Triangle corners = mesh_->corners(hierarchy_->primitive(place));
       for (int i = 0; i < 3; ++i) triangles_[place][i] = pose_(corners[i]);
-    };
-    if (askers_ == Askers::several) return void(once(triangle_epochs_[place], epoch_, pose));
-    triangle_epochs_[place] = epoch_;
-    pose();
+    });
   }
 
   /// Made where it is to stand: an assignment would write it, wait for that and copy it.
@@ -110,8 +103,7 @@ class Body : public MovingBody {
   void prepare() { placement_ = PlacementOf<V>(pose_, origin_, hierarchy_->extent().reach); }
 
   void forget() {
-    std::fill(volume_epochs_.begin(), volume_epochs_.end(), 0u);
-    std::fill(triangle_epochs_.begin(), triangle_epochs_.end(), 0u);
+    volumes_posed_.forget(), triangles_posed_.forget();
     prepared_ = never_done;
     epoch_ = 1;
   }
@@ -121,9 +113,9 @@ class Body : public MovingBody {
   PlacementOf<V> placement_;
   std::uint32_t prepared_ = never_done;  // the epoch that `placement_` is of
   std::vector<Posed<V>> volumes_;
-  std::vector<std::uint32_t> volume_epochs_;  // one for two siblings
+  OnceEach volumes_posed_;  // one for two siblings
   std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> triangle_epochs_;
+  OnceEach triangles_posed_;
 };
 
 }  // namespace bvlab

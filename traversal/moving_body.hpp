@@ -34,9 +34,6 @@ class MovingBody {
     return turn_bound_;
   }
 
-  /// Who asks from now on, until it is moved: several threads may.
-  void asked_by(Askers askers) { askers_ = askers; }
-
  protected:
   /// Says whether the body has moved.
   bool place(const Pose& pose, const Vec3<double>& origin) {
@@ -50,7 +47,7 @@ class MovingBody {
   Pose pose_;
   Vec3<double> origin_ = Vec3<double>::Zero();
   std::uint32_t epoch_ = 0;
-  Askers askers_ = Askers::one;
+  Askers askers_ = Askers::one;  // who asks: several threads may
 
  private:
   void follow() {

@@ -99,12 +99,9 @@ Found find(const Arguments& arguments, const Array<T>& trace) {
   return found;
 }
 
-void run(Arguments arguments) {
-  if (arguments.threads > 1 && !Threads::available) {
-    std::fprintf(stderr, "--threads %d: there is one thread, for TBB was not found\n",
-                 arguments.threads);
-    arguments.threads = 1;
-  }
+void run(const Arguments& arguments) {
+  if (arguments.threads > 1 && !Threads::available)
+    throw Unusable("--threads", "there is one, for TBB was not found");
   make_method<float>(arguments.method,
                      MethodSettings{});  // refuses an unknown name before the file is read
   if (!Precisions::with(arguments.precision, [](auto) {}))

@@ -197,11 +197,8 @@ void run(Arguments arguments) {
   if (arguments.configuration)
     arguments.variant = configured(arguments.variant, *arguments.configuration);
   check(arguments);
-  if (arguments.threads > 1 && !Threads::available) {
-    std::fprintf(stderr, "--threads %u: there is one thread, for TBB was not found\n",
-                 arguments.threads);
-    arguments.threads = 1;
-  }
+  if (arguments.threads > 1 && !Threads::available)
+    throw Unusable("--threads", "there is one, for TBB was not found");
   std::vector<TriangleMesh> meshes;
   for (const auto& file : arguments.meshes) meshes.push_back(read_mesh(file));
   const Trace trace = read_trace(arguments.trace);

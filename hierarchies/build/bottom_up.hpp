@@ -4,7 +4,8 @@
 ///
 /// Locally-ordered clustering (meister2018parallel): clusters are kept in Morton order, each looks
 /// for its partner among `radius` neighbours on either side, and pairs that choose each other
-/// merge. O(n radius log n) instead of the O(n^2) of the exact greedy rule.
+/// merge. O(n radius log n) instead of the O(n^2) of the exact greedy rule. Threads share the
+/// search for partners, which is nearly all; the topology is the same for any number of them.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,6 +16,7 @@
 
 #include "hierarchies/build/topology.hpp"
 #include "hierarchies/geometry/morton.hpp"
+#include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
 namespace bvlab {
@@ -24,6 +26,7 @@ struct BottomUp {
   std::uint32_t radius = 16;    ///< neighbours looked at on either side
 
   Topology operator()(const TriangleMesh& mesh) const;
+  Topology operator()(const TriangleMesh& mesh, Threads& threads) const;
 };
 
 namespace detail {
@@ -48,8 +51,8 @@ class Clustering {
     sizes_.assign(count, 1);
   }
 
-  Topology build() {
-    while (active_.size() > 1) merge_round();
+  Topology build(Threads& threads) {
+    while (active_.size() > 1) merge_round(threads);
     return flattened();
   }
 
@@ -57,22 +60,35 @@ class Clustering {
   struct Children {
     std::uint32_t left = 0, right = 0;
   };
+  /// Fewer clusters than this take less time than a thread takes to wake.
+  static constexpr std::size_t worth_sharing = 256;
 
   double cost(std::uint32_t i, std::uint32_t j) const {
     const Vec3<double> d = boxes_[i].merged(boxes_[j]).sizes();
     return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
   }
 
-  void merge_round() {
+  /// Clusters are looked at by their places among those active. In each range the order in which
+  /// neighbours are compared is that of all, so that of equal costs the same is chosen.
+  void merge_round(Threads& threads) {
     const std::size_t n = active_.size(), radius = std::max(1u, options_.radius);
     std::vector<std::size_t> partner(n, n);
     std::vector<double> least(n, std::numeric_limits<double>::infinity());
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = i + 1; j < std::min(n, i + radius + 1); ++j) {
-        const double c = cost(active_[i], active_[j]);
-        if (partner[i] == n || c < least[i]) least[i] = c, partner[i] = j;
-        if (partner[j] == n || c < least[j]) least[j] = c, partner[j] = i;
-      }
+    const auto propose = [&](std::size_t i, std::size_t j, double c) {
+      if (partner[i] == n || c < least[i]) least[i] = c, partner[i] = j;
+    };
+    threads.share_out(n, worth_sharing, [&](std::size_t begin, std::size_t end, std::size_t) {
+      // Those before the range are another's, but neighbours of its first.
+      for (std::size_t i = begin - std::min(begin, radius); i < begin; ++i)
+        for (std::size_t j = begin; j < std::min(end, i + radius + 1); ++j)
+          propose(j, i, cost(active_[i], active_[j]));
+      for (std::size_t i = begin; i < end; ++i)
+        for (std::size_t j = i + 1; j < std::min(n, i + radius + 1); ++j) {
+          const double c = cost(active_[i], active_[j]);
+          propose(i, j, c);
+          if (j < end) propose(j, i, c);
+        }
+    });
     // Some least pair choose each other, unless equal costs run in a circle: then the first pair
     // is made to.
     bool any = false;
@@ -144,8 +160,12 @@ class Clustering {
 
 }  // namespace detail
 
+inline Topology BottomUp::operator()(const TriangleMesh& mesh, Threads& threads) const {
+  return detail::Clustering(mesh, *this).build(threads);
+}
 inline Topology BottomUp::operator()(const TriangleMesh& mesh) const {
-  return detail::Clustering(mesh, *this).build();
+  Threads alone;
+  return (*this)(mesh, alone);
 }
 
 }  // namespace bvlab

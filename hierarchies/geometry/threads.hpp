@@ -20,6 +20,28 @@
 
 namespace bvlab {
 
+#if BVLAB_TBB
+namespace detail {
+/// Calls call(with, worker) for each worker below `workers` on the arena's threads.
+///
+/// BVLAB_TBB_IN_A_UNIT: in a unit of its own that is compiled without thread sanitizer. That sees
+/// nothing of TBB's library, and takes for races what its headers do in accord with it.
+#ifdef BVLAB_TBB_IN_A_UNIT
+void call_on_threads(tbb::task_arena& arena, std::size_t workers,
+                     void (*call)(void* with, std::size_t worker), void* with);
+#else
+inline void call_on_threads(tbb::task_arena& arena, std::size_t workers,
+                            void (*call)(void* with, std::size_t worker), void* with) {
+  arena.execute([&] {
+    tbb::parallel_for(
+        std::size_t{0}, workers, [=](std::size_t worker) { call(with, worker); },
+        tbb::static_partitioner());
+  });
+}
+#endif
+}  // namespace detail
+#endif
+
 class Threads {
  public:
 #if BVLAB_TBB
@@ -69,40 +91,64 @@ class Threads {
     const std::size_t workers = this->count();
     for (std::size_t w = 0; w < workers; ++w)
       left_[w].set(count * w / workers, count * (w + 1) / workers);
-    std::atomic<std::size_t> finished(0);
-    arena_->execute([&] {
-      tbb::parallel_for(
-          std::size_t{0}, workers,
-          [&](std::size_t worker) {
-            for (std::size_t k = 0; k < workers; ++k) {
-              Left& left = left_[worker + k < workers ? worker + k : worker + k - workers];
-              for (Range r; (r = left.take(least, divisor, k > 0)).begin < r.end;)
-                work(std::size_t{r.begin}, std::size_t{r.end}, worker);
-            }
-            finished.fetch_add(1, std::memory_order_acq_rel);
-          },
-          tbb::static_partitioner());
-    });
-    finished.load(std::memory_order_acquire);
+    const auto all_of = [&](std::size_t worker) {
+      for (std::size_t k = 0; k < workers; ++k) {
+        Left& left = left_[worker + k < workers ? worker + k : worker + k - workers];
+        for (Range r; (r = left.take(least, divisor, k > 0)).begin < r.end;)
+          work(std::size_t{r.begin}, std::size_t{r.end}, worker);
+      }
+    };
+    HandedOver handed_over(all_of);
+    detail::call_on_threads(*arena_, workers, handed_over.receive, &handed_over);
 #endif
   }
 
 #if BVLAB_TBB
+  /// Work on its way to the workers and back: what was written before is seen by them, and what
+  /// they write by who comes after. TBB sees to that, too, but where thread sanitizers see nothing.
+  template <class Work>
+  class HandedOver {
+   public:
+    explicit HandedOver(const Work& work) : work_(work) {
+      handed_.store(true, std::memory_order_release);
+    }
+    /// Also where work throws.
+    ~HandedOver() { static_cast<void>(returned_.load(std::memory_order_acquire)); }
+    HandedOver(const HandedOver&) = delete;
+    HandedOver& operator=(const HandedOver&) = delete;
+
+    static void receive(void* handed_over, std::size_t worker) {
+      auto& self = *static_cast<HandedOver*>(handed_over);
+      static_cast<void>(self.handed_.load(std::memory_order_acquire));
+      const Return at_the_end{self.returned_};
+      self.work_(worker);
+    }
+
+   private:
+    struct Return {
+      std::atomic<std::size_t>& workers;
+      ~Return() { workers.fetch_add(1, std::memory_order_release); }
+    };
+
+    const Work& work_;
+    std::atomic<bool> handed_ = false;
+    std::atomic<std::size_t> returned_ = 0;
+  };
+
   struct Range {
     std::uint32_t begin, end;
   };
-  /// What is left of a worker's share; in cache lines of its own. What is written before a range is
-  /// taken is seen by who takes it: by this, not only by what happens inside of TBB, which thread
-  /// sanitizers cannot see.
+  /// What is left of a worker's share; in cache lines of its own. Who takes a range learns nothing
+  /// of what was done in others.
   class alignas(128) Left {
    public:
     void set(std::size_t begin, std::size_t end) {
       range_.store({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)},
-                   std::memory_order_release);
+                   std::memory_order_relaxed);
     }
     /// Others take from the end, so that the owner's go on from each other.
     Range take(std::size_t least, std::size_t divisor, bool from_end) {
-      Range now = range_.load(std::memory_order_acquire);
+      Range now = range_.load(std::memory_order_relaxed);
       for (;;) {
         const std::uint32_t size = now.end - now.begin;
         const std::size_t share = std::max(least, divisor ? size / divisor : 0);
@@ -112,7 +158,7 @@ class Threads {
           rest.end = got.begin = now.end - taken;
         else
           rest.begin = got.end = now.begin + taken;
-        if (taken == 0 || range_.compare_exchange_weak(now, rest, std::memory_order_acq_rel))
+        if (taken == 0 || range_.compare_exchange_weak(now, rest, std::memory_order_relaxed))
           return got;
       }
     }

@@ -9,6 +9,9 @@
 #include <span>
 
 #include "experiments/scenes/formula_mesh.hpp"
+#include "hierarchies/hierarchy.hpp"
+#include "hierarchies/volumes/obb.hpp"
+#include "hierarchies/volumes/sphere.hpp"
 #include "traversal/recommended.hpp"
 
 namespace bvlab {
@@ -25,10 +28,14 @@ std::vector<TriangleMesh> meshes() {
   return all;
 }
 
-TEST(Builds, ThreadsChangeNoTopology) {
-  const auto same = [](const Topology::Node& a, const Topology::Node& b) {
+void expect_same(const Topology& one, const Topology& more) {
+  EXPECT_TRUE(std::ranges::equal(one.nodes, more.nodes, [](const auto& a, const auto& b) {
     return a.first == b.first && a.count == b.count;
-  };
+  }));
+  EXPECT_EQ(one.primitives, more.primitives);
+}
+
+TEST(Builds, ThreadsChangeNoTopology) {
   for (const auto& mesh : meshes())
     for (const SplitAxis axis : {SplitAxis::longest, SplitAxis::principal})
       for (const SplitAt at :
@@ -38,18 +45,53 @@ TEST(Builds, ThreadsChangeNoTopology) {
           const Topology one = build(mesh);
           for (const int count : {2, 3, 7}) {
             Threads threads(count);
-            const Topology more = build(mesh, threads);
-            EXPECT_TRUE(std::ranges::equal(one.nodes, more.nodes, same))
-                << mesh.triangles.size() << " triangles, leaves of " << leaf_size << ", " << count;
-            EXPECT_EQ(one.primitives, more.primitives);
+            expect_same(one, build(mesh, threads));
           }
         }
+}
+
+TEST(Builds, ThreadsChangeNoTopologyFromBelow) {
+  for (const auto& mesh : meshes())
+    for (const std::uint32_t radius : {4u, 16u}) {
+      const BottomUp build{3, radius};
+      const Topology one = build(mesh);
+      for (const int count : {2, 3, 7}) {
+        Threads threads(count);
+        expect_same(one, build(mesh, threads));
+      }
+    }
 }
 
 /// Bits, so that not even a zero changes its sign.
 template <class T>
 bool same_bits(const T& a, const T& b) {
   return std::ranges::equal(std::as_bytes(std::span(&a, 1)), std::as_bytes(std::span(&b, 1)));
+}
+
+template <class V>
+void expect_threads_change_no_volume(const TriangleMesh& mesh, Fit fit) {
+  const Topology topology = builds::TopDownPrincipal::topology(mesh, 1);
+  const Hierarchy<V> one(mesh, topology, fit);
+  for (const int count : {2, 3, 7}) {
+    Threads threads(count);
+    const Hierarchy<V> more(mesh, topology, fit, threads);
+    ASSERT_EQ(one.size(), more.size());
+    for (std::uint32_t i = 0; i < one.size(); ++i) {
+      EXPECT_TRUE(same_bits(one.volume(i), more.volume(i))) << V::name << ' ' << i;
+      EXPECT_EQ(one.node(i).size, more.node(i).size);
+      EXPECT_EQ(one.least_above(i), more.least_above(i));
+    }
+    EXPECT_EQ(one.extent().reach, more.extent().reach);
+  }
+}
+
+TEST(Builds, ThreadsChangeNoVolume) {
+  for (const char* shape : {"torus", "star"}) {
+    const auto mesh = formula_mesh(shape, 1100);
+    expect_threads_change_no_volume<Sphere<float>>(mesh, Fit::published);
+    expect_threads_change_no_volume<Obb<float>>(mesh, Fit::published);
+    expect_threads_change_no_volume<Obb<float>>(mesh, Fit::tight);
+  }
 }
 
 TEST(Builds, ThreadsChangeNoWideHierarchy) {
