@@ -46,6 +46,9 @@ class Adaptive {
   };
   static constexpr Prices broad{25, 14, 20, 0, 0}, plain{25, 18, 30, 0, 120},
       careful{25, 28, 120, 75, 0};
+  /// Of posing the roots of two bodies, from unit costs (record cost-model): to make a pose ready
+  /// for volumes takes 36, a volume 11, the mean of eight kinds.
+  static constexpr double roots_posed = 2 * (36 + 11);
 
   template <class Pair>
   void run(const Pair& pair) {
@@ -95,6 +98,9 @@ class Adaptive {
   static constexpr double toward = 0.5;
   /// Chosen, as are `patience` and `look_every`: more is lost in vain, less gives up too early.
   static constexpr double recursions_to_lose = 3;
+  /// At all entries of a front with margins: that of a rebuild, which is no loss if it lasts, and
+  /// one more. Chosen, too.
+  static constexpr double looks_to_lose = 2;
   /// What is tried in vain, and the rebuild of a list of bodies that part, which stays long without
   /// growing, may cost one part in so many.
   static constexpr double patience = 32;
@@ -124,14 +130,20 @@ class Adaptive {
   template <class Pair>
   bool balls_apart(const Pair& pair) {
     if (until_look_ > 0) return --until_look_, false;
+    if (balls_ == 0)
+      balls_ = (ball(pair.a().extent()) + ball(pair.b().extent())) * (1 + 0x1p-20) +
+               (pair.a().extent().reach + pair.b().extent().reach) * 0x1p-40;
     const Vec3<double>&a = pair.a().pose().translation, &b = pair.b().pose().translation;
-    const double radii = (pair.a().extent().reach + pair.b().extent().reach) * (1 + 0x1p-20) +
-                         (a.lpNorm<1>() + b.lpNorm<1>()) * 0x1p-40 + pair.query().limit();
+    const double radii = balls_ + (a.lpNorm<1>() + b.lpNorm<1>()) * 0x1p-40 + pair.query().limit();
     const double squared = (a - b).squaredNorm();
     in_batches_ = !(squared > radii * radii) || !(squared > tiny);
     if (!in_batches_) return ++unseen_, true;
     until_look_ = look_every;
     return false;
+  }
+  /// Of one about the frame's origin that holds the mesh. Volumes may reach much farther.
+  static double ball(const HierarchyExtent& extent) {
+    return std::min(extent.reach, stable_norm(extent.centre) + extent.radius);
   }
   static constexpr double tiny = 0x1p-900;  // squares below are not to be trusted
 
@@ -304,8 +316,10 @@ class Adaptive {
     const TraversalStatistics statistics = margins_.run(pair);
     known_ = false;
     const double cost = price(statistics, careful) - careful.run;
-    const double expected = careful.run + toward * cost * margins_.due_in_a_run(step_);
-    const double otherwise = list_.size() == 1 ? broad.run + broad.volumes : next_run_;
+    // Roots that need not be posed are what one margin saves.
+    const double posed = list_.size() == 1 ? roots_posed : 0;
+    const double expected = careful.run + toward * (cost + posed) * margins_.due_in_a_run(step_);
+    const double otherwise = list_.size() == 1 ? broad.run + broad.volumes + posed : next_run_;
     if (expected > otherwise) {
       failed(cost);
       forget_margins();
@@ -341,7 +355,7 @@ class Adaptive {
       enough_ = std::max(enough_, cost);
     }
     balance_ = std::max(balance_ + cost + quiet * careful.run - (1 + quiet) * next_run_, -enough_);
-    if (balance_ > enough_) give_back();
+    if (balance_ > looks_to_lose * enough_) give_back();
   }
 
   /// A list goes on with the entries of the margins, as if it had just been rebuilt.
@@ -372,6 +386,7 @@ class Adaptive {
   std::uint32_t epoch_a_ = 0, epoch_b_ = 0;
   const std::string_view* asked_ = nullptr;
   double displacement_ = 0, step_ = 0;          // of both bodies; in the last run
+  double balls_ = 0;                            // the radii of both, together
   double leaf_ = 0;                             // size of one, mean of both bodies
   double rebuild_ = 0;                          // what the list's last one cost
   double balance_ = 0;                          // what was lost against the other way
