@@ -20,7 +20,8 @@ namespace bvlab {
 std::vector<std::string> box_set_names();
 
 /// `adjacent` has as many boxes as the largest cube of cubes within `count`, `cloth` as the largest
-/// square sheet; the others have `count`, or what their mesh has to give. Throws Unusable for an unknown name.
+/// square sheet; the others have `count`, or what their mesh has to give. Throws Unusable for an
+/// unknown name.
 std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count, unsigned seed);
 
 /// Moves a set frame by frame:

@@ -343,7 +343,7 @@ class WideMargins {
   };
 
   static constexpr int shortest_pause = 16, longest_pause = 256;  // traversals without a front
-  static constexpr int longest_rest = 64;                     // traversals without a crossing
+  static constexpr int longest_rest = 64;                         // traversals without a crossing
 
   struct Answer {
     double until = unknown;  ///< as a sum of displacements; negative where only rest keeps it
