@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What a bounding volume has to be able to do, and the laws it keeps.
+/// The concept of a bounding volume, and its laws.
 #pragma once
 
 #include <concepts>
@@ -29,15 +29,15 @@ struct PlacementOf<V> {
 }  // namespace detail
 
 /// What V is posed by. A volume that needs more of a pose than `Placement` declares a `placement`
-/// of its own; it is made from the same things, at most once whenever a body moves.
+/// of its own. It is constructed from the same arguments, at most once after each move of a body.
 template <class V>
 using PlacementOf = typename detail::PlacementOf<V>::type;
 
-/// What V becomes where tests are made.
+/// What V becomes where volumes are tested.
 template <class V>
 using Posed = decltype(posed(std::declval<const V&>(), std::declval<const PlacementOf<V>&>()));
 
-/// A volume that is fitted better where it sees the surface between the points. All corners of the
+/// A volume that is fitted better if it is given the surface between the points. All corners of the
 /// triangles are among the points.
 template <class V>
 concept FittedToTriangles = requires(std::span<const Vec3<double>> points,
@@ -52,11 +52,11 @@ concept FittedTightly = requires(std::span<const Vec3<double>> points,
   { V::tight(points, triangles) } -> std::same_as<V>;
 };
 
-/// Which construction volumes are fitted by: the published one, or the tighter one of those that
-/// have one.
+/// By which construction volumes are fitted: the published one, or the tighter one where there is
+/// one.
 enum class Fit { published, tight };
 
-/// A solid that encloses points and can be compared cheaply with its own kind.
+/// A solid that encloses points and can be tested cheaply against its own kind.
 ///
 /// A volume is a plain aggregate of scalars S (float, double, or a SIMD batch of either), with free
 /// functions found by argument-dependent lookup. Laws, checked by tests/laws for every entry of
@@ -65,7 +65,7 @@ enum class Fit { published, tight };
 ///                 it so, rounding included: a vertex moved by Pose lies in the posed volume;
 ///   conservatism  if a point lies in both, `disjoint` is false, also where numbers overflow;
 ///   gap           `gap` never exceeds the true distance, and is 0 where a point lies in both;
-///   batches       lane by lane, a batch says what the scalar says.
+///   batches       lane by lane, a batch gives what the scalar gives.
 template <class V>
 concept BoundingVolume = requires(const V a, const V b, std::span<const Vec3<double>> points,
                                   const PlacementOf<V> placement, const Posed<V> p,
@@ -82,7 +82,7 @@ concept BoundingVolume = requires(const V a, const V b, std::span<const Vec3<dou
   { reach(a) } -> std::same_as<typename V::scalar>;  // how far from the frame's origin it extends
 };
 
-/// `size(volume)` and `reach(volume)` where a member of that name is in the way.
+/// `size(volume)` and `reach(volume)` for scopes where a member of that name hides them.
 template <BoundingVolume V>
 typename V::scalar size_of(const V& volume) {
   return size(volume);

@@ -18,7 +18,7 @@ struct Down {
   static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size) {
     return TopDown{kAxis, kAt, leaf_size}(mesh);
   }
-  /// The same, by several threads.
+  /// The same, on several threads.
   static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size, Threads& threads) {
     return TopDown{kAxis, kAt, leaf_size}(mesh, threads);
   }
@@ -54,7 +54,7 @@ struct BottomUpLocal {
   static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size) {
     return BottomUp{leaf_size}(mesh);
   }
-  /// The same, by several threads.
+  /// The same, on several threads.
   static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size, Threads& threads) {
     return BottomUp{leaf_size}(mesh, threads);
   }

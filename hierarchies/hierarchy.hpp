@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A tree of bounding volumes over one mesh, flat: siblings adjacent, 32-bit indices, the volumes
-/// in an array of their own because posing reads nothing else.
+/// A tree of bounding volumes over one mesh, binary or of any fan-out, stored flat: siblings
+/// adjacent, 32-bit indices, the volumes in an array of their own because posing reads nothing
+/// else.
+///
+/// The fan-out is a matter of the topology, not of the type: whatever is compiled for a volume runs
+/// on trees of every fan-out.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +19,7 @@
 #include "hierarchies/geometry/triangle_mesh.hpp"
 #include "hierarchies/geometry/written_out.hpp"
 #include "hierarchies/hierarchy_extent.hpp"
+#include "hierarchies/wide/collapse.hpp"
 
 namespace bvlab {
 
@@ -22,31 +27,34 @@ template <BoundingVolume V>
 class Hierarchy {
  public:
   struct Node {
-    std::uint32_t first;  ///< inner: the first of two adjacent children; leaf: of its primitives
-    std::uint32_t count;  ///< number of primitives of a leaf; 0 for an inner node
+    std::uint32_t first;      ///< inner: the first of adjacent children; leaf: of its primitives
+    std::uint32_t count;      ///< number of primitives of a leaf; 0 for an inner node
+    std::uint32_t children;   ///< how many children an inner node has, 2 to 16; 0 for a leaf
+    std::uint32_t group;      ///< the number of the children's group, see group()
     typename V::scalar size;  ///< of its volume: the larger one is descended
   };
 
-  /// Fits V to a topology of the mesh, which must have a triangle. A parent takes the smaller of
-  /// what encloses its two children and what encloses its triangles (quinlan1994efficient).
-  /// O(n log n) for balanced trees.
-  Hierarchy(const TriangleMesh& mesh, const Topology& topology, Fit fit = Fit::published,
+  /// Fits V to a topology of the mesh, which must have a triangle: a Topology, which is binary, or
+  /// a WideTopology. A parent takes the smaller of what encloses its children and what encloses its
+  /// triangles (quinlan1994efficient). O(n log n) for balanced trees.
+  template <class AnyTopology>
+  Hierarchy(const TriangleMesh& mesh, const AnyTopology& topology, Fit fit = Fit::published,
             Threads&& threads = Threads())
       : Hierarchy(mesh, topology, fit, threads) {}
-  /// By several threads, who share what encloses triangles: the same, whatever their number.
-  Hierarchy(const TriangleMesh& mesh, const Topology& topology, Fit fit, Threads& threads)
+  /// On several threads, which share the fitting to triangles. The result does not depend on their
+  /// number.
+  template <class AnyTopology>
+  Hierarchy(const TriangleMesh& mesh, const AnyTopology& topology, Fit fit, Threads& threads)
       : primitives_(topology.primitives), volumes_(topology.nodes.size()) {
-    nodes_.reserve(topology.nodes.size());
-    for (const auto& [first, count] : topology.nodes) nodes_.push_back({first, count, 0});
-    ranges_of(topology);
+    take_nodes(topology);
+    number_siblings();
     std::vector<Fitting> fitting(threads.count());
-    // The first enclose most.
+    // The first nodes enclose most triangles.
     threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
       enclose(i, begin_[i], end_[i], mesh, fit, fitting[worker]);
     });
     for (std::size_t i = nodes_.size(); i-- > 0;) {
-      if (const Node& node = nodes_[i]; node.count == 0)
-        take_smaller(i, merge(volumes_[node.first], volumes_[node.first + 1]));
+      if (const Node& node = nodes_[i]; node.count == 0) take_smaller(i, around_children(node));
       nodes_[i].size = size_of(volumes_[i]);
     }
     look_up();
@@ -55,16 +63,16 @@ class Hierarchy {
   }
 
   /// Fits the volumes again to the same triangles, whose corners have moved: leaves by the
-  /// published construction, parents around their children (vandenbergen1997efficient). O(n), and
-  /// the looser the more the mesh has changed its shape. Bodies over it, and strategies that have
-  /// run on them, are to be made anew.
+  /// published construction, parents around their children (vandenbergen1997efficient). O(n). The
+  /// volumes are the looser the more the mesh has changed its shape. Bodies over the hierarchy, and
+  /// strategies that have run on them, must be made anew.
   void refit(const TriangleMesh& mesh) {
     Fitting fitting;
     for (std::size_t i = nodes_.size(); i-- > 0;) {
       if (const Node& node = nodes_[i]; node.count > 0) {
         enclose(i, node.first, node.first + node.count, mesh, Fit::published, fitting);
       } else {
-        volumes_[i] = merge(volumes_[node.first], volumes_[node.first + 1]);
+        volumes_[i] = around_children(node);
       }
       nodes_[i].size = size_of(volumes_[i]);
     }
@@ -75,29 +83,88 @@ class Hierarchy {
   std::size_t size() const { return nodes_.size(); }
   bool is_leaf(std::uint32_t node) const { return nodes_[node].count > 0; }
   const Node& node(std::uint32_t node) const { return nodes_[node]; }
-  /// Of a node that is not the root.
-  std::uint32_t parent(std::uint32_t node) const { return above_[(node + 1) / 2].parent; }
-  /// The least size of all that the node lies below: of two nodes that make a pair, the parent of
-  /// that for which this is less was descended last, of b where they are equal.
-  typename V::scalar least_above(std::uint32_t node) const { return above_[(node + 1) / 2].least; }
+  /// The most children that a node has, at least 2.
+  std::uint32_t fan_out() const { return fan_out_; }
+  /// The number of a node's group of siblings, below `sibling_groups()`; the root's is 0.
+  std::uint32_t group(std::uint32_t node) const { return SiblingGroups(*this)(node); }
+  /// The same, to be stored where it is needed often; valid as long as the hierarchy.
+  class SiblingGroups {
+   public:
+    explicit SiblingGroups(const Hierarchy& hierarchy)
+        : groups_(hierarchy.groups_.empty() ? nullptr : hierarchy.groups_.data()) {}
+    std::uint32_t operator()(std::uint32_t node) const {
+      return groups_ ? groups_[node] : (node + 1) / 2;
+    }
+
+   private:
+    const std::uint32_t* groups_;
+  };
+  std::size_t sibling_groups() const { return above_.size(); }
+  /// The parent of a node that is not the root.
+  std::uint32_t parent(std::uint32_t node) const { return above_[group(node)].parent; }
+  /// What siblings have in common.
+  struct Above {
+    std::uint32_t parent;
+    std::uint32_t first, count;  ///< the siblings
+    /// The least size of the parent and all above it. Of two nodes that make a pair, the one for
+    /// which this is less has the parent that was descended last; b's where they are equal.
+    typename V::scalar least;
+  };
+  const Above& above(std::uint32_t node) const { return above_[group(node)]; }
+  const Above& above_group(std::uint32_t group) const { return above_[group]; }
   const V& volume(std::uint32_t node) const { return volumes_[node]; }
-  /// The triangle that stands at a place in a leaf's range.
-  std::uint32_t primitive(std::uint32_t place) const { return primitives_[place]; }
+  const V* volumes() const { return volumes_.data(); }
+  /// The triangle at an index within a leaf's range.
+  std::uint32_t primitive(std::uint32_t index) const { return primitives_[index]; }
   std::size_t primitives() const { return primitives_.size(); }
   const HierarchyExtent& extent() const { return extent_; }
 
  private:
-  struct Above {
-    std::uint32_t parent;
-    typename V::scalar least;  ///< size of the parent and all above it
-  };
+  void take_nodes(const Topology& topology) {
+    nodes_.reserve(topology.nodes.size());
+    for (const auto& [first, count] : topology.nodes)
+      nodes_.push_back({first, count, count ? 0u : 2u, 0, 0});
+    ranges_of(topology);
+  }
+  void take_nodes(const WideTopology& topology) {
+    for (const auto& node : topology.nodes) {
+      assert(node.leaf || (node.count >= 2 && node.count <= 16));
+      nodes_.push_back({node.first, node.leaf ? node.count : 0, node.leaf ? 0 : node.count, 0, 0});
+      begin_.push_back(node.begin), end_.push_back(node.end);
+      if (!node.leaf) fan_out_ = std::max(fan_out_, node.count);
+    }
+  }
 
-  /// Notes what is above each node, parents first.
+  /// In a binary tree siblings are 2k - 1 and 2k.
+  void number_siblings() {
+    std::uint32_t groups = 1;
+    bool binary = true;
+    for (const Node& node : nodes_)
+      if (node.children > 0) ++groups, binary = binary && node.children == 2 && node.first % 2 == 1;
+    above_.resize(groups);
+    if (!binary) groups_.assign(nodes_.size(), 0);
+    groups = 0;
+    for (Node& node : nodes_)
+      if (node.children > 0) {
+        node.group = binary ? (node.first + 1) / 2 : ++groups;
+        if (!binary) std::fill_n(groups_.begin() + node.first, node.children, node.group);
+      }
+  }
+
+  /// Fills in what is above each node, parents first.
   void look_up() {
-    above_.assign(nodes_.size() / 2 + 1, {0, std::numeric_limits<typename V::scalar>::infinity()});
+    above_[0] = {0, 0, 1, std::numeric_limits<typename V::scalar>::infinity()};
     for (std::uint32_t i = 0; i < nodes_.size(); ++i)
       if (const Node& node = nodes_[i]; node.count == 0)
-        above_[(node.first + 1) / 2] = {i, std::min(above_[(i + 1) / 2].least, node.size)};
+        above_[node.group] = {i, node.first, node.children,
+                              std::min(above_[group(i)].least, node.size)};
+  }
+
+  V around_children(const Node& node) const {
+    V around = merge(volumes_[node.first], volumes_[node.first + 1]);
+    for (std::uint32_t k = 2; k < node.children; ++k)
+      around = merge(around, volumes_[node.first + k]);
+    return around;
   }
 
   void surround(const TriangleMesh& mesh) {
@@ -114,7 +181,9 @@ class Hierarchy {
       for (const auto v : triangle)
         radius = std::max(radius, stable_norm(mesh.vertices[v] - centre));
     radius *= 1 + 16 * unit_roundoff<double>;
-    extent_ = {centre, radius, reach, nodes_.size()};
+    const auto leaves = std::count_if(nodes_.begin(), nodes_.end(),
+                                      [](const Node& node) { return node.count > 0; });
+    extent_ = {centre, radius, reach, nodes_.size(), static_cast<std::size_t>(leaves)};
   }
 
   /// The range of primitives below each node: children come after their parent, leaf by leaf.
@@ -127,7 +196,7 @@ class Hierarchy {
     }
   }
 
-  /// What a thread needs for itself while volumes are fitted.
+  /// What one thread needs for itself while volumes are fitted.
   struct alignas(128) Fitting {
     std::vector<std::uint32_t> corners;
     std::vector<Vec3<double>> points;
@@ -137,16 +206,15 @@ class Hierarchy {
                Fit fit, Fitting& own) {
     auto& [corners, points, triangles] = own;
     corners.clear();
-    for (std::uint32_t place = begin; place < end; ++place)
-      for (const auto vertex : mesh.triangles[primitives_[place]]) corners.push_back(vertex);
+    for (std::uint32_t k = begin; k < end; ++k)
+      for (const auto vertex : mesh.triangles[primitives_[k]]) corners.push_back(vertex);
     std::sort(corners.begin(), corners.end());
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     points.clear();
     for (const auto vertex : corners) points.push_back(mesh.vertices[vertex]);
     if constexpr (FittedToTriangles<V> || FittedTightly<V>) {
       triangles.clear();
-      for (std::uint32_t place = begin; place < end; ++place)
-        triangles.push_back(mesh.corners(primitives_[place]));
+      for (std::uint32_t k = begin; k < end; ++k) triangles.push_back(mesh.corners(primitives_[k]));
     }
     if constexpr (FittedTightly<V>) {
       if (fit == Fit::tight) {
@@ -161,14 +229,16 @@ class Hierarchy {
   }
 
   void take_smaller(std::size_t i, const V& other) {
-    // Written so that a size that is not a number loses.
+    // Written so that a size of NaN loses.
     if (!(size_of(volumes_[i]) <= size_of(other))) volumes_[i] = other;
   }
 
   std::vector<std::uint32_t> primitives_;
   std::vector<Node> nodes_;
   std::vector<V> volumes_;
-  std::vector<Above> above_;  // one for two siblings
+  std::vector<Above> above_;           // one for each group of siblings
+  std::vector<std::uint32_t> groups_;  // of each node; empty in a binary tree
+  std::uint32_t fan_out_ = 2;
   HierarchyExtent extent_;
   std::vector<std::uint32_t> begin_, end_;  // only while fitting
 };

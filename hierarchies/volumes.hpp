@@ -9,6 +9,7 @@
 #include "hierarchies/volumes/obb.hpp"
 #include "hierarchies/volumes/rss.hpp"
 #include "hierarchies/volumes/shell.hpp"
+#include "hierarchies/volumes/slab_box.hpp"
 #include "hierarchies/volumes/sphere.hpp"
 
 namespace bvlab {
@@ -21,6 +22,7 @@ using Volumes = TypeList<  //
     Kdop18<float>,         //
     Kdop26<float>,         //
     Rss<float>,            //
-    Shell<float>>;
+    Shell<float>,          //
+    SlabBox<float>>;
 
 }  // namespace bvlab

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -38,26 +38,50 @@ struct TopDown {
 
 namespace detail {
 
+/// What is sorted of a triangle: its centroid and its number in the mesh (exact in a double). Four
+/// numbers are loaded where three are meant; the fourth is not looked at.
+struct CentroidOf {
+  static constexpr bool has_box = false;
+  static constexpr std::size_t centroid_at = 0;
+  std::array<double, 4> numbers;
+
+  CentroidOf(const Triangle& t, std::size_t i) {
+    const Vec3<double> c = t[0] / 3 + t[1] / 3 + t[2] / 3;
+    numbers = {c[0], c[1], c[2], static_cast<double>(i)};
+  }
+};
+/// The same behind the corners of its box.
+struct BoxOf {
+  static constexpr bool has_box = true;
+  static constexpr std::size_t lo_at = 0, hi_at = 3, centroid_at = 6;
+  std::array<double, 10> numbers;
+
+  BoxOf(const Triangle& t, std::size_t i) {
+    const Vec3<double> lo = t[0].cwiseMin(t[1]).cwiseMin(t[2]),
+                       hi = t[0].cwiseMax(t[1]).cwiseMax(t[2]), c = t[0] / 3 + t[1] / 3 + t[2] / 3;
+    numbers = {lo[0], lo[1], lo[2], hi[0], hi[1], hi[2], c[0], c[1], c[2], static_cast<double>(i)};
+  }
+};
+
+/// Sorts items in place, not their numbers: a range's lie side by side, however deep it is.
+template <class Item>
 class Splitter {
  public:
-  Splitter(const TriangleMesh& mesh, const TopDown& options)
-      : mesh_(mesh), options_(options), keys_(mesh.triangles.size()) {
-    centroids_.reserve(mesh.triangles.size());
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-      const auto [a, b, c] = mesh.corners(i);
-      centroids_.push_back(a / 3 + b / 3 + c / 3);
-    }
+  Splitter(const TriangleMesh& mesh, const TopDown& options) : options_(options) {
+    items_.reserve(mesh.triangles.size());
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) items_.emplace_back(mesh.corners(i), i);
   }
 
   Topology build(Threads& threads) {
     Topology topology;
-    topology.primitives.resize(centroids_.size());
-    std::iota(topology.primitives.begin(), topology.primitives.end(), 0u);
-    const auto count = static_cast<std::uint32_t>(centroids_.size());
+    const auto count = static_cast<std::uint32_t>(items_.size());
     if (threads.count() == 1 || count < worth_sharing)
-      topology.nodes = subtree({0, count}, topology.primitives);
+      topology.nodes = subtree({0, count});
     else
-      topology.nodes = subtrees({0, count}, topology.primitives, threads);
+      topology.nodes = subtrees({0, count}, threads);
+    topology.primitives.reserve(items_.size());
+    for (const Item& item : items_)
+      topology.primitives.push_back(static_cast<std::uint32_t>(index(item)));
     return topology;
   }
 
@@ -68,8 +92,8 @@ class Splitter {
 
   bool is_leaf(std::uint32_t size) const { return size <= std::max(1u, options_.leaf_size); }
 
-  /// What is below a range of the primitives, the left half first; node 0 is the range itself.
-  Nodes subtree(const Topology::Node& range, std::span<std::uint32_t> primitives) {
+  /// What is below a range of the items, the left half first; node 0 is the range itself.
+  Nodes subtree(const Topology::Node& range) {
     Nodes nodes;
     nodes.reserve(2 * std::size_t{range.count});
     nodes.push_back(range);
@@ -79,7 +103,7 @@ class Splitter {
       open.pop_back();
       const auto [first, size] = nodes[node];
       if (is_leaf(size)) continue;
-      const std::uint32_t left = split(primitives.subspan(first, size));
+      const std::uint32_t left = split(items(first, size));
       const auto child = static_cast<std::uint32_t>(nodes.size());
       nodes[node] = {child, 0};
       nodes.push_back({first, left});
@@ -96,8 +120,7 @@ class Splitter {
     std::uint32_t child = 0;  ///< the first of two parts; 0 where there are none
     Nodes below;              ///< its subtree, where there are none
   };
-  Nodes subtrees(const Topology::Node& range, std::span<std::uint32_t> primitives,
-                 Threads& threads) {
+  Nodes subtrees(const Topology::Node& range, Threads& threads) {
     std::vector<Part> parts{{range, 0, {}}};
     for (std::size_t begin = 0, end; (end = parts.size()) > begin; begin = end) {
       std::vector<std::uint32_t> left(end - begin);
@@ -105,9 +128,9 @@ class Splitter {
         Part& part = parts[begin + k];
         const auto [first, size] = part.range;
         if (size <= subtree_of_one || is_leaf(size))
-          part.below = subtree(part.range, primitives);
+          part.below = subtree(part.range);
         else
-          left[k] = split(primitives.subspan(first, size));
+          left[k] = split(items(first, size));
       });
       for (std::size_t k = begin; k < end; ++k)
         if (const std::uint32_t here = left[k - begin]; here > 0) {
@@ -144,103 +167,147 @@ class Splitter {
     return nodes;
   }
 
+  using Items = std::span<Item>;
+  Items items(std::uint32_t first, std::uint32_t size) {
+    return Items(items_).subspan(first, size);
+  }
+
   /// Orders the range so that its first part goes to the left child; gives that part's size, which
   /// is neither zero nor all.
-  std::uint32_t split(std::span<std::uint32_t> range) {
-    const Vec3<double> axis = direction(range);
+  std::uint32_t split(Items range) const {
+    const auto box = box_of_centroids(range);
+    Eigen::Index longest = 0;
+    (box.max() - box.min()).maxCoeff(&longest);
+    std::size_t left;
+    if (options_.axis == SplitAxis::longest) {
+      left = split(range, [longest](const Item& item) { return centroid(item)[longest]; });
+    } else {
+      const Vec3<double> axis = principal(range, box, longest);
+      left = split(range, [&axis](const Item& item) { return axis.dot(centroid(item)); });
+    }
+    return static_cast<std::uint32_t>(left);
+  }
+
+  template <class Key>
+  std::size_t split(Items range, const Key& key) const {
     double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;
-    for (const auto i : range) {
-      const double key = keys_[i] = axis.dot(centroids_[i]);
-      low = std::min(low, key), high = std::max(high, key), sum += key;
+    for (const Item& item : range) {
+      const double k = key(item);
+      low = std::min(low, k), high = std::max(high, k), sum += k;
     }
     std::size_t left = 0;
     if (low < high && options_.at != SplitAt::median) {
       const double cut = options_.at == SplitAt::mean     ? sum / static_cast<double>(range.size())
                          : options_.at == SplitAt::middle ? low / 2 + high / 2
-                                                          : cheapest_cut(range, low, high);
+                                                          : cheapest_cut(range, key, low, high);
       left = static_cast<std::size_t>(
-          std::partition(range.begin(), range.end(), [&](auto i) { return keys_[i] < cut; }) -
+          std::partition(range.begin(), range.end(),
+                         [&](const Item& item) { return key(item) < cut; }) -
           range.begin());
     }
     if (left == 0 || left == range.size()) {
       left = range.size() / 2;
-      std::nth_element(
-          range.begin(), range.begin() + static_cast<std::ptrdiff_t>(left), range.end(),
-          [&](auto i, auto j) { return keys_[i] < keys_[j] || (keys_[i] == keys_[j] && i < j); });
+      std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(left),
+                       range.end(), [&](const Item& a, const Item& b) {
+                         return key(a) < key(b) || (key(a) == key(b) && index(a) < index(b));
+                       });
     }
-    return static_cast<std::uint32_t>(left);
+    return left;
   }
 
-  Vec3<double> direction(std::span<const std::uint32_t> range) const {
-    Eigen::AlignedBox3d box;
-    Vec3<double> mean = Vec3<double>::Zero();
-    for (const auto i : range) {
-      box.extend(centroids_[i]);
-      mean += centroids_[i] / static_cast<double>(range.size());
-    }
-    Eigen::Index longest = 0;
-    (box.max() - box.min()).maxCoeff(&longest);
+  using Four = Eigen::Array4d;
+  static Eigen::Map<const Four> four(const Item& item, std::size_t at) {
+    return Eigen::Map<const Four>(item.numbers.data() + at);
+  }
+  static Eigen::Map<const Vec3<double>> centroid(const Item& item) {
+    return Eigen::Map<const Vec3<double>>(item.numbers.data() + Item::centroid_at);
+  }
+  static double index(const Item& item) { return item.numbers[Item::centroid_at + 3]; }
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+
+  static Eigen::AlignedBox3d box_of_centroids(Items range) {
+    Four lo = Four::Constant(infinite), hi = -lo;
+    for (const Item& item : range)
+      lo = lo.min(four(item, Item::centroid_at)), hi = hi.max(four(item, Item::centroid_at));
+    return {lo.head<3>().matrix(), hi.head<3>().matrix()};
+  }
+
+  Vec3<double> principal(Items range, const Eigen::AlignedBox3d& box, Eigen::Index longest) const {
     const Vec3<double> along_box = Vec3<double>::Unit(longest);
-    if (options_.axis == SplitAxis::longest) return along_box;
-    Mat3<double> covariance = Mat3<double>::Zero();
     const double scale = box.diagonal().norm();
     if (!(scale > 0) || !std::isfinite(scale)) return along_box;
-    for (const auto i : range) {
-      const Vec3<double> d = (centroids_[i] - mean) / scale;
+    Vec3<double> mean = Vec3<double>::Zero();
+    for (const Item& item : range) mean += centroid(item) / static_cast<double>(range.size());
+    Mat3<double> covariance = Mat3<double>::Zero();
+    for (const Item& item : range) {
+      const Vec3<double> d = (centroid(item) - mean) / scale;
       covariance += d * d.transpose();
     }
     const Eigen::SelfAdjointEigenSolver<Mat3<double>> solver(covariance);
     return solver.info() == Eigen::Success ? Vec3<double>(solver.eigenvectors().col(2)) : along_box;
   }
 
-  /// The cut between bins with the least (area x count) summed over both sides.
-  double cheapest_cut(std::span<const std::uint32_t> range, double low, double high) const {
-    constexpr std::size_t bins = 32;
-    std::array<Eigen::AlignedBox3d, bins> boxes;
-    std::array<std::size_t, bins> counts{};
-    const double per_unit = bins / (high - low);
-    const auto bin_of = [&](double key) {
-      return std::min(bins - 1, static_cast<std::size_t>((key - low) * per_unit));
-    };
-    for (const auto i : range) {
-      const std::size_t bin = bin_of(keys_[i]);
-      ++counts[bin];
-      for (const auto& corner : mesh_.corners(i)) boxes[bin].extend(corner);
-    }
-    std::array<double, bins> right_cost{};
-    Eigen::AlignedBox3d box;
+  /// The triangles whose centroids lie in one part of the range.
+  struct Bin {
+    Four lo = Four::Constant(infinite), hi = Four::Constant(-infinite);
     std::size_t count = 0;
-    for (std::size_t bin = bins - 1; bin > 0; --bin) {
-      box.extend(boxes[bin]), count += counts[bin];
-      right_cost[bin] = half_area(box) * static_cast<double>(count);
+
+    void add(const Bin& other) {
+      lo = lo.min(other.lo), hi = hi.max(other.hi), count += other.count;
     }
-    double best = std::numeric_limits<double>::infinity(), cut = low;
-    box.setEmpty(), count = 0;
-    for (std::size_t bin = 1; bin < bins; ++bin) {
-      box.extend(boxes[bin - 1]), count += counts[bin - 1];
-      const double cost = half_area(box) * static_cast<double>(count) + right_cost[bin];
-      if (count > 0 && count < range.size() && cost < best)
-        best = cost, cut = low + static_cast<double>(bin) / per_unit;
+    /// (area x count) / 2.
+    double cost() const {
+      if (count == 0) return 0;
+      const Four d = hi - lo;
+      return (d[0] * d[1] + d[1] * d[2] + d[2] * d[0]) * static_cast<double>(count);
     }
-    return cut;
+  };
+
+  /// The cut between bins with the least (area x count) summed over both sides.
+  template <class Key>
+  static double cheapest_cut(Items range, const Key& key, double low, double high) {
+    if constexpr (Item::has_box) {
+      constexpr std::size_t count = 32;
+      std::array<Bin, count> bins;
+      const double per_unit = count / (high - low);
+      for (const Item& item : range) {
+        // Where the range is so small or large that the quotient overflows, all are in the last bin.
+        const double at = (key(item) - low) * per_unit;
+        Bin& bin = bins[at < count ? static_cast<std::size_t>(at) : count - 1];
+        bin.lo = bin.lo.min(four(item, Item::lo_at)), bin.hi = bin.hi.max(four(item, Item::hi_at)),
+        ++bin.count;
+      }
+      std::array<double, count> right_cost;
+      Bin right, left;
+      double cost = 0;
+      for (std::size_t k = count - 1; k > 0; --k) {
+        if (bins[k].count > 0) right.add(bins[k]), cost = right.cost();
+        right_cost[k] = cost;
+      }
+      double best = infinite, cut = low;
+      for (std::size_t k = 1; k < count; ++k) {
+        if (bins[k - 1].count == 0) continue;  // cut before
+        left.add(bins[k - 1]);
+        if (left.count == range.size()) break;
+        const double both = left.cost() + right_cost[k];
+        if (both < best) best = both, cut = low + static_cast<double>(k) / per_unit;
+      }
+      return cut;
+    } else {
+      return low;
+    }
   }
 
-  static double half_area(const Eigen::AlignedBox3d& box) {
-    if (box.isEmpty()) return 0;
-    const Vec3<double> d = box.sizes();
-    return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
-  }
-
-  const TriangleMesh& mesh_;
   const TopDown& options_;
-  std::vector<Vec3<double>> centroids_;
-  std::vector<double> keys_;
+  std::vector<Item> items_;
 };
 
 }  // namespace detail
 
 inline Topology TopDown::operator()(const TriangleMesh& mesh, Threads& threads) const {
-  return detail::Splitter(mesh, *this).build(threads);
+  return at == SplitAt::surface_area
+             ? detail::Splitter<detail::BoxOf>(mesh, *this).build(threads)
+             : detail::Splitter<detail::CentroidOf>(mesh, *this).build(threads);
 }
 inline Topology TopDown::operator()(const TriangleMesh& mesh) const {
   Threads alone;

@@ -7,9 +7,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bitset>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 #include <utility>
 
@@ -36,8 +36,9 @@ using deduce_t = lanes<W>;
 /// Calls f(0), f(1), ... f(W - 1), each index a constant.
 template <int W, class F>
 [[gnu::always_inline]] constexpr void each_lane(F&& f) {
-  [&]<int... i>(std::integer_sequence<int, i...>) { (f(std::integral_constant<int, i>()), ...); }
-  (std::make_integer_sequence<int, W>());
+  [&]<int... i>(std::integer_sequence<int, i...>) {
+    (f(std::integral_constant<int, i>()), ...);
+  }(std::make_integer_sequence<int, W>());
 }
 
 template <class T, class Abi>
@@ -50,17 +51,18 @@ class simd_mask {
 
   bool operator[](std::size_t i) const { return lane_[i]; }
   bool& operator[](std::size_t i) { return lane_[i]; }
-  std::bitset<W> __to_bitset() const {
-    unsigned long long bits = 0;
-    each_lane<W>([&](auto i) { bits |= static_cast<unsigned long long>(lane_[i]) << i; });
-    return bits;
+  /// Bit i is lane i's.
+  std::uint64_t bits() const {
+    std::uint64_t result = 0;
+    each_lane<W>([&](auto i) { result |= static_cast<std::uint64_t>(lane_[i]) << i; });
+    return result;
   }
 
   friend simd_mask operator&&(const simd_mask& a, const simd_mask& b) {
-    return of([&](auto i) { return a.lane_[i] & b.lane_[i]; });
+    return of([&](auto i) { return static_cast<bool>(int{a.lane_[i]} & int{b.lane_[i]}); });
   }
   friend simd_mask operator||(const simd_mask& a, const simd_mask& b) {
-    return of([&](auto i) { return a.lane_[i] | b.lane_[i]; });
+    return of([&](auto i) { return static_cast<bool>(int{a.lane_[i]} | int{b.lane_[i]}); });
   }
   friend simd_mask operator&(const simd_mask& a, const simd_mask& b) { return a && b; }
   friend simd_mask operator|(const simd_mask& a, const simd_mask& b) { return a || b; }
@@ -98,9 +100,12 @@ class alignas(sizeof(T) * Abi::width) simd {
 
   simd() = default;
   template <class N>
-  requires std::is_arithmetic_v<N> simd(N all) { lane_.fill(static_cast<T>(all)); }
+    requires std::is_arithmetic_v<N>
+  simd(N all) {
+    lane_.fill(static_cast<T>(all));
+  }
   template <class F>
-  requires requires(F f) { f(std::integral_constant<std::size_t, 0>()); }
+    requires requires(F f) { f(std::integral_constant<std::size_t, 0>()); }
   explicit simd(F&& f) {
     each_lane<W>([&](auto i) {
       lane_[i] =
@@ -178,14 +183,14 @@ template <class T, class Abi>
 simd<T, Abi> sqrt(const simd<T, Abi>& x) {
   return simd<T, Abi>::of([&](auto i) { return std::sqrt(x[i]); });
 }
-/// As std::min and std::max have it where one is no number.
+/// Where one is NaN, the second.
 template <class T, class Abi>
 simd<T, Abi> min(const simd<T, Abi>& a, const simd<T, Abi>& b) {
-  return simd<T, Abi>::of([&](auto i) { return std::min(a[i], b[i]); });
+  return simd<T, Abi>::of([&](auto i) { return a[i] < b[i] ? a[i] : b[i]; });
 }
 template <class T, class Abi>
 simd<T, Abi> max(const simd<T, Abi>& a, const simd<T, Abi>& b) {
-  return simd<T, Abi>::of([&](auto i) { return std::max(a[i], b[i]); });
+  return simd<T, Abi>::of([&](auto i) { return a[i] > b[i] ? a[i] : b[i]; });
 }
 
 template <class To, class T, class Abi>
@@ -222,11 +227,11 @@ Where<T, Abi> where(const simd_mask<T, Abi>& mask, simd<T, Abi>& value) {
 
 template <class T, class Abi>
 bool all_of(const simd_mask<T, Abi>& mask) {
-  return mask.__to_bitset().all();
+  return (!mask).bits() == 0;
 }
 template <class T, class Abi>
 bool any_of(const simd_mask<T, Abi>& mask) {
-  return mask.__to_bitset().any();
+  return mask.bits() != 0;
 }
 template <class T, class Abi>
 T hmin(const simd<T, Abi>& x) {

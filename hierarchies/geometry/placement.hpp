@@ -38,7 +38,7 @@
 namespace bvlab {
 
 template <class T>
-requires std::is_floating_point_v<T>
+  requires std::is_floating_point_v<T>
 struct Placement {
   Mat3<T> rotation = Mat3<T>::Identity();
   Vec3<T> translation = Vec3<T>::Zero();
@@ -75,10 +75,10 @@ struct Placement {
   }
 
   /// The same for a rotation that is known to be orthonormal to 128u (float volumes only: theirs is
-  /// the larger rounding by far), and `noise` beside what is said above.
+  /// the larger rounding by far), and `error bound` beside what is said above.
   struct Orthonormal {};
   Placement(Orthonormal, const Mat3<double>& exactly, const Vec3<double>& offset, double reach,
-            double noise) {
+            double error_bound) {
     constexpr double e = unit_roundoff<T>;
     static_assert(e > 0x1p-30);
     rotation = exactly.cast<T>();
@@ -87,7 +87,7 @@ struct Placement {
     stretch = static_cast<T>(1 + 8 * e);
     tilt = static_cast<T>(9 * e);
     const double tiny = std::ldexp(1.0, std::numeric_limits<T>::min_exponent / 2 + 2);
-    slack = rounded_up<T>((10 * e * (reach + offset.norm()) + noise + tiny) * room);
+    slack = rounded_up<T>((10 * e * (reach + offset.norm()) + error_bound + tiny) * room);
     for (int k = 0; k < 3; ++k)
       columns_[k] = Quad{rotation(0, k), rotation(1, k), rotation(2, k), 0};
   }

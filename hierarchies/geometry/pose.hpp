@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -25,6 +26,10 @@ struct Pose {
       world[i] = ((rotation(i, 0) * v[0] + rotation(i, 1) * v[1]) + rotation(i, 2) * v[2]) +
                  translation[i];
     return world;
+  }
+  /// The corners of a triangle.
+  std::array<Vec3<double>, 3> operator()(const std::array<Vec3<double>, 3>& corners) const {
+    return {(*this)(corners[0]), (*this)(corners[1]), (*this)(corners[2])};
   }
 
   friend bool operator==(const Pose& a, const Pose& b) {

@@ -16,11 +16,11 @@
 ///
 /// The product Q_b' Q_a is computed in float64 with three roundings of each product in a component
 /// at most, and the vector with four. As |Q| of moduli is at most 5/3, that is less than
-/// 9u (r_a + |t_a - t_b|) in all. `noise` is at least the sum of everything,
-/// so that b can be taken to stand exactly where its mesh is given, and a within `noise` of where
-/// rotation and translation put it. All of it is below 64u of the lengths: in float volumes it is
-/// lost beside their own rounding unless bodies are far from the origin of the world, as it should
-/// be, for then float64 has lost it too.
+/// 9u (r_a + |t_a - t_b|) in all. `error bound` is at least the sum of everything,
+/// so that b can be taken to stand exactly where its mesh is given, and a within `error bound` of
+/// where rotation and translation put it. All of it is below 64u of the lengths: in float volumes
+/// it is lost beside their own rounding unless bodies are far from the origin of the world, as it
+/// should be, for then float64 has lost it too.
 #pragma once
 
 #include <array>
@@ -38,14 +38,14 @@ struct OrthonormalPose {
 
   alignas(32) double rows[3][4] = {};  ///< of Q, orthonormal to 32u, and a zero: read as one
   Vec3<double> translation = Vec3<double>::Zero();
-  double reach = 0;  ///< of the mesh, from its own origin
-  double noise = 0;  ///< 8u (r + |t|) + |R - Q| r; infinite where R is off by more than 0.01
+  double reach = 0;        ///< of the mesh, from its own origin
+  double error_bound = 0;  ///< 8u (r + |t|) + |R - Q| r; infinite where R is off by more than 0.01
 
   OrthonormalPose() = default;
   OrthonormalPose(const Pose& pose, double reach_of_mesh)
       : translation(pose.translation), reach(reach_of_mesh) {
     constexpr double u = unit_roundoff<double>;
-    noise = 8 * u * (reach + translation.lpNorm<1>());
+    error_bound = 8 * u * (reach + translation.lpNorm<1>());
     if (squared_defect_of(pose.rotation) <= sound)
       keep(pose.rotation);
     else
@@ -76,10 +76,10 @@ struct OrthonormalPose {
         left = squared_defect_of(rotation);
       }
     if (left <= sound) {
-      noise += ((given - rotation).norm() + 8 * unit_roundoff<double>)*reach;
+      error_bound += ((given - rotation).norm() + 8 * unit_roundoff<double>)*reach;
       return rotation;
     }
-    noise = std::numeric_limits<double>::infinity();
+    error_bound = std::numeric_limits<double>::infinity();
     return Mat3<double>::Identity();
   }
 
@@ -102,7 +102,7 @@ struct RelativePose {
   std::array<Four, 3> column;  ///< of the rotation; the last number of each is 0
   Four translation;
   double length;  ///< of the translation: the sum of its numbers, all taken positive
-  double noise;
+  double error_bound;
 
   RelativePose(const OrthonormalPose& a, const OrthonormalPose& b) {
     const double x = a.translation[0] - b.translation[0], y = a.translation[1] - b.translation[1],
@@ -111,9 +111,9 @@ struct RelativePose {
       column[j] = b.transposed_times(a.rows[0][j], a.rows[1][j], a.rows[2][j]);
     translation = b.transposed_times(x, y, z);
     length = (std::abs(translation[0]) + std::abs(translation[1])) + std::abs(translation[2]);
-    noise = a.noise + b.noise +
-            128 * unit_roundoff<double> *
-                (a.reach + b.reach + ((std::abs(x) + std::abs(y)) + std::abs(z)));
+    error_bound = a.error_bound + b.error_bound +
+                  128 * unit_roundoff<double> *
+                      (a.reach + b.reach + ((std::abs(x) + std::abs(y)) + std::abs(z)));
   }
 
   Mat3<double> rotation() const {

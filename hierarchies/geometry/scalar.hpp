@@ -12,16 +12,27 @@
 #include <limits>
 #include <type_traits>
 
-#ifdef BVLAB_ONE_LANE
+#if defined(BVLAB_ONE_LANE)
 #include "hierarchies/geometry/one_lane.hpp"
+#elif defined(__clang__)
+#include "hierarchies/geometry/vector_lanes.hpp"
 #else
 #include <experimental/simd>
 #endif
 
+// Bounds on rounding, infinities and NaN are relied on. What clang does not tell of itself is
+// -funsafe-math-optimizations without the rest.
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || \
+    defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)
+#error "bvlab: answers are wrong under -ffast-math, -Ofast and what they stand for: compile without"
+#endif
+
 namespace bvlab {
 
-#ifdef BVLAB_ONE_LANE
+#if defined(BVLAB_ONE_LANE)
 namespace stdx = one_lane;
+#elif defined(__clang__)
+namespace stdx = vector_lanes;
 #else
 namespace stdx = std::experimental;
 #endif
@@ -73,12 +84,16 @@ constexpr int width() {
 inline std::uint64_t bits(bool mask) { return mask ? 1u : 0u; }
 template <class T, class Abi>
 [[gnu::always_inline]] inline std::uint64_t bits(const stdx::simd_mask<T, Abi>& mask) {
-  return mask.__to_bitset().to_ullong();
+  if constexpr (requires { mask.bits(); })
+    return mask.bits();
+  else  // the only name we use of libstdc++'s own: it has had it from 11 on
+    return mask.__to_bitset().to_ullong();
 }
 
 /// `condition ? yes : no`, lane by lane.
 template <class T>
-requires std::is_floating_point_v<T> T select(bool condition, T yes, T no) {
+  requires std::is_floating_point_v<T>
+T select(bool condition, T yes, T no) {
   return condition ? yes : no;
 }
 template <Batched S>
@@ -96,11 +111,13 @@ constexpr Element<T> unit_roundoff = std::numeric_limits<Element<T>>::epsilon() 
 
 /// The next larger (smaller) number; infinity stays where it is.
 template <class T>
-requires std::is_floating_point_v<T> T next_up(T x) {
+  requires std::is_floating_point_v<T>
+T next_up(T x) {
   return std::nextafter(x, std::numeric_limits<T>::infinity());
 }
 template <class T>
-requires std::is_floating_point_v<T> T next_down(T x) {
+  requires std::is_floating_point_v<T>
+T next_down(T x) {
   return std::nextafter(x, -std::numeric_limits<T>::infinity());
 }
 

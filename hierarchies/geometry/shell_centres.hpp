@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "hierarchies/geometry/enclosing_ball.hpp"
+#include "hierarchies/geometry/enclosing_sphere.hpp"
 #include "hierarchies/geometry/pattern_search.hpp"
 #include "hierarchies/geometry/principal_axes.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
@@ -96,7 +96,7 @@ Vec3<double> narrowest_axis(const Vec3<double>& centre, std::span<const Vec3<dou
   std::vector<Vec3<double>> directions;
   directions.reserve(points.size());
   for (const auto& p : points) directions.push_back((p - centre).stableNormalized());
-  const Vec3<double> axis = enclosing_ball(directions).centre;
+  const Vec3<double> axis = enclosing_sphere(directions).centre;
   return axis.norm() > 0.01 ? axis.normalized() : Vec3<double>(Vec3<double>::Zero());
 }
 

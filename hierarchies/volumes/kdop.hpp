@@ -3,9 +3,9 @@
 /// axis-aligned box, 14 adds the directions of a cube's corners, 18 those of its edges, 26 both.
 ///
 /// Kept as K support values bounds[m] >= n_m.x, where n_{2k} is a direction and n_{2k+1} its
-/// opposite. A turned one is bounded again by the same directions; how is a policy: see Realigned,
-/// the default, and ByCorners. Whatever the policy, what is tested is plain bounds: Kdop<S, K>. One
-/// N_v is K additions and comparisons.
+/// opposite. A rotated K-DOP is bounded again by the same directions; how is a policy: see
+/// Realigned, the default, and ByCorners. Whatever the policy, tests are made on plain bounds:
+/// Kdop<S, K>. One N_v is K additions and comparisons.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 
 namespace bvlab {
 
-/// Posing: what a turned one is bounded again by, and what is kept for that. Policies that keep
+/// Posing: how a rotated K-DOP is bounded again, and what is kept for that. Policies that keep
 /// nothing but bounds share this template; see kdop_corners.hpp for one that keeps more.
 template <Scalar S, int K, class Posing = Realigned>
 struct Kdop {
@@ -40,7 +40,7 @@ struct Kdop {
     for (const auto& p : points)
       for (int k = 0; k < K / 2; ++k) {
         const double at = Directions::along(k, p);
-        // For what was rounded; along the axes nothing is.
+        // Covers rounding; along the axes there is none.
         const double room = Directions::squared_length(k) == 1
                                 ? 0
                                 : 4 * unit_roundoff<double> * p.template lpNorm<1>();
@@ -94,7 +94,7 @@ S gap(const Kdop<S, K>& a, const Kdop<S, K>& b) {
   for (int k = 0; k < K / 2; ++k) {
     const S above = -(a.bounds[2 * k] + b.bounds[2 * k + 1]),
             below = -(a.bounds[2 * k + 1] + b.bounds[2 * k]);
-    // Not both are positive; written so that a NaN counts as nothing.
+    // At most one is positive; written so that NaN counts as no gap.
     const S apart = select(above > S(0), above, S(0)) + select(below > S(0), below, S(0));
     if (k < 3)
       squared = squared + apart * apart;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// K-DOPs that are posed by their vertices (klosowski1998efficient): the vertices are turned and
-/// bounded again, which is the optimum of the programme of which Realignment takes one dual basis.
+/// K-DOPs that are posed by their vertices (klosowski1998efficient): the vertices are rotated and
+/// bounded again. That is the optimum of the linear programme of which Realignment takes one dual
+/// basis.
 ///
-/// Vertices are found once, when a volume is fitted (see kdop_vertices.hpp), and what is turned is
-/// not they but the directions, so that one vertex is bounded along all of them side by side. One
-/// N_u is 3 K/2 multiplications and 4 K/2 additions and comparisons for each vertex, of which there
-/// are at most 2K - 4; a volume takes K + 3(2K - 4) + 2 numbers.
+/// Vertices are found once, when a volume is fitted (see kdop_vertices.hpp). Posing does not rotate
+/// them but the directions, so that one vertex is bounded along all of them side by side. One N_u
+/// is 3 K/2 multiplications and 4 K/2 additions and comparisons for each vertex, of which there are
+/// at most 2K - 4; a volume takes K + 3(2K - 4) + 2 numbers.
 #pragma once
 
 #include <algorithm>
@@ -21,8 +22,8 @@
 
 namespace bvlab {
 
-/// A pose made ready for corners: n = R'd for each direction d, lane by lane, and offsets as in
-/// Realignment: d.(t - o) plus all that rounding can do. With |v| and every corner at most reach,
+/// A pose prepared for vertices: n = R'd for each direction d, lane by lane, and offsets as in
+/// Realignment: d.(t - o) plus all rounding errors. With |v| and every corner at most reach,
 ///   8u (reach + |t|) |d|     for the vertex in the world, see Placement
 ///   (1.01e + 16u) reach |d|  for n, rounded to T
 ///   3.1e reach |d|           for its product with a corner: three products, two sums
@@ -42,8 +43,10 @@ struct RotatedDirections {
       for (int i = 0; i < 3; ++i) normal[i][k] = Directions::direction(k)[i];
   }
 
-  RotatedDirections(const Pose& pose, const Vec3<double>& origin, double reach) {
-    const KdopOffsets<T, K> offsets(pose, origin, reach);
+  /// `error_bound`: how much farther than that a point can be from where the pose puts it.
+  RotatedDirections(const Pose& pose, const Vec3<double>& origin, double reach,
+                    double error_bound = 0) {
+    const KdopOffsets<T, K> offsets(pose, origin, reach, error_bound);
     for (int k = 0; k < K / 2; ++k) {
       const auto* d = Directions::direction(k);
       const Vec3<double> n = pose.rotation.transpose() * Vec3<double>(d[0], d[1], d[2]);
@@ -63,8 +66,8 @@ struct ByCorners {
   using placement = RotatedDirections<T, K>;
 };
 
-/// What is posed is the hull of the corners, `grain` wider in every direction: that holds all that
-/// the bounds hold, see KdopVertices.
+/// What is posed is the hull of the corners, widened by `grain` in every direction. It encloses all
+/// that the bounds enclose, see KdopVertices.
 template <Scalar S, int K>
 struct Kdop<S, K, ByCorners> {
   static constexpr std::string_view name = K == 6    ? "aabb-corners"
@@ -79,16 +82,20 @@ struct Kdop<S, K, ByCorners> {
   using placement = RotatedDirections<Element<S>, K>;
   static constexpr int room = detail::KdopVertices<K>::room;
 
-  // Nothing but scalars S: a batch of them has the same members over batches.
+  // Only scalars S: a batch of volumes has the same members over batches.
   std::array<S, K> bounds;
-  std::array<std::array<S, 3>, room> corners;  ///< beyond `count` the first one again
+  std::array<std::array<S, 3>, room> corners;  ///< those beyond `count` repeat the first
   S count, grain;
 
-  static Kdop enclosing(std::span<const Vec3<double>> points) requires(!Batched<S>) {
+  static Kdop enclosing(std::span<const Vec3<double>> points)
+    requires(!Batched<S>)
+  {
     return around(Kdop<S, K>::enclosing(points).bounds);
   }
 
-  static Kdop around(const std::array<S, K>& bounds) requires(!Batched<S>) {
+  static Kdop around(const std::array<S, K>& bounds)
+    requires(!Batched<S>)
+  {
     constexpr double e = unit_roundoff<S>;
     std::array<double, K> wide;
     double scale = 0;
@@ -96,7 +103,8 @@ struct Kdop<S, K, ByCorners> {
       wide[m] = static_cast<double>(bounds[m]);
       scale = std::max(scale, std::abs(wide[m]));
     }
-    // Bounds rounded to S split a vertex where many planes meet into several, so far apart.
+    // Bounds rounded to S split a vertex where many planes meet into several, at most this far
+    // apart.
     const detail::KdopVertices<K> vertices(wide, scale, 4 * e * scale);
     Kdop result;
     result.bounds = bounds;
@@ -118,16 +126,16 @@ Kdop<S, K, ByCorners> merge(const Kdop<S, K, ByCorners>& a, const Kdop<S, K, ByC
   return Kdop<S, K, ByCorners>::around(merge(Kdop<S, K>{a.bounds}, Kdop<S, K>{b.bounds}).bounds);
 }
 
-/// One N_u: a batch holds directions.
+/// One N_u, in batches of directions.
 template <class S, int K>
-requires(!Batched<S>) Kdop<S, K> posed(const Kdop<S, K, ByCorners>& volume,
-                                       const RotatedDirections<S, K>& pose) {
-  using Turned = RotatedDirections<S, K>;
-  using B = Batch<S, Turned::lanes>;
+  requires(!Batched<S>)
+Kdop<S, K> posed(const Kdop<S, K, ByCorners>& volume, const RotatedDirections<S, K>& pose) {
+  using Rotated = RotatedDirections<S, K>;
+  using B = Batch<S, Rotated::lanes>;
   constexpr auto anywhere = stdx::element_aligned;
-  std::array<S, Turned::padded> above, below;
+  std::array<S, Rotated::padded> above, below;
   const int count = static_cast<int>(volume.count);
-  for (int k = 0; k < K / 2; k += Turned::lanes) {
+  for (int k = 0; k < K / 2; k += Rotated::lanes) {
     const B x(&pose.normal[0][k], anywhere), y(&pose.normal[1][k], anywhere),
         z(&pose.normal[2][k], anywhere);
     const auto along = [&](int i) {
@@ -149,7 +157,7 @@ requires(!Batched<S>) Kdop<S, K> posed(const Kdop<S, K, ByCorners>& volume,
   return result;
 }
 
-/// A batch holds volumes: lane by lane the same.
+/// The same for a batch of volumes, lane by lane.
 template <Batched S, int K>
 Kdop<S, K> posed(const Kdop<S, K, ByCorners>& volume,
                  const RotatedDirections<Element<S>, K>& pose) {

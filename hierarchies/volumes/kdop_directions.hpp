@@ -34,7 +34,7 @@ struct KdopDirections {
     constexpr double root[] = {0, 1, 1.4142135623730951, 1.7320508075688774};
     return root[squared_length(slab)];
   }
-  /// Which support value is the one of the direction (x, y, z).
+  /// The index of the support value of the direction (x, y, z).
   static constexpr int index(int x, int y, int z) {
     for (int k = 0; k < slabs; ++k) {
       const auto* d = direction(k);

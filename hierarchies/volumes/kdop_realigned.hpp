@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How a turned K-DOP is bounded again by its own directions, after zachmann1998rapid: the default
+/// How a rotated K-DOP is bounded again by its own directions, after zachmann1998rapid: the default
 /// policy of Kdop.
 #pragma once
 
@@ -15,17 +15,18 @@
 
 namespace bvlab {
 
-/// What a pose adds to bounds along each direction d and its opposite: d.(t - o), and `slack` of
-/// Placement twice, which is what rounding can do; why is said where it is used.
+/// What a pose adds to bounds along each direction d and its opposite: d.(t - o), and twice the
+/// `slack` of Placement, which covers rounding; the derivations are in Realignment and
+/// RotatedDirections.
 template <class T, int K>
 struct KdopOffsets {
   std::array<T, K / 2> along, opposite;
 
-  KdopOffsets(const Pose& pose, const Vec3<double>& origin, double reach, double noise = 0) {
+  KdopOffsets(const Pose& pose, const Vec3<double>& origin, double reach, double error_bound = 0) {
     using Directions = detail::KdopDirections<K>;
     const Vec3<double> offset = pose.translation - origin;
-    double slack = Placement<T>(pose, origin, reach).slack + noise;
-    // Sums of numbers this large could overflow on their way.
+    double slack = Placement<T>(pose, origin, reach).slack + error_bound;
+    // Sums of numbers this large could overflow.
     if (!(16 * (reach + offset.norm()) < std::numeric_limits<T>::max()))
       slack = std::numeric_limits<double>::infinity();
     for (int k = 0; k < K / 2; ++k) {
@@ -38,15 +39,15 @@ struct KdopOffsets {
   }
 };
 
-/// A pose made ready for K-DOPs.
+/// A pose prepared for K-DOPs.
 ///
 /// Let n = R'd for a direction d. For weights w >= 0 with sum w_m n_m = n, every x of the volume
-/// has n.x <= sum w_m bounds[m] (the weak half of linear duality), so that the turned volume is
+/// has n.x <= sum w_m bounds[m] (the weak half of linear duality), so that the rotated volume is
 /// bounded along d by three old support values. The three are those around n in the fan of
 /// directions that the symmetries of the cube cut into congruent pieces: sorting the coordinates of
 /// n leaves one piece.
 ///
-/// `offset` is d.(t - o) plus all that rounding can do. With |v| and bounds[m] / |n_m| at most
+/// `offset` is d.(t - o) plus all rounding errors. With |v| and bounds[m] / |n_m| at most
 /// reach, and sum w_m |n_m| <= sqrt(3) |d| in each piece,
 ///   8u (reach + |t|) |d|         for the vertex in the world, see Placement
 ///   (sqrt(3) e + 16u) reach |d|  for n and its weights, rounded to T
@@ -56,7 +57,7 @@ template <class T, int K>
 struct Realignment {
   struct Row {
     std::array<T, 3> weight;
-    std::array<std::int32_t, 3> from;  ///< for the opposite direction: from ^ 1
+    std::array<std::int32_t, 3> from;  ///< support values; for the opposite direction: from ^ 1
     T offset, opposite_offset;
   };
   std::array<Row, K / 2> rows;
@@ -65,9 +66,9 @@ struct Realignment {
     for (int k = 0; k < K / 2; ++k) rows[k] = {{1, 0, 0}, {2 * k, 2 * k, 2 * k}, 0, 0};
   }
 
-  /// `noise`: how much farther than that a point can be from where the pose puts it.
-  Realignment(const Pose& pose, const Vec3<double>& origin, double reach, double noise = 0) {
-    const KdopOffsets<T, K> offsets(pose, origin, reach, noise);
+  /// `error_bound`: how much farther than that a point can be from where the pose puts it.
+  Realignment(const Pose& pose, const Vec3<double>& origin, double reach, double error_bound = 0) {
+    const KdopOffsets<T, K> offsets(pose, origin, reach, error_bound);
     for (int k = 0; k < K / 2; ++k) {
       const auto* d = Directions::direction(k);
       rows[k] = combination(pose.rotation.transpose() * Vec3<double>(d[0], d[1], d[2]));
@@ -119,10 +120,10 @@ struct Realigned {
                                                      : "kdop26";
   template <int K>
   static constexpr std::string_view description =
-      K == 6    ? "axis-aligned box, bounded again when turned (Zachmann 1998)"
-      : K == 14 ? "slabs along a cube's axes and corners, realigned when turned (Zachmann 1998)"
-      : K == 18 ? "slabs along a cube's axes and edges, realigned when turned (Zachmann 1998)"
-                : "slabs along a cube's axes, corners and edges, realigned when turned (Zachmann "
+      K == 6    ? "axis-aligned box, bounded again when rotated (Zachmann 1998)"
+      : K == 14 ? "slabs along a cube's axes and corners, realigned when rotated (Zachmann 1998)"
+      : K == 18 ? "slabs along a cube's axes and edges, realigned when rotated (Zachmann 1998)"
+                : "slabs along a cube's axes, corners and edges, realigned when rotated (Zachmann "
                   "1998)";
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The vertices of a K-DOP, from triples of its planes: O(K^3) when a volume is fitted, and most
-/// triples are dismissed by the first planes they are held against.
+/// The vertices of a K-DOP, from triples of its planes. O(K^3) when a volume is fitted; most
+/// triples are dismissed by the first planes they are tested against.
 #pragma once
 
 #include <algorithm>
@@ -13,20 +13,20 @@
 
 namespace bvlab::detail {
 
-/// Points whose hull holds { x : n_m.x <= bounds[m] } but for `error` in each component: every
+/// Points whose hull encloses { x : n_m.x <= bounds[m] } but for `error` in each component: every
 /// vertex of that polytope is so near to one of them. None is outside of the box along the axes.
 ///
 /// Where three planes meet is a quotient of integer combinations of bounds by an integer, computed
 /// to 18u scale in each component: |n_i x n_j| has components up to 2 and products with them are
 /// exact, so that 12u scale is for sums, and with a determinant of at least 1 another 6u for the
-/// quotient. Held against a plane a true vertex is off by three times that and 6u scale for the
-/// sum: it is never lost with a tolerance of 64u scale. What that lets in beside is near the
-/// polytope, and does no harm.
+/// quotient. Tested against a plane a true vertex is off by three times that and 6u scale for the
+/// sum: it is never lost with a tolerance of 64u scale. Other points within the tolerance are near
+/// the polytope, and do no harm.
 ///
-/// A simple polytope with K faces has at most 2K - 4 vertices. Where more planes meet in a point it
-/// comes out many times over: what is within `nearness` of one found before is that one. Where they
-/// still do not fit (flat ones, all but a few digits off), or numbers are too large for sums of
-/// them, the corners of the box are taken, which hold everything.
+/// A simple polytope with K faces has at most 2K - 4 vertices. Where more planes meet in a point,
+/// it is found many times: points within `nearness` of one found before are dropped. If the points
+/// still do not fit (flat volumes, accurate to a few digits only), or numbers are too large for
+/// their sums, the corners of the box are taken, which enclose everything.
 template <int K>
 class KdopVertices {
  public:
@@ -61,7 +61,7 @@ class KdopVertices {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   }
 
-  /// False where there is no room.
+  /// Returns false if there are more vertices than room.
   bool enumerate() {
     for (int i = 0; i < K; ++i)
       for (int j = i + 1; j < K; ++j) {
@@ -89,7 +89,8 @@ class KdopVertices {
     return true;
   }
 
-  /// Into the box first: a vertex is there, so that this takes no point farther from it.
+  /// Clamped to the box first: the true vertex is in the box, so that this takes no point farther
+  /// from it.
   bool add(Vec3<double> x) {
     for (int c = 0; c < 3; ++c)
       x[c] = std::max(-bounds_[2 * c + 1], std::min(bounds_[2 * c], x[c]));

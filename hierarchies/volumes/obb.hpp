@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A box turned any way: three axes, three half lengths, a centre (gottschalk1996obbtree). Close to
-/// flat and elongated surface, more expensive to pose and to test than a ball.
+/// A box in any orientation: three axes, three half lengths, a centre (gottschalk1996obbtree).
+/// Close to flat and elongated surface, more expensive to pose and to test than a sphere.
 ///
-/// The box is the set of points centre + sum s_i a_i with |s_i| <= half_i, for the axes just as
-/// they are stored. They are orthonormal but for rounding: with A the matrix of rows a_i,
+/// The box is the set of points centre + sum s_i a_i with |s_i| <= half_i, for the axes exactly as
+/// stored. They are orthonormal but for rounding: with A the matrix of rows a_i,
 ///
 ///   |AA' - I| <= 72e      (e the unit roundoff of S; the 2-norm)
 ///
 /// - `enclosing` rounds orthonormal axes: each is off by e in length, their matrix by sqrt(3)e, and
 ///   AA' by 4e;
-/// - `posed` turns them by a matrix with |QQ' - I| <= 32u + 9u, the second for how well float64
-///   could tell, and rounds: 7e an axis (see Placement), 12.2e the matrix, 25e its product.
+/// - `posed` rotates them by a matrix with |QQ' - I| <= 32u + 9u, the second for the accuracy of
+/// the
+///   float64 check, and rounds: 7e an axis (see Placement), 12.2e the matrix, 25e its product.
 ///
 /// One N_u is 33 multiplications and additions, one N_v about 200.
 #pragma once
@@ -26,6 +27,9 @@
 
 namespace bvlab {
 
+template <class S>
+struct ObbSiblingTest;
+
 template <Scalar S>
 struct Obb {
   static constexpr std::string_view name = "obb";
@@ -34,21 +38,27 @@ struct Obb {
   using scalar = S;
   template <class Other>
   using over = Obb<Other>;
+  /// How it is tested in a relative frame: include wide/obb_sibling_test.hpp.
+  using sibling_test = ObbSiblingTest<S>;
 
   Vec3<S> centre;
   std::array<Vec3<S>, 3> axes;
   Vec3<S> half;
 
-  static Obb enclosing(std::span<const Vec3<double>> points) requires(!Batched<S>) {
+  static Obb enclosing(std::span<const Vec3<double>> points)
+    requires(!Batched<S>)
+  {
     return along(principal_axes(points), points);
   }
-  static Obb enclosing(std::span<const Vec3<double>> points,
-                       std::span<const Triangle> triangles) requires(!Batched<S>) {
+  static Obb enclosing(std::span<const Vec3<double>> points, std::span<const Triangle> triangles)
+    requires(!Batched<S>)
+  {
     return along(principal_axes(points, triangles), points);
   }
-  /// Of the smallest box that is found from these axes on.
-  static Obb tight(std::span<const Vec3<double>> points,
-                   std::span<const Triangle> triangles) requires(!Batched<S>) {
+  /// Around the points, with the axes of the smallest box that is found from the principal axes on.
+  static Obb tight(std::span<const Vec3<double>> points, std::span<const Triangle> triangles)
+    requires(!Batched<S>)
+  {
     return along(tight_axes(principal_axes(points, triangles), points), points);
   }
 
@@ -56,8 +66,9 @@ struct Obb {
   ///
   /// With x = p - centre, s = (AA')^-1 A x are the point's coordinates along the rounded axes; A x
   /// differs from that by less than 5e |x|, and is computed in float64 with four roundings.
-  static Obb along(const Mat3<double>& directions,
-                   std::span<const Vec3<double>> points) requires(!Batched<S>) {
+  static Obb along(const Mat3<double>& directions, std::span<const Vec3<double>> points)
+    requires(!Batched<S>)
+  {
     constexpr double u = unit_roundoff<double>, e = unit_roundoff<S>;
     Vec3<double> low = Vec3<double>::Constant(std::numeric_limits<double>::infinity()), high = -low;
     for (const auto& p : points) {
@@ -86,7 +97,7 @@ struct Obb {
   }
 };
 
-/// Around the corners of both, each off by at most 8u of what it is the sum of.
+/// Around the corners of both boxes, each off by at most 8u of the magnitudes it is summed from.
 template <class S>
 Obb<S> merge(const Obb<S>& a, const Obb<S>& b) {
   std::array<Vec3<double>, 16> corners;
@@ -106,9 +117,9 @@ Obb<S> merge(const Obb<S>& a, const Obb<S>& b) {
   return both;
 }
 
-/// A point centre + sum s_i a_i arrives within slack + tilt sum |s_i| of the posed centre plus
-/// sum s_i a'_i (see Placement); the offset has coordinates along the new axes that are at most
-/// 1 + 73e longer, and five roundings are made here.
+/// A point centre + sum s_i a_i is taken to within slack + tilt sum |s_i| of the posed centre plus
+/// sum s_i a'_i (see Placement); the offset has coordinates along the new axes that are at most 1 +
+/// 73e longer, and five roundings are made here.
 template <class S>
 Obb<S> posed(const Obb<S>& box, const Placement<Element<S>>& placement) {
   Obb<S> result;
@@ -124,7 +135,7 @@ Obb<S> posed(const Obb<S>& box, const Placement<Element<S>>& placement) {
 
 namespace detail {
 
-/// Two boxes as they see each other.
+/// Two boxes in each other's axes, and the margin of the separating-axis test.
 ///
 /// For ANY vector n the boxes are apart where
 ///   |n.t| > sum_i half_a_i |n.a_i| + sum_j half_b_j |n.b_j|,   t the vector between the centres.
@@ -139,7 +150,7 @@ namespace detail {
 ///   margin = 256e (|t_0| + |t_1| + |t_2| + sum half_a + sum half_b)
 /// on the right: 1.02 (3d + 4e) + 2 * 8e < 244e of the lengths, and 32e of |t|. The margin does not
 /// shrink with n: where edges are near parallel n vanishes, and no axis found there separates. It
-/// is infinite where any sum above could overflow, and then nothing is told apart.
+/// is infinite where any sum above could overflow, and then nothing is found apart.
 template <class S>
 struct ObbPair {
   Vec3<S> along_a, along_b;  // t
@@ -162,7 +173,7 @@ struct ObbPair {
     margin = (scale * S(4)) * S(64 * unit_roundoff<S>);
   }
 
-  /// How far the boxes are apart, at least, along a_i; negative where they are not. In units of a
+  /// A lower bound on the gap along a_i; negative where the boxes overlap there. In units of a
   /// vector that is 1 + 37e long at most.
   [[gnu::always_inline]] S beyond_a(const Obb<S>& a, const Obb<S>& b, int i) const {
     using std::abs;
@@ -202,7 +213,7 @@ template <class S>
 }
 
 /// The distance from one box to the box that encloses the other along the first one's axes; the
-/// larger of the two. 0 where they may meet.
+/// larger of the two. 0 where they may overlap.
 template <class S>
 S gap(const Obb<S>& a, const Obb<S>& b) {
   using std::max, std::min, std::sqrt;
@@ -210,7 +221,7 @@ S gap(const Obb<S>& a, const Obb<S>& b) {
   S squared_a(0), squared_b(0);
   for (int i = 0; i < 3; ++i) {
     const S x = pair.beyond_a(a, b, i), y = pair.beyond_b(a, b, i);
-    // Written so that a NaN counts as nothing.
+    // Written so that NaN counts as no gap.
     const S p = select(x > S(0), x, S(0)), q = select(y > S(0), y, S(0));
     squared_a = squared_a + p * p, squared_b = squared_b + q * q;
   }
@@ -243,7 +254,7 @@ S size(const Obb<S>& box) {
   return box.half.norm();
 }
 
-/// The farthest that a point of the volume is from the origin of its frame, and its centre too.
+/// No point of the volume is farther from the origin of its frame, nor is its centre.
 template <class S>
 S reach(const Obb<S>& box) {
   return box.centre.norm() + box.half.norm() * S(1 + 80 * unit_roundoff<S>);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A rectangle swept by a ball: what is within `radius` of centre + s side_0 + t side_1, |s| and
-/// |t| at most half_0 and half_1 (larsen2000fast). As close to flat surface as a box, and rounder:
-/// the field's choice for distances.
+/// A rectangle swept by a sphere: all points within `radius` of centre + s side_0 + t side_1, |s|
+/// and |t| at most half_0 and half_1 (larsen2000fast). As close to flat surface as a box, and
+/// rounder: the field's choice for distances.
 ///
-/// The set is what it is for the sides just as they are stored; nothing below asks that they be
-/// orthonormal, only tightness does. One N_u is 33 multiplications and additions, one N_v about
-/// 150.
+/// The set is defined by the sides exactly as stored; nothing below needs them to be orthonormal,
+/// only tightness does. One N_u is 33 multiplications and additions, one N_v about 150.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +24,7 @@ template <Scalar S>
 struct Rss {
   static constexpr std::string_view name = "rss";
   static constexpr std::string_view description =
-      "rectangle swept by a ball, along the principal axes of the surface (Larsen 2000)";
+      "rectangle swept by a sphere, along the principal axes of the surface (Larsen 2000)";
   using scalar = S;
   template <class Other>
   using over = Rss<Other>;
@@ -42,7 +41,8 @@ struct Rss {
                        std::span<const Triangle> triangles) requires(!Batched<S>) {
     return along(principal_axes(points, triangles), points);
   }
-  /// Of the least surface that is found from these axes on: four to five times as expensive to fit.
+  /// Around the points, with the least surface that is found from the principal axes on: four to
+  /// five times as expensive to fit.
   static Rss tight(std::span<const Vec3<double>> points,
                    std::span<const Triangle> triangles) requires(!Batched<S>) {
     return of(tight_swept_rectangle(principal_axes(points, triangles), points), points);
@@ -54,7 +54,7 @@ struct Rss {
     return of(swept_rectangle(directions, points), points);
   }
 
-  /// The rectangle rounded, and the radius that the points need then.
+  /// The rectangle rounded, with the radius that the points need then.
   static Rss of(const SweptRectangle& rectangle,
                 std::span<const Vec3<double>> points) requires(!Batched<S>) {
     Rss rss;
@@ -90,8 +90,8 @@ struct Rss {
   }
 };
 
-/// Around the corners of both rectangles, by the larger of the two radii more; the corners are off
-/// by at most 8u of what they are the sum of.
+/// Around the corners of both rectangles, with the larger of the two radii added; the corners are
+/// off by at most 8u of the magnitudes they are summed from.
 template <class S>
 Rss<S> merge(const Rss<S>& a, const Rss<S>& b) {
   constexpr double u = unit_roundoff<double>;
@@ -112,8 +112,8 @@ Rss<S> merge(const Rss<S>& a, const Rss<S>& b) {
   return both;
 }
 
-/// A point centre + sum s_k side_k + y arrives within slack + tilt (|s_0| + |s_1|) + stretch |y| of
-/// the posed rectangle (see Placement); four roundings are made here.
+/// A point centre + sum s_k side_k + y is taken to within slack + tilt (|s_0| + |s_1|) + stretch
+/// |y| of the posed rectangle (see Placement); four roundings are made here.
 template <class S>
 Rss<S> posed(const Rss<S>& rss, const Placement<Element<S>>& placement) {
   Rss<S> result;
@@ -125,7 +125,7 @@ Rss<S> posed(const Rss<S>& rss, const Placement<Element<S>>& placement) {
   return result;
 }
 
-/// At most the distance between the two, found along one direction; 0 where they may meet.
+/// At most the distance between the two, found along one direction; 0 where they may overlap.
 ///
 /// For ANY vector n the two are apart by at least
 ///   (n.t - sum_k half_a_k |n.a_k| - sum_k half_b_k |n.b_k|) / |n| - radius_a - radius_b
@@ -166,7 +166,7 @@ template <class S>
       ((abs(t[0]) + abs(t[1])) + abs(t[2])) + ((a.half[0] + a.half[1]) + (b.half[0] + b.half[1]));
   const S apart = ((dot<S>(n, t) - extent) / length) * S(1 - 8 * e) -
                   ((a.radius + b.radius) * S(1 + 4 * e) + scale * S(16 * e));
-  // Where squares under- or overflow nothing is known; a NaN counts as nothing.
+  // Where squares under- or overflow nothing is known; NaN counts as no gap.
   const S largest(std::numeric_limits<T>::max() / 16), smallest(std::numeric_limits<T>::min() * 64);
   const Mask<S> known = apart > S(0) && squared > smallest && scale * scale < largest;
   return select(known, apart, S(0));
@@ -177,9 +177,9 @@ template <class S>
   return gap(a, b) > S(0);
 }
 
-/// Compares with the nearest point of the rectangle by alternating between its two coordinates,
-/// which ends at once where the sides are at right angles and soon where they are nearly so. True
-/// where it is not finite.
+/// Tests against the nearest point of the rectangle, found by alternating between its two
+/// coordinates. That ends at once where the sides are at right angles, and soon where they are
+/// nearly so. True where the volume is not finite.
 template <class S>
 bool contains(const Rss<S>& rss, const Vec3<long double>& point) {
   const Vec3<long double> x = point - rss.centre.template cast<long double>();
@@ -203,7 +203,7 @@ S size(const Rss<S>& rss) {
   return sqrt(rss.half[0] * rss.half[0] + rss.half[1] * rss.half[1]) + rss.radius;
 }
 
-/// The farthest that a point of the volume is from the origin of its frame, and its centre too.
+/// No point of the volume is farther from the origin of its frame, nor is its centre.
 template <class S>
 S reach(const Rss<S>& rss) {
   return rss.centre.norm() + size(rss) * S(1 + 80 * unit_roundoff<S>);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A spherical shell: what is between inner and outer from the centre and within an angle of the
-/// axis (krishnan1998spherical). Thin where surface is curved, which no box is.
+/// A spherical shell: all points between the inner and the outer radius from the centre, and within
+/// an angle of the axis (krishnan1998spherical). Thin where surface is curved, which no box is.
 ///
 /// The shell is the set of points centre + y with inner <= |y| <= outer and
 /// y.axis >= cosine |y| |axis|; in all directions where the cosine is not positive. The axis is of
@@ -13,7 +13,7 @@
 #include <span>
 #include <string_view>
 
-#include "hierarchies/geometry/enclosing_ball.hpp"
+#include "hierarchies/geometry/enclosing_sphere.hpp"
 #include "hierarchies/geometry/placement.hpp"
 #include "hierarchies/geometry/shell_centres.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
@@ -24,7 +24,7 @@ template <Scalar S>
 struct Shell {
   static constexpr std::string_view name = "shell";
   static constexpr std::string_view description =
-      "spherical shell, a piece of a hollow ball, fitted to triangles (Krishnan 1998)";
+      "spherical shell, a piece of a hollow sphere, fitted to triangles (Krishnan 1998)";
   using scalar = S;
   template <class Other>
   using over = Shell<Other>;
@@ -36,8 +36,10 @@ struct Shell {
 
   static constexpr Element<S> all_around = -2;
 
-  /// Around points that have no surface between them.
-  static Shell enclosing(std::span<const Vec3<double>> points) requires(!Batched<S>) {
+  /// Around points without a surface between them.
+  static Shell enclosing(std::span<const Vec3<double>> points)
+    requires(!Batched<S>)
+  {
     return thinnest(points, [&](const Vec3<double>& centre) {
       double inner = std::numeric_limits<double>::infinity();
       for (const auto& p : points) inner = std::min(inner, (p - centre).norm());
@@ -45,17 +47,19 @@ struct Shell {
     });
   }
 
-  /// Around a surface, which is nearer to the centre than its corners.
-  static Shell enclosing(std::span<const Vec3<double>> points,
-                         std::span<const Triangle> triangles) requires(!Batched<S>) {
+  /// Around a surface, which comes nearer to the centre than its corners.
+  static Shell enclosing(std::span<const Vec3<double>> points, std::span<const Triangle> triangles)
+    requires(!Batched<S>)
+  {
     return thinnest(points, to_nearest(triangles));
   }
 
-  /// Of the least surface that is found: starting from that one and others about the same centres,
-  /// each with the narrowest cone, the best one's centre is moved. Five to seven times as
-  /// expensive.
-  static Shell tight(std::span<const Vec3<double>> points,
-                     std::span<const Triangle> triangles) requires(!Batched<S>) {
+  /// Around a surface, with the least surface of its own that is found: of the published shell and
+  /// others about the same centres, each with the narrowest cone, the best one's centre is
+  /// improved. Five to seven times as expensive.
+  static Shell tight(std::span<const Vec3<double>> points, std::span<const Triangle> triangles)
+    requires(!Batched<S>)
+  {
     const auto inner = to_nearest(triangles);
     Shell best = enclosing(points, triangles);
     double least = surface(best);
@@ -69,7 +73,7 @@ struct Shell {
       best = shell, least = other;
       return true;
     };
-    const Ball ball = enclosing_ball(points);
+    const Ball ball = enclosing_sphere(points);
     auto centres = shell_centres(ball, points);
     centres.push_back(at);
     for (const auto& centre : centres)
@@ -87,11 +91,11 @@ struct Shell {
     };
   }
 
-  /// Of a hollow ball about the ball's own centre and shells about `shell_centres`, with their axes
-  /// towards it, the one of least volume.
+  /// The one of least volume among a hollow sphere about the enclosing sphere's centre and shells
+  /// about `shell_centres` with their axes towards it.
   template <class Inner>
   static Shell thinnest(std::span<const Vec3<double>> points, const Inner& inner) {
-    const Ball ball = enclosing_ball(points);
+    const Ball ball = enclosing_sphere(points);
     const auto towards_ball = [&](const Vec3<double>& near) {
       const Vec3<S> centre = rounded<S>(near);
       return about(centre, ball.centre - centre.template cast<double>(), points, inner);
@@ -127,33 +131,33 @@ struct Shell {
     cosine -= 32 * u;
     shell.outer = rounded_up<S>(farthest * (1 + 16 * u) + tiny);
     shell.inner = rounded_down<S>(std::max(0.0, inner(centre) * (1 - 16 * u) - tiny));
-    // More than a right angle is not convex; near it, a posed one would not be.
+    // A cone wider than a right angle is not convex; near it, a posed one would not be.
     shell.cosine = cosine > 0.01 ? rounded_down<S>(cosine) : all_around;
     return shell;
   }
 
-  /// Up to a factor 2 pi / 3.
+  /// The volume, up to a factor 2 pi / 3.
   static double volume(const Shell& shell) {
     const double outer = shell.outer, inner = shell.inner;
-    // Tests cannot see what is thinner than their margin.
+    // Tests do not profit from a thickness below their margin.
     const double thickness = outer - inner + 64 * unit_roundoff<S> * outer;
     const double cap = shell.cosine > 0 ? 1 - double(shell.cosine) : 2;
     return cap * thickness * (outer * outer + outer * inner + inner * inner);
   }
 
-  /// Of both caps and the cone between them, up to a factor 2 pi.
+  /// The surface of both caps and the cone between them, up to a factor 2 pi.
   static double surface(const Shell& shell) {
     const double outer = shell.outer, inner = shell.inner, cosine = shell.cosine;
     const double caps = outer * outer + inner * inner;
     if (!(cosine > 0)) return 2 * caps;
-    // As thick as tests see it.
+    // The thickness that tests see, their margin included.
     const double thickness = outer - inner + 64 * unit_roundoff<S> * outer;
     const double sine = std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
     return (1 - cosine) * caps + sine * (outer + inner) / 2 * thickness;
   }
 };
 
-/// A ball around both: it need not be tight, since what is fitted to the triangles mostly is.
+/// A sphere around both. It need not be tight, since the volume fitted to the triangles mostly is.
 template <class S>
 Shell<S> merge(const Shell<S>& a, const Shell<S>& b) {
   const Vec3<double> from = a.centre.template cast<double>(), to = b.centre.template cast<double>();
@@ -171,7 +175,7 @@ Shell<S> merge(const Shell<S>& a, const Shell<S>& b) {
   return both;
 }
 
-/// With s the stretch and D = |R'R - I| < s^2 - 1, a point centre + y arrives at the posed centre
+/// With s the stretch and D = |R'R - I| < s^2 - 1, a point centre + y is taken to the posed centre
 /// plus y' = Ry + g, |g| <= slack (see Placement), so that
 ///   |y'| <= s |y| + slack, |y'| >= sqrt(1 - D) |y| - slack >= (3 - 2s) |y| - slack,
 /// since (1 - D)(1 + D)^2 >= 1 makes sqrt(1 - D) >= 1 / s^2. For the axis as it is posed,
@@ -192,7 +196,7 @@ Shell<S> posed(const Shell<S>& shell, const Placement<Element<S>>& placement) {
   result.inner = select(inner > S(0), inner, S(0));
   const S cosine = shell.cosine - (S(5) * excess + S(3) * S(placement.tilt) + S(8 * e) +
                                    S(3) * slack / result.inner);
-  // Where the inner radius is 0 this is no number or minus infinity.
+  // Where the inner radius is 0 this is NaN or minus infinity.
   result.cosine = select(cosine > S(0), cosine, S(Shell<S>::all_around));
   return result;
 }
@@ -221,15 +225,15 @@ struct ShellAngles {
 
 }  // namespace detail
 
-/// At most the distance between the two shells; 0 where they may meet. The largest of what these
-/// say, each enough by itself:
+/// At most the distance between the two shells; 0 where they may overlap. It is the largest of
+/// these bounds, each of which holds by itself:
 /// - the points of one shell are at distances from the other's centre that miss what the other
 ///   spans: from a point p at distance d from the centre, at angle f from the axis, a shell of half
 ///   angle t is no nearer than |r, c| = sqrt(r^2 + d^2 + 2 r d c) with c = cos min(pi, f + t) and
 ///   r = -d c clamped to the radii, and no farther than the larger |r, c| of both radii with
 ///   c = cos max(0, f - t), f being measured from p through the centre;
 /// - along a unit vector n a shell ends at n.centre + c (outer or, where c < 0, inner), with
-///   c = cos max(0, f - t): for n the two axes and the line between the middles.
+///   c = cos max(0, f - t): for n the two axes and the line between the centres of their axes.
 ///
 /// Margins: let L = outer_a + outer_b + |t_0| + |t_1| + |t_2|, t between the centres. Cosines are
 /// off by 64e (see ShellAngles), so support values by 64e (outer_a + outer_b) and n.t by 8e |t|;
@@ -259,7 +263,8 @@ S gap(const Shell<S>& a, const Shell<S>& b) {
   S apart(0);
   const auto consider = [&](const S& x) { apart = select(x > apart, x, apart); };
 
-  // How far `shell` is from a centre at `distance`, the way from there to here having that cosine.
+  // Bounds from the distances of `shell` to the other's centre; `cosine` is that of the angle
+  // between the shell's axis and the direction from that centre to the shell's.
   const auto from_centre = [&](const Shell<S>& shell, const S& own_sine, const S& cosine,
                                const S& sine, const Shell<S>& other) {
     const detail::ShellAngles<S> angles(shell, own_sine, cosine, sine);
@@ -295,10 +300,10 @@ S gap(const Shell<S>& a, const Shell<S>& b) {
   };
   along(a.axis);
   along(b.axis);
-  const auto middle = [](const Shell<S>& shell) -> Vec3<S> {
+  const auto centre_of_axis = [](const Shell<S>& shell) -> Vec3<S> {
     return shell.axis * select(shell.cosine > S(0), (shell.inner + shell.outer) / S(2), S(0));
   };
-  along(Vec3<S>(t + (middle(b) - middle(a))));
+  along(Vec3<S>(t + (centre_of_axis(b) - centre_of_axis(a))));
   // Where squares under- or overflow nothing is known.
   const Mask<S> known =
       scale * scale < S(std::numeric_limits<T>::max() / 16) && squared_distance > smallest;
@@ -322,7 +327,7 @@ bool contains(const Shell<S>& shell, const Vec3<long double>& point) {
            y.dot(axis) < static_cast<long double>(shell.cosine) * length * axis.norm());
 }
 
-/// Half of what it is across.
+/// Half of the diameter.
 template <class S>
 S size(const Shell<S>& shell) {
   using std::max, std::sqrt;
@@ -331,7 +336,7 @@ S size(const Shell<S>& shell) {
                 max(shell.outer * sine, (shell.outer - shell.inner * c) / S(2)), shell.outer);
 }
 
-/// The farthest that its centre and any point of the volume is from the origin of its frame.
+/// No point of the volume is farther from the origin of its frame, nor is its centre.
 template <class S>
 S reach(const Shell<S>& shell) {
   return shell.centre.norm() + shell.outer;

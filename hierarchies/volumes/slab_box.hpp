@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A box along the axes of the mesh's own frame, cut by a slab across the normal of the surface in
-/// it. A patch of surface is flat: the slab is what makes the box thin, as slab-cut balls are
+/// it. A patch of surface is flat: the slab makes the box thin, as in slab-cut balls
 /// (larsson2009slabcut), and costs a third of the nine edge axes of an oriented box.
 ///
-/// Made to be compared as it lies, by the relative pose (see wide/facing.hpp); posed into the world
-/// it is an oriented box with a slab, and costs what one costs. The slab is the set of points x
-/// with |n.(x - centre) - middle| <= width for the normal n just as it is stored.
+/// Made to be tested in a relative frame (see wide/sibling_test.hpp). Posed into the world it is an
+/// oriented box with a slab, and costs as much. The slab is the set of points x with |n.(x -
+/// centre) - slab_centre| <= width for the normal n exactly as stored.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -22,7 +22,7 @@
 namespace bvlab {
 
 template <class S>
-struct SlabBoxFacing;
+struct SlabBoxSiblingTest;
 
 template <Scalar S>
 struct SlabBox {
@@ -32,13 +32,15 @@ struct SlabBox {
   using scalar = S;
   template <class Other>
   using over = SlabBox<Other>;
-  /// How it is compared as it lies: include wide/slab_box_facing.hpp.
-  using facing = SlabBoxFacing<S>;
+  /// How it is tested in a relative frame: include wide/slab_box_sibling_test.hpp.
+  using sibling_test = SlabBoxSiblingTest<S>;
 
   Vec3<S> centre, half, normal;
-  S middle, width;
+  S slab_centre, width;
 
-  static SlabBox enclosing(std::span<const Vec3<double>> points) requires(!Batched<S>) {
+  static SlabBox enclosing(std::span<const Vec3<double>> points)
+    requires(!Batched<S>)
+  {
     SlabBox box = box_around(points);
     Mat3<double> spread = Mat3<double>::Zero();
     for (const auto& p : points) {
@@ -52,7 +54,9 @@ struct SlabBox {
   /// The slab is the thinner one of those across the mean normal and across the direction that the
   /// surface faces most.
   static SlabBox enclosing(std::span<const Vec3<double>> points,
-                           std::span<const Triangle> triangles) requires(!Batched<S>) {
+                           std::span<const Triangle> triangles)
+    requires(!Batched<S>)
+  {
     SlabBox box = box_around(points);
     Vec3<double> mean = Vec3<double>::Zero();
     Mat3<double> facing = Mat3<double>::Zero();
@@ -88,7 +92,8 @@ struct SlabBox {
   }
 
   /// Sums of three products of differences are off by less than 8u of their magnitudes, which are
-  /// at most |x|_1 for a normal of about unit length. One that is no direction becomes the x axis.
+  /// at most |x|_1 for a normal of about unit length. A direction that is zero or not finite
+  /// becomes the x axis.
   void cut(const Vec3<double>& direction, std::span<const Vec3<double>> points) {
     normal = rounded<S>(direction.allFinite() && direction.squaredNorm() > 0.5
                             ? direction
@@ -101,14 +106,14 @@ struct SlabBox {
       low = std::min(low, at), high = std::max(high, at);
       farthest = std::max(farthest, x.template lpNorm<1>());
     }
-    middle = static_cast<S>(low / 2 + high / 2);
+    slab_centre = static_cast<S>(low / 2 + high / 2);
     const double tiny = std::ldexp(1.0, std::numeric_limits<double>::min_exponent / 2);
-    width = rounded_up<S>(std::max(high - double(middle), double(middle) - low) +
+    width = rounded_up<S>(std::max(high - double(slab_centre), double(slab_centre) - low) +
                           16 * unit_roundoff<double> * farthest + tiny);
   }
 };
 
-/// What it is in the world.
+/// A slab-box posed into the world.
 template <Scalar S>
 struct PosedSlabBox {
   using scalar = S;
@@ -116,18 +121,18 @@ struct PosedSlabBox {
   using over = PosedSlabBox<Other>;
   Obb<S> box;
   Vec3<S> normal;
-  S middle, width;
+  S slab_centre, width;
 };
 
-/// Around the corners of both: the slab is the box's thinnest side. Only where no triangles are at
-/// hand.
+/// Around the corners of both; the slab is the box's thinnest side. Used only where no triangles
+/// are given.
 template <class S>
 SlabBox<S> merge(const SlabBox<S>& a, const SlabBox<S>& b) {
   std::array<Vec3<double>, 16> corners;
   for (std::size_t i = 0; i < 16; ++i) {
     const SlabBox<S>& box = i < 8 ? a : b;
     for (int k = 0; k < 3; ++k) {
-      // One rounding; the half length is made to outweigh it.
+      // One rounding; the half length covers it.
       const double half = double(box.half[k]) + 2 * unit_roundoff<double> * std::abs(box.centre[k]);
       corners[i][k] = double(box.centre[k]) + (i >> k & 1 ? half : -half);
     }
@@ -135,9 +140,9 @@ SlabBox<S> merge(const SlabBox<S>& a, const SlabBox<S>& b) {
   return SlabBox<S>::enclosing(corners);
 }
 
-/// A point centre + y of the slab arrives within slack of the posed centre plus Qy, and its normal
-/// within tilt of Qn (see Placement): |n'.(x' - centre') - middle| is wider than it was by at most
-/// tilt |y| + slack |n'|. Five roundings are made here.
+/// A point centre + y of the slab is taken to within slack of the posed centre plus Qy, and its
+/// normal to within tilt of Qn (see Placement): |n'.(x' - centre') - slab_centre| is wider than it
+/// was by at most tilt |y| + slack |n'|. Five roundings are made here.
 template <class S>
 PosedSlabBox<S> posed(const SlabBox<S>& volume, const Placement<Element<S>>& placement) {
   const S one(1), zero(0);
@@ -146,7 +151,7 @@ PosedSlabBox<S> posed(const SlabBox<S>& volume, const Placement<Element<S>>& pla
   constexpr Element<S> e = unit_roundoff<S>;
   const S blur =
       S(placement.slack) + S(placement.tilt) * ((volume.half[0] + volume.half[1]) + volume.half[2]);
-  return {posed(box, placement), placement.directed(volume.normal), volume.middle,
+  return {posed(box, placement), placement.directed(volume.normal), volume.slab_centre,
           (volume.width + blur * S(1 + 16 * e)) * S(1 + 8 * e)};
 }
 
@@ -155,8 +160,8 @@ namespace detail {
 /// Whether the slab of a has all of b's box on one side.
 ///
 /// n.t and n.b_k are off by less than 8e of |t| and 1; what they are summed with adds as much of
-/// itself. The margin of ObbPair is more than that: 256e of |t| and all half lengths, and `middle`
-/// is not farther out than the box.
+/// itself. The margin of ObbPair is more than that: 256e of |t| and all half lengths, and
+/// `slab_centre` is not farther out than the box.
 template <class S>
 Mask<S> apart_by_slab(const PosedSlabBox<S>& a, const PosedSlabBox<S>& b, const S& margin) {
   using std::abs;
@@ -164,7 +169,7 @@ Mask<S> apart_by_slab(const PosedSlabBox<S>& a, const PosedSlabBox<S>& b, const 
   S reached = a.width + margin;
   for (int k = 0; k < 3; ++k)
     reached = reached + b.box.half[k] * abs(dot<S>(a.normal, b.box.axes[k]));
-  return abs(dot<S>(a.normal, t) - a.middle) > reached;
+  return abs(dot<S>(a.normal, t) - a.slab_centre) > reached;
 }
 
 }  // namespace detail
@@ -187,8 +192,9 @@ bool contains(const PosedSlabBox<S>& volume, const Vec3<long double>& point) {
   using Wide = Vec3<long double>;
   const Wide x = point - volume.box.centre.template cast<long double>();
   const long double at = volume.normal.template cast<long double>().dot(x);
-  return contains(volume.box, point) && !(std::abs(at - static_cast<long double>(volume.middle)) >
-                                          static_cast<long double>(volume.width));
+  return contains(volume.box, point) &&
+         !(std::abs(at - static_cast<long double>(volume.slab_centre)) >
+           static_cast<long double>(volume.width));
 }
 template <class S>
 bool contains(const SlabBox<S>& volume, const Vec3<long double>& point) {

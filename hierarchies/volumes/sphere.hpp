@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A ball: the cheapest volume to pose (one point) and to test (one distance), and the one of the
-/// talk (quinlan1994efficient, hubbard1993interactive).
+/// A sphere: the cheapest volume to pose (one point) and to test (one distance), and the volume of
+/// the talk (quinlan1994efficient, hubbard1993interactive).
 ///
-/// There is no tighter construction: `enclosing` gives the smallest ball (gartner1999miniball), and
-/// it is `merge`, the smallest around two balls (quinlan1994efficient), that is the looser one.
+/// There is no tighter construction: `enclosing` gives the smallest sphere (gartner1999miniball).
+/// The looser one is `merge`, the smallest sphere around two spheres (quinlan1994efficient).
 ///
 /// One N_u is 15 multiplications and additions, one N_v is 9.
 #pragma once
@@ -12,7 +12,7 @@
 #include <span>
 #include <string_view>
 
-#include "hierarchies/geometry/enclosing_ball.hpp"
+#include "hierarchies/geometry/enclosing_sphere.hpp"
 #include "hierarchies/geometry/placement.hpp"
 
 namespace bvlab {
@@ -21,7 +21,7 @@ template <Scalar S>
 struct Sphere {
   static constexpr std::string_view name = sizeof(Element<S>) == 8 ? "sphere-double" : "sphere";
   static constexpr std::string_view description =
-      "ball; smallest around the points or around two others (Quinlan 1994)";
+      "sphere; smallest around the points or around two others (Quinlan 1994)";
   using scalar = S;
   template <class Other>
   using over = Sphere<Other>;
@@ -29,10 +29,12 @@ struct Sphere {
   Vec3<S> centre;
   S radius;
 
-  /// The smallest ball around the points (one or more).
-  static Sphere enclosing(std::span<const Vec3<double>> points) requires(!Batched<S>) {
+  /// The smallest sphere around the points (one or more).
+  static Sphere enclosing(std::span<const Vec3<double>> points)
+    requires(!Batched<S>)
+  {
     Sphere sphere;
-    sphere.centre = rounded<S>(enclosing_ball(points).centre);
+    sphere.centre = rounded<S>(enclosing_sphere(points).centre);
     const Vec3<double> centre = sphere.centre.template cast<double>();
     double squared = 0;
     for (const auto& p : points) squared = std::max(squared, (p - centre).squaredNorm());
@@ -40,15 +42,17 @@ struct Sphere {
     return sphere;
   }
 
-  /// A radius computed in float64 from at most eight roundings, made safe: the first factor pays
-  /// for those and the smallest normal number for underflow.
-  static S safe_radius(double radius) requires(!Batched<S>) {
+  /// A radius computed in float64 from at most eight roundings, made safe: the first factor covers
+  /// those, and the smallest normal number covers underflow.
+  static S safe_radius(double radius)
+    requires(!Batched<S>)
+  {
     return rounded_up<S>(radius * (1 + 16 * unit_roundoff<double>)+std::ldexp(
                                       1.0, std::numeric_limits<double>::min_exponent / 2));
   }
 };
 
-/// The smallest ball around two balls.
+/// The smallest sphere around two spheres.
 template <class S>
 Sphere<S> merge(const Sphere<S>& a, const Sphere<S>& b) {
   const Vec3<double> from = a.centre.template cast<double>(), to = b.centre.template cast<double>();
@@ -77,7 +81,7 @@ Mask<S> disjoint(const Sphere<S>& a, const Sphere<S>& b) {
   return squared_norm<S>(a.centre - b.centre) > radii * radii * S(1 + 16 * unit_roundoff<S>);
 }
 
-/// At most the distance between the two balls; 0 where they may meet.
+/// At most the distance between the two spheres; 0 where they may overlap.
 template <class S>
 S gap(const Sphere<S>& a, const Sphere<S>& b) {
   using std::min, std::sqrt;
@@ -86,10 +90,10 @@ S gap(const Sphere<S>& a, const Sphere<S>& b) {
   const S largest = std::numeric_limits<Element<S>>::max();
   const S distance = sqrt(min(largest, squared_norm<S>(a.centre - b.centre)));
   const S apart = distance * S(1 - 8 * e) - (a.radius + b.radius) * S(1 + 2 * e);
-  return select(apart > S(0), apart, S(0));  // so that a NaN counts as nothing
+  return select(apart > S(0), apart, S(0));  // NaN counts as no gap
 }
 
-/// Is the point, in the frame of the sphere, inside? True where the sphere is not finite.
+/// Whether the point, in the frame of the sphere, is inside. True where the sphere is not finite.
 template <class S>
 bool contains(const Sphere<S>& sphere, const Vec3<long double>& point) {
   const Vec3<long double> offset = point - sphere.centre.template cast<long double>();
@@ -102,7 +106,7 @@ S size(const Sphere<S>& sphere) {
   return sphere.radius;
 }
 
-/// The farthest that a point of the volume is from the origin of its frame, and its centre too.
+/// No point of the volume is farther from the origin of its frame, nor is its centre.
 template <class S>
 S reach(const Sphere<S>& sphere) {
   return sphere.centre.norm() + sphere.radius;

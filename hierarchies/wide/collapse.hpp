@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A topology with up to F children a node, made of a binary one: of all ways to let nodes take the
-/// place of their children's parents, the one with the least sum of surfaces of nodes, which is how
-/// many are likely to be looked at; found by dynamic programming (ylitie2017efficient). It fills
-/// nodes near the leaves, of which there are many, and leaves lanes empty near the root; to open
-/// the largest child until there are F (wald2008getting) does the opposite, at a tenth more time.
-/// What holds at most `leaf_size` triangles becomes a leaf, whose triangles are its children. O(n
-/// F^2).
+/// Collapses a binary topology into one with up to F children a node: nodes are replaced by their
+/// children. Of all ways to do that it takes the one with the least sum of surfaces of nodes, which
+/// is proportional to how many are likely to be tested; found by dynamic programming
+/// (ylitie2017efficient). It fills nodes near the leaves, of which there are many, and leaves lanes
+/// empty near the root. Opening the largest child until there are F (wald2008getting) does the
+/// opposite, at a tenth more time. A subtree of at most `leaf_size` triangles becomes a leaf, whose
+/// triangles are its children. O(n F^2).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -23,7 +23,7 @@ namespace bvlab {
 struct WideTopology {
   struct Node {
     std::uint32_t first = 0;  ///< of its children, which are adjacent; leaf: of its primitives
-    std::uint32_t count = 0;  ///< how many those are
+    std::uint32_t count = 0;  ///< the number of children; leaf: of primitives
     bool leaf = false;
     std::uint32_t begin = 0, end = 0;  ///< the primitives below it
   };
@@ -47,8 +47,8 @@ class Collapsing {
         end_[i] = std::max(end_[first], end_[first + 1]);
       } else {
         begin_[i] = first, end_[i] = first + count;
-        for (std::uint32_t place = first; place < first + count; ++place)
-          for (const auto& corner : mesh.corners(binary.primitives[place])) boxes[i].extend(corner);
+        for (std::uint32_t k = first; k < first + count; ++k)
+          for (const auto& corner : mesh.corners(binary.primitives[k])) boxes[i].extend(corner);
       }
       const Vec3<double> d = boxes[i].sizes();
       surface_[i] = d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
@@ -82,22 +82,23 @@ class Collapsing {
     return binary_.nodes[b].count > 0 || end_[b] - begin_[b] <= leaf_size;
   }
 
-  /// What is below a binary node as so many wide ones at most, 1 to the fan-out.
+  /// The best replacement of a binary subtree by at most a given number of wide nodes, 1 to the
+  /// fan-out.
   struct Cut {
     double cost = 0;
-    std::uint32_t left = 0, right = 0;  ///< how many below its children; 0: it is one itself
+    std::uint32_t left = 0, right = 0;  ///< nodes below each child; 0: it is one node itself
   };
-  /// A leaf is one, however many there may be.
+  /// A leaf is always one node, so it has one cut.
   Cut& cut(std::uint32_t b, std::uint32_t roots) {
-    return cuts_[places_[b] + (leaf_[b] ? 0 : roots - 1)];
+    return cuts_[first_cut_[b] + (leaf_[b] ? 0 : roots - 1)];
   }
 
-  /// Children stand behind their parents.
+  /// Children come after their parents.
   void find_least_costs(std::uint32_t fan_out, std::uint32_t leaf_size) {
     const auto n = static_cast<std::uint32_t>(binary_.nodes.size());
     std::size_t needed = 0;
     for (std::uint32_t b = 0; b < n; ++b) {
-      places_.push_back(needed), leaf_.push_back(is_leaf(b, leaf_size));
+      first_cut_.push_back(needed), leaf_.push_back(is_leaf(b, leaf_size));
       needed += leaf_[b] ? 1 : fan_out;
     }
     cuts_.resize(needed);
@@ -110,7 +111,7 @@ class Collapsing {
         if (cut(b, roots - 1).cost < cut(b, roots).cost) cut(b, roots) = cut(b, roots - 1);
     }
   }
-  /// The best way to share them among the children of b.
+  /// The best way to share `roots` nodes among the children of b.
   Cut shared(std::uint32_t b, std::uint32_t roots) {
     const std::uint32_t first = binary_.nodes[b].first;
     Cut best{std::numeric_limits<double>::infinity(), 1, roots - 1};
@@ -136,13 +137,13 @@ class Collapsing {
   std::vector<double> surface_;
   std::vector<std::uint32_t> begin_, end_;
   std::vector<bool> leaf_;
-  std::vector<std::size_t> places_;  // in cuts_
+  std::vector<std::size_t> first_cut_;  // the index of each node's first in cuts_
   std::vector<Cut> cuts_;
 };
 
 }  // namespace detail
 
-/// A leaf of the binary topology stays one: it must hold at most `fan_out` triangles.
+/// A leaf of the binary topology stays a leaf: it must hold at most `fan_out` triangles.
 inline WideTopology collapsed(const TriangleMesh& mesh, const Topology& binary,
                               std::uint32_t fan_out, std::uint32_t leaf_size) {
   return detail::Collapsing(mesh, binary).collapse(fan_out, leaf_size);

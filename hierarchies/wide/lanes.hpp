@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What the siblings of a wide node need of vector registers: fused multiply-adds, one lane of a
-/// volume over batches, and one volume in all lanes.
+/// Operations on the lanes of a wide node's siblings: fused multiply-adds, one lane of a volume
+/// over batches, and one volume in all lanes.
 #pragma once
 
 #include <cstring>
@@ -14,8 +14,8 @@
 
 namespace bvlab {
 
-/// a * b + c, rounded once where the processor can, else twice: for sums that are culled by, whose
-/// margins hold either way, and never for where a vertex stands.
+/// a * b + c, rounded once where the processor can, else twice. Only for tests that cull, whose
+/// margins cover both, and never for the position of a vertex.
 template <Scalar S>
 [[gnu::always_inline]] inline S fused(const S& a, const S& b, const S& c) {
 #if defined(__AVX512F__)
@@ -51,8 +51,7 @@ template <Scalar S>
   return c - a * b;
 }
 
-/// One over x, to ten digits or more where there is an instruction for that: only to put things in
-/// an order.
+/// 1 / x, to 2^-14 of it where there is an instruction for that: only to put pairs in an order.
 template <Scalar S>
 [[gnu::always_inline]] inline S roughly_one_over(const S& x) {
 #if defined(__AVX512F__)

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// How far a mesh extends in any direction, in a few nanoseconds: its support function
 ///
-///   h(g) = max over vertices v of g.(v - c),   c the centre of its ball,
+///   h(g) = max over vertices v of g.(v - c),   c the centre of its sphere,
 ///
 /// sampled over a cube of directions. h is convex and h(s g) = s h(g) for s > 0, so what is
-/// interpolated between samples is never below it: if g is a sum of directions g_i with weights
-/// w_i >= 0, h(g) <= sum of w_i h(g_i). On a face of the cube, bilinear weights are such. What it
-/// is too much by is less than 1 % of a ball's radius for 8 cells along an edge.
+/// interpolated between samples is never below it: if g is a sum of directions g_i with weights w_i
+/// >= 0, h(g) <= sum of w_i h(g_i). On a face of the cube, bilinear weights are such. The excess is
+/// less than 1 % of the sphere's radius for 8 cells along an edge.
 ///
 /// Samples are rounded up.
 #pragma once
@@ -23,7 +23,8 @@
 
 namespace bvlab {
 
-/// A point of the mesh's convex hull that is farthest along its direction, from c; and how far.
+/// The point of the mesh's convex hull that is farthest along a direction, relative to c; and its
+/// height along it.
 struct alignas(16) SupportSample {
   float point[3], height;
 };
@@ -43,7 +44,7 @@ class SupportMap {
     for (std::size_t v = 0; v < used.size(); ++v)
       if (used[v])
         for (int k = 0; k < 3; ++k) points_[k].push_back(mesh.vertices[v][k] - centre[k]);
-    // Full registers: the last point, again.
+    // Registers are filled up with the last point.
     for (auto& coordinates : points_)
       while (coordinates.size() % stdx::native_simd<double>::size() != 0)
         coordinates.push_back(coordinates.back());
@@ -61,9 +62,9 @@ class SupportMap {
     points_ = {};
   }
 
-  /// Of direction (i, j) of face 2 axis + (negative ? 1 : 0): at (face * row + i) * row + j. Where
-  /// that coordinate is 1 or -1, the next one, modulo 3, is 2 i / cells - 1 and the one after that
-  /// 2 j / cells - 1.
+  /// The sample of direction (i, j) of face 2 axis + (negative ? 1 : 0) is at (face * row + i) *
+  /// row + j. The coordinate `axis` of that direction is 1 or -1, the next one, modulo 3, is 2 i /
+  /// cells - 1 and the one after that 2 j / cells - 1.
   const std::vector<SupportSample>& table() const { return samples_; }
   std::size_t bytes() const { return samples_.size() * sizeof(SupportSample); }
 
@@ -76,8 +77,8 @@ class SupportMap {
     return g;
   }
 
-  /// `far`: room for how far each point is along g. A difference and three products in float64 are
-  /// off by less than 5 roundings.
+  /// `far` is scratch for the heights of all points along g. A difference and three products in
+  /// float64 are off by less than 5 roundings.
   SupportSample sample(const Vec3<double>& g, std::vector<double>& far) const {
     const std::size_t count = far.size();
     const double *x = points_[0].data(), *y = points_[1].data(), *z = points_[2].data();
@@ -100,7 +101,7 @@ class SupportMap {
 
   std::vector<SupportSample> samples_;
   double farthest_ = 0;
-  std::array<std::vector<double>, 3> points_;  // only while it is made, coordinate by coordinate
+  std::array<std::vector<double>, 3> points_;  // only during construction, coordinate by coordinate
 };
 
 }  // namespace bvlab

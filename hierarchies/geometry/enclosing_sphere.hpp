@@ -52,7 +52,7 @@ Ball circumscribed(std::span<const Vec3<double>> points) {
 /// who needs enclosure takes the largest distance from it. Any number of points, repeated and
 /// dependent ones included; none gives a negative squared radius.
 template <class = double>
-Ball enclosing_ball(std::span<const Vec3<double>> points) {
+Ball enclosing_sphere(std::span<const Vec3<double>> points) {
   if (points.empty()) return {};
   std::array<Vec3<double>, 5> support;  // the last one is the newcomer
   std::size_t supports = 1;

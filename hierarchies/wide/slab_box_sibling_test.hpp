@@ -1,42 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// One box with its slab against siblings as they lie: eight directions, six of faces and two of
-/// slabs; one N_v is about 70 operations, all of them for all lanes at once.
+/// A box with its slab, posed into another body's frame, against siblings of that body: eight
+/// directions, six of faces and two of slabs. One N_v is about 70 operations, all of them for all
+/// lanes at once.
 ///
-/// The box a is turned by Q and moved by t (FrameChange); its axes are Q's columns q_i. With T the
-/// vector from its centre to a lane's, h halves, n normals, m middles and w widths, they are apart
-/// where
+/// The box a is rotated by Q and moved by t (FrameChange); its axes are Q's columns q_i. With T the
+/// vector from its centre to a lane's, h half lengths, n normals, m slab centres (`slab_centre`)
+/// and w widths, they are apart where
 ///   |T_j|                > h_b,j + sum_i |q_ij| h_a,i             (faces of b)
 ///   |q_i.T|              > h_a,i + sum_j |q_ij| h_b,j             (faces of a)
 ///   |n_b.T + m_b|        > w_b   + sum_i |n_b.q_i| h_a,i          (slab of b)
 ///   |Q n_a.T - m_a|      > w_a   + sum_j |(Q n_a)_j| h_b,j        (slab of a)
-/// for any Q, so orthogonality need not be argued: what Q is off by is in the margin.
+/// for any Q, so orthogonality is not needed: the error of Q is in the margin.
 ///
-/// Margin. a is grown by a ball of `slack` (see Placement), which reaches slack (1 + 2e) along a
-/// normal. With e the unit roundoff, to first order: T is off by e |T|; q_i.T by (5.2 + 3.5) e |T|
-/// for its three products, q's rounding and T's; n_b.T by 7 e |T| and m_b's sum by e r_b; n_b.q_i
-/// by 7e, Q n_a by 7e as a vector and its product with T by 16 e |T|; sums of half lengths by 12 e
-/// of them, each at most sqrt(3) of its body's reach r. That is less than 16 e |T| + 24 e (r_a +
-/// r_b), and |T| <= |t| + r_a + r_b (1 + ...): `margin` = slack + 64 e (|t| + r_a + r_b) leaves a
-/// third for higher orders. Where anything overflows the margin is infinite or the comparison one
-/// of NaN, and nothing is told apart.
+/// Margin. a is grown by a sphere of radius `slack` (see Placement), which reaches slack (1 + 2e)
+/// along a normal. With e the unit roundoff, to first order: T is off by e |T|; q_i.T by (5.2
+/// + 3.5) e |T| for its three products, q's rounding and T's; n_b.T by 7 e |T| and m_b's sum by e
+/// r_b; n_b.q_i by 7e, Q n_a by 7e as a vector and its product with T by 16 e |T|; sums of half
+/// lengths by 12 e of them, each at most sqrt(3) of its body's reach r. That is less than 16 e |T|
+/// + 24 e (r_a + r_b), and |T| <= |t| + r_a + r_b (1 + ...): `margin` = slack + 64 e (|t| + r_a +
+/// r_b) leaves a third for higher orders. Where anything overflows, the margin is infinite or the
+/// comparison has a NaN, and nothing is found apart.
 #pragma once
 
 #include "hierarchies/volumes/slab_box.hpp"
-#include "hierarchies/wide/facing.hpp"
+#include "hierarchies/wide/sibling_test.hpp"
 
 namespace bvlab {
 
 template <>
-struct SlabBoxFacing<float> {
+struct SlabBoxSiblingTest<float> {
   struct FrameChange {
     alignas(16) float column[3][4], absolute[3][4], translation[4];
     float margin;
   };
-  /// All numbers that are needed in all lanes, next to each other in memory, from where they are
-  /// broadcast for nothing.
-  struct One {
+  /// All numbers that are needed in all lanes, next to each other in memory: broadcasting them from
+  /// there is free.
+  struct PosedNode {
     alignas(16) float centre[4], reached[4], normal[4], absolute[4];
-    float half[3], grown[3], middle, width, size;
+    float half[3], grown[3], slab_centre, width, size;
   };
 
   [[gnu::always_inline]] static FrameChange frame_change(const RelativePose& pose, double reach,
@@ -50,15 +51,15 @@ struct SlabBoxFacing<float> {
       abs(column).copy_to(frame_change.absolute[i], stdx::vector_aligned);
     }
     rounded_to_float(pose.translation).copy_to(frame_change.translation, stdx::vector_aligned);
-    // `slack` of Placement, and the rest.
+    // The `slack` of Placement, and the other terms.
     frame_change.margin = static_cast<float>(
-        (74 * e * (pose.length + reach + reach_of_lanes) + pose.noise) * (1 + 8 * e) +
+        (74 * e * (pose.length + reach + reach_of_lanes) + pose.error_bound) * (1 + 8 * e) +
         std::ldexp(1.0, std::numeric_limits<float>::min_exponent / 2 + 2));
     return frame_change;
   }
 
-  [[gnu::always_inline]] static One one(const SlabBox<float>& box, float size,
-                                        const FrameChange& frame_change) {
+  [[gnu::always_inline]] static PosedNode posed_node(const SlabBox<float>& box, float size,
+                                                     const FrameChange& frame_change) {
     using Four = Batch<float, 4>;
     const auto from = [](const float* p) { return Four(p, stdx::vector_aligned); };
     Four centre = from(frame_change.translation), reached(frame_change.margin), normal(0.0f);
@@ -67,7 +68,7 @@ struct SlabBoxFacing<float> {
       reached = fused<Four>(from(frame_change.absolute[i]), Four(box.half[i]), reached);
       normal = fused<Four>(from(frame_change.column[i]), Four(box.normal[i]), normal);
     }
-    One one;
+    PosedNode one;
     centre.copy_to(one.centre, stdx::vector_aligned);
     reached.copy_to(one.reached, stdx::vector_aligned);
     normal.copy_to(one.normal, stdx::vector_aligned);
@@ -76,18 +77,18 @@ struct SlabBoxFacing<float> {
       one.half[i] = box.half[i];
       one.grown[i] = box.half[i] + frame_change.margin;
     }
-    one.middle = box.middle, one.width = box.width + frame_change.margin, one.size = size;
+    one.slab_centre = box.slab_centre, one.width = box.width + frame_change.margin, one.size = size;
 #if defined(__GNUC__)
-    // To be read from memory, not shuffled out of registers one by one.
+    // Forces loads from memory instead of shuffles out of registers, one by one.
     asm("" : "+m"(one));
 #endif
     return one;
   }
 
-  /// How far they are apart along the direction in which that is most; negative where they may
-  /// meet: how deep.
+  /// A lower bound on the gap, along the direction in which it is largest; negative where they may
+  /// overlap, and then the depth.
   template <Batched S>
-  [[gnu::always_inline]] static S separation(const One& one, const FrameChange& frame_change,
+  [[gnu::always_inline]] static S separation(const PosedNode& one, const FrameChange& frame_change,
                                              const SlabBox<S>& lanes) {
     using stdx::abs, stdx::max;
     const S x = lanes.centre[0] - S(one.centre[0]), y = lanes.centre[1] - S(one.centre[1]),
@@ -96,8 +97,9 @@ struct SlabBoxFacing<float> {
     faces_b = max(faces_b, (abs(y) - S(one.reached[1])) - lanes.half[1]);
     faces_b = max(faces_b, (abs(z) - S(one.reached[2])) - lanes.half[2]);
 
-    S slab_b = fused<S>(lanes.normal[2], z,
-                        fused<S>(lanes.normal[1], y, fused<S>(lanes.normal[0], x, lanes.middle)));
+    S slab_b =
+        fused<S>(lanes.normal[2], z,
+                 fused<S>(lanes.normal[1], y, fused<S>(lanes.normal[0], x, lanes.slab_centre)));
     slab_b = (abs(slab_b) - lanes.width) - S(frame_change.margin);
     const auto along = [&](int i) __attribute__((always_inline)) {
       const S p(frame_change.column[i][0]), q(frame_change.column[i][1]),
@@ -113,26 +115,26 @@ struct SlabBoxFacing<float> {
     const S face_0 = along(0), face_1 = along(1), face_2 = along(2);
 
     S slab_a = fused<S>(z, S(one.normal[2]), fused<S>(y, S(one.normal[1]), x * S(one.normal[0])));
-    slab_a = abs(slab_a - S(one.middle)) - S(one.width);
+    slab_a = abs(slab_a - S(one.slab_centre)) - S(one.width);
     slab_a = less_fused<S>(lanes.half[0], S(one.absolute[0]), slab_a);
     slab_a = less_fused<S>(lanes.half[1], S(one.absolute[1]), slab_a);
     slab_a = less_fused<S>(lanes.half[2], S(one.absolute[2]), slab_a);
     return max(max(max(faces_b, face_0), max(face_1, face_2)), max(slab_a, slab_b));
   }
 
-  /// The deepest first, in terms of their sizes.
+  /// The order is the depth relative to the sizes, deepest first.
   template <Batched S>
-  [[gnu::always_inline]] static Compared<S> compared(const One& one,
-                                                     const FrameChange& frame_change,
-                                                     const SlabBox<S>& lanes, const S& sizes) {
+  [[gnu::always_inline]] static OverlapLanes<S> overlap(const PosedNode& one,
+                                                        const FrameChange& frame_change,
+                                                        const SlabBox<S>& lanes, const S& sizes) {
     const S apart = separation<S>(one, frame_change, lanes);
     return {apart > S(0.0f), apart * roughly_one_over<S>(sizes + S(one.size))};
   }
 
-  /// The distance of the boxes around one of them along the other's axes, or of a slab. Axes and
-  /// normals are 1 + 4e long at most, and fewer than ten roundings are made.
+  /// At most the distance: of the boxes around one of them along the other's axes, or of a slab.
+  /// Axes and normals are 1 + 4e long at most, and fewer than ten roundings are made.
   template <Batched S>
-  [[gnu::always_inline]] static S gaps(const One& one, const FrameChange& frame_change,
+  [[gnu::always_inline]] static S gaps(const PosedNode& one, const FrameChange& frame_change,
                                        const SlabBox<S>& lanes) {
     using stdx::abs, stdx::max, stdx::min, stdx::sqrt;
     const S zero(0.0f);
@@ -147,7 +149,7 @@ struct SlabBoxFacing<float> {
       face_a = abs(face_a) - S(one.grown[i]);
       for (int j = 0; j < 3; ++j)
         face_a = less_fused<S>(lanes.half[j], S(frame_change.absolute[i][j]), face_a);
-      // Written so that what is no number counts as nothing.
+      // Written so that NaN counts as no gap.
       const S b = select(face_b > zero, face_b, zero), a = select(face_a > zero, face_a, zero);
       squared_b = fused<S>(b, b, squared_b), squared_a = fused<S>(a, a, squared_a);
     }

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Poses the volumes of one body into the frame of another, whose volumes are tested as stored. A
+/// relative placement is made once for each pair of bodies, instead of once for each body.
+#pragma once
+
+#include <concepts>
+#include <type_traits>
+
+#include "hierarchies/bounding_volume.hpp"
+#include "hierarchies/geometry/relative_pose.hpp"
+
+namespace bvlab {
+
+/// Volumes whose placement accounts for the error of a relative pose: those of `Placement`, and
+/// those with a placement of their own that is constructed from (pose, origin, reach, error bound).
+template <class V>
+concept PlacedRelatively =
+    std::same_as<PlacementOf<V>, Placement<Element<typename V::scalar>>> ||
+    std::constructible_from<PlacementOf<V>, Pose, Vec3<double>, double, double>;
+
+/// The placement by a relative pose. `reach`, in units of the mesh: no vertex or volume of the
+/// posed body extends farther from its mesh's origin.
+template <PlacedRelatively V>
+PlacementOf<V> relative_placement(const RelativePose& pose, double reach) {
+  using T = Element<typename V::scalar>;
+  using Made = PlacementOf<V>;
+  const Pose seen{pose.rotation(), pose.shift()};
+  if constexpr (!std::same_as<Made, Placement<T>>) {
+    return Made(seen, Vec3<double>::Zero(), reach, pose.error_bound);
+  } else if constexpr (std::same_as<T, float>) {
+    return Made(typename Made::Orthonormal{}, seen.rotation, seen.translation, reach,
+                pose.error_bound);
+  } else {
+    Made made(seen, Vec3<double>::Zero(), reach);
+    made.slack = rounded_up<T>((made.slack + pose.error_bound) * (1 + 4 * unit_roundoff<T>));
+    return made;
+  }
+}
+
+/// A stored volume in its own mesh's frame, ready to be tested.
+template <class V, class Volumes>
+[[gnu::always_inline]] inline decltype(auto) as_stored(const Volumes& volumes) {
+  if constexpr (std::is_same_v<Posed<V>, V>)
+    return (volumes);
+  else
+    return posed(volumes, PlacementOf<V>());
+}
+
+}  // namespace bvlab

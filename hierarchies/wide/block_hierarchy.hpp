@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A tree of bounding volumes with up to four children a node, kept lane by lane in two ways: as
+/// rows of four, the children of a node, to be tested against four of another node; and as blocks
+/// of four rows, the sixteen grandchildren, to be tested against one volume (see mixed_kernel.hpp).
+/// The rows of a block would do for both, but lie in seventeen cache lines, where a row by itself
+/// lies in five.
+///
+/// A leaf holds up to four triangles; in a block, its row holds the leaf itself. Vacant lanes and
+/// rows repeat another. Nothing depends on a body's pose: bodies of one mesh share the tree.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "hierarchies/geometry/threads.hpp"
+#include "hierarchies/wide/fitting.hpp"
+#include "hierarchies/wide/lanes.hpp"
+#include "hierarchies/wide/support_map.hpp"
+
+namespace bvlab {
+
+template <BoundingVolume V>
+class BlockHierarchy {
+ public:
+  using scalar = typename V::scalar;
+  static_assert(std::is_same_v<scalar, float>, "a lane holds a number and a node alike");
+  static constexpr int fan_out = 4, lanes = 16;
+  static constexpr int fields = sizeof(V) / sizeof(scalar);
+
+  /// A node's name in a lane: its index, and whether it is a leaf.
+  static constexpr std::uint32_t leaf_flag = 0x80000000u;
+  static constexpr std::uint32_t number_of(std::uint32_t name) { return name & ~leaf_flag; }
+
+  struct alignas(32) Node {
+    V volume;
+    scalar size;
+    std::uint32_t first;          ///< the index of its row and block; leaf: of its first triangle
+    std::uint16_t grandchildren;  ///< which lanes of its block hold one
+    std::uint8_t children;        ///< which lanes of its row hold a child; leaf: of its triangles
+    std::uint8_t leaf;            ///< 0 or 1
+  };
+
+  template <std::size_t width>
+  struct alignas(64) Lanes {
+    std::array<std::array<scalar, width>, fields> volume;
+    std::array<scalar, width> size;
+    std::array<std::uint32_t, width> name;
+  };
+  using Row = Lanes<4>;
+  using Block = Lanes<16>;
+
+  /// The corners of up to four triangles, rounded: corner, coordinate, lane.
+  struct alignas(16) FourTriangles {
+    std::array<std::array<std::array<scalar, 4>, 3>, 3> corner;
+  };
+
+  BlockHierarchy(const TriangleMesh& mesh, const Topology& binary, Fit fit = Fit::published,
+                 std::uint32_t leaf_size = fan_out, Threads&& threads = Threads())
+      : BlockHierarchy(mesh, binary, fit, leaf_size, threads) {}
+  /// On several threads. The result does not depend on their number.
+  BlockHierarchy(const TriangleMesh& mesh, const Topology& binary, Fit fit, std::uint32_t leaf_size,
+                 Threads& threads)
+      : sphere_(mesh), supports_(mesh, sphere_.centre, threads) {
+    const WideTopology topology =
+        collapsed(mesh, binary, fan_out, std::min<std::uint32_t>(leaf_size, fan_out));
+    nodes_.resize(topology.nodes.size()), node_spheres_.resize(topology.nodes.size());
+    std::vector<Fitting<V>> fitting(threads.count());
+    threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
+      const auto& node = topology.nodes[i];
+      assert(node.count <= fan_out);
+      const V volume = fitting[worker].volume(mesh, topology, node.begin, node.end, fit);
+      const auto children = static_cast<std::uint8_t>((1u << node.count) - 1);
+      nodes_[i] = {volume, size_of(volume), 0, 0, children, node.leaf};
+      node_spheres_[i] = NodeSphere(fitting[worker].points);
+      fitting[worker].reach =
+          std::max(fitting[worker].reach, static_cast<double>(reach_of(volume)));
+    });
+    put_in_blocks(topology);
+    keep_triangles(mesh, topology);
+    reach_ = reach_of_all(mesh, fitting);
+  }
+
+  std::size_t size() const { return nodes_.size(); }
+  const Node& node(std::uint32_t i) const { return nodes_[i]; }
+  const NodeSphere& node_sphere(std::uint32_t i) const { return node_spheres_[i]; }
+  /// The row of an inner node, by its `first`.
+  const Row& row(std::uint32_t first) const { return rows_[first]; }
+  const Block& block(std::uint32_t first) const { return blocks_[first]; }
+  /// A root that is a leaf, as a row.
+  const Row& root_alone() const { return rows_.back(); }
+  /// The corners of a leaf, by its `first`.
+  const FourTriangles& corners(std::uint32_t first) const { return corners_[first / fan_out]; }
+  /// The mesh's index of the triangle in lane `k - first` of a leaf.
+  std::uint32_t triangle(std::uint32_t k) const { return triangles_[k]; }
+  std::uint32_t root() const { return nodes_[0].leaf ? leaf_flag : 0; }
+  /// No vertex is farther than this from the mesh's own origin, and no volume extends beyond.
+  double reach() const { return reach_; }
+
+  const MeshSphere& sphere() const { return sphere_; }
+  /// About the sphere's centre.
+  const SupportMap& supports() const { return supports_; }
+
+  std::size_t bytes() const {
+    return nodes_.size() * (sizeof(Node) + sizeof(NodeSphere)) + blocks_.size() * sizeof(Block) +
+           rows_.size() * sizeof(Row) + corners_.size() * sizeof(FourTriangles) +
+           triangles_.size() * 4 + supports_.bytes();
+  }
+
+ private:
+  /// Fills a row and a block for each inner node, and a row for the root.
+  void put_in_blocks(const WideTopology& topology) {
+    std::uint32_t inner = 0;
+    for (Node& node : nodes_)
+      if (!node.leaf) node.first = inner++;
+    rows_.resize(inner + 1), blocks_.resize(inner);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      Node& node = nodes_[i];
+      if (node.leaf) continue;
+      const auto& [first, count, leaf, begin, end] = topology.nodes[i];
+      put_children(rows_[node.first], 0, static_cast<std::uint32_t>(i), topology);
+      for (std::uint32_t row = 0; row < 4; ++row) {
+        const std::uint32_t child = first + std::min(row, count - 1);
+        put_children(blocks_[node.first], 4 * row, child, topology);
+        if (row >= count) continue;
+        const unsigned held = nodes_[child].leaf ? 1u : nodes_[child].children;
+        node.grandchildren = static_cast<std::uint16_t>(node.grandchildren | held << 4 * row);
+      }
+    }
+    put_children(rows_.back(), 0, 0, topology);
+  }
+  /// Fills four lanes with the children of a node, or with the leaf itself.
+  template <class To>
+  void put_children(To& to, std::size_t lane, std::uint32_t i, const WideTopology& topology) {
+    const auto& [first, count, leaf, begin, end] = topology.nodes[i];
+    for (std::uint32_t k = 0; k < 4; ++k, ++lane) {
+      const std::uint32_t child = leaf ? i : first + std::min(k, count - 1);
+      for (std::size_t field = 0; field < fields; ++field)
+        std::memcpy(&to.volume[field][lane],
+                    reinterpret_cast<const char*>(&nodes_[child].volume) + sizeof(scalar) * field,
+                    sizeof(scalar));
+      to.size[lane] = nodes_[child].size;
+      to.name[lane] = child | (nodes_[child].leaf ? leaf_flag : 0);
+    }
+  }
+
+  void keep_triangles(const TriangleMesh& mesh, const WideTopology& topology) {
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const auto& node = topology.nodes[i];
+      if (!node.leaf) continue;
+      nodes_[i].first = static_cast<std::uint32_t>(triangles_.size());
+      FourTriangles& lanes = corners_.emplace_back();
+      for (std::uint32_t k = 0; k < 4; ++k) {
+        triangles_.push_back(topology.primitives[node.first + std::min(k, node.count - 1)]);
+        const Triangle corners = mesh.corners(triangles_.back());
+        for (std::size_t c = 0; c < 3; ++c)
+          for (std::size_t j = 0; j < 3; ++j)
+            lanes.corner[c][j][k] = static_cast<scalar>(corners[c][static_cast<int>(j)]);
+      }
+    }
+  }
+
+  std::vector<Node> nodes_;
+  std::vector<NodeSphere> node_spheres_;
+  std::vector<Row> rows_;
+  std::vector<Block> blocks_;
+  std::vector<FourTriangles> corners_;
+  std::vector<std::uint32_t> triangles_;
+  double reach_ = 0;
+  MeshSphere sphere_;
+  SupportMap supports_;
+};
+
+}  // namespace bvlab

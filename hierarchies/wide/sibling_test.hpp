@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The sibling test: one volume of a body against siblings of another, which stay in their mesh's
+/// frame. Its members:
+///
+///   FrameChange                 takes one body's frame to the other's: once a pair of bodies
+///   PosedNode, posed_node(...)  one volume, posed into the other's frame: one N_u
+///   overlap(one, ...)           which lanes are apart from it, and an order of the rest: those
+///                               likeliest to touch first
+///   gaps(one, ...)              at most its distance to each lane
+///   separation(one, ...)        optional: the same, negative where they may overlap, and cheaper
+///
+/// Any volume whose posed form is of its own kind gets all of this by being posed
+/// (PosedSiblingTest). A volume that can do better declares a `sibling_test` of its own.
+#pragma once
+
+#include <type_traits>
+
+#include "hierarchies/bounding_volume.hpp"
+#include "hierarchies/relative_placement.hpp"
+#include "hierarchies/wide/lanes.hpp"
+
+namespace bvlab {
+
+template <Scalar S>
+struct OverlapLanes {
+  Mask<S> apart;
+  S order;
+};
+
+/// The same, with gaps instead of a mask.
+template <Scalar S>
+struct GapLanes {
+  S gap, order;
+};
+
+namespace detail {
+
+/// Approximately the centre of a volume.
+template <class V>
+auto centre_of_volume(const V& v) {
+  using S = typename V::scalar;
+  if constexpr (requires { v.centre; })
+    return v.centre;
+  else if constexpr (requires { v.box.centre; })
+    return v.box.centre;
+  else
+    return Vec3<S>((v.bounds[0] - v.bounds[1]) * S(0.5f), (v.bounds[2] - v.bounds[3]) * S(0.5f),
+                   (v.bounds[4] - v.bounds[5]) * S(0.5f));
+}
+
+/// By their posed forms, both volumes over S. The order is that of the distance of the centres over
+/// both sizes.
+template <Scalar S, class P>
+[[gnu::always_inline]] inline OverlapLanes<S> overlap_of_posed(const P& one, const P& lanes,
+                                                               const S& size, const S& sizes) {
+  const Vec3<S> between = centre_of_volume(one) - centre_of_volume(lanes);
+  const S room = size + sizes;
+  return {disjoint(one, lanes), squared_norm<S>(between) * roughly_one_over<S>(room * room)};
+}
+
+}  // namespace detail
+
+/// The sibling test of a volume whose posed form is of its own kind.
+template <class V>
+struct PosedSiblingTest {
+  using T = typename V::scalar;
+  static_assert(std::is_same_v<Posed<V>, V>, "this volume needs a sibling test of its own");
+
+  using FrameChange = PlacementOf<V>;
+  struct PosedNode {
+    V volume;
+    T size;
+  };
+
+  static FrameChange frame_change(const RelativePose& pose, double reach,
+                                  double /*reach_of_lanes*/) {
+    return relative_placement<V>(pose, reach);
+  }
+  static PosedNode posed_node(const V& volume, T size, const FrameChange& frame_change) {
+    return {posed(volume, frame_change), size};
+  }
+
+  template <Batched S>
+  [[gnu::always_inline]] static OverlapLanes<S> overlap(const PosedNode& one, const FrameChange&,
+                                                        const Over<V, S>& lanes, const S& sizes) {
+    return detail::overlap_of_posed<S>(in_all_lanes<S>(one.volume), lanes, S(one.size), sizes);
+  }
+  template <Batched S>
+  [[gnu::always_inline]] static S gaps(const PosedNode& one, const FrameChange&,
+                                       const Over<V, S>& lanes) {
+    return gap(in_all_lanes<S>(one.volume), lanes);
+  }
+};
+
+namespace detail {
+template <class V>
+struct SiblingTestOf {
+  using type = PosedSiblingTest<V>;
+};
+template <class V>
+  requires requires { typename V::sibling_test; }
+struct SiblingTestOf<V> {
+  using type = typename V::sibling_test;
+};
+}  // namespace detail
+
+template <class V>
+using SiblingTestOf = typename detail::SiblingTestOf<V>::type;
+
+}  // namespace bvlab
