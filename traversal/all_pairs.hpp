@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Bodies that move from frame to frame, and every pair of them asked in every frame: the talk's
-/// setting. Pairs stand in the order (0,1) (0,2) ... (0,n-1) (1,2) ...
+/// Queries every pair of a set of moving bodies in every frame: the talk's setting. Pairs are in
+/// the order (0,1) (0,2) ... (0,n-1) (1,2) ...
 #pragma once
 
 #include <concepts>
@@ -23,22 +23,22 @@ inline std::vector<ObjectPair> all_object_pairs(std::uint32_t objects) {
   return pairs;
 }
 
-/// A strategy of which somebody else may test the two roots, for many pairs at once:
-///   starts_at_roots()     whether the next run begins with that
-///   roots_are_apart()     it did, and there was nothing more to do
-///   run_below_roots(...)  like `run`, where they are not apart
-/// One query says for all pairs whether roots are apart.
+/// A strategy whose test of the two roots can be made by the caller, for many pairs at once:
+///   starts_at_roots()     whether the next run begins with the test of the roots
+///   roots_are_apart()     the caller found the roots apart: the run is over
+///   run_below_roots(...)  like `run`, for roots known to overlap
+/// One query object tests the roots of all pairs.
 template <class S>
 concept RootsFirst = requires(S strategy) {
   { strategy.starts_at_roots() } -> std::same_as<bool>;
   strategy.roots_are_apart();
 };
 
-/// Over any kind of bodies: `Bodies` or what offers the same.
+/// BodySet is `Bodies` or a class with the same members.
 template <class BodySet, class Strategy>
 class AllPairsOf {
  public:
-  /// One copy of `strategy` for each pair; `bodies` makes the BodySet.
+  /// Each pair gets a copy of `strategy`. The BodySet is constructed from `bodies`.
   template <class Made>
   AllPairsOf(Made&& bodies, std::vector<ObjectPair> pairs, const Strategy& strategy,
              int threads = 1)
@@ -47,32 +47,34 @@ class AllPairsOf {
         strategies_(pairs_.size(), strategy),
         threads_(threads) {
     bodies_.make_room();
-    if (threads_.count() > 1) bodies_.asked_by(Askers::several);
+    if (threads_.count() > 1) bodies_.set_sharing(Sharing::several_threads);
     if constexpr (roots_as_batches) {
       fresh_.reserve(pairs_.size());
       apart_.resize(pairs_.size());
     }
   }
 
-  /// Puts every body where its pose says, and asks every pair: `ask(pair)` makes the query for a
-  /// pair (an index into `pairs()`), `take(pair, query)` gets it back with its answer, in the order
-  /// of pairs; one is made for the test of roots besides, of which nothing is taken.
+  /// Moves every body to its pose and runs every pair's query. `make_query(p)` returns the query
+  /// for pair p (an index into `pairs()`); `take(p, query)` receives it with its answer, in the
+  /// order of pairs. One more query is made for the batched test of roots; it is never passed to
+  /// `take`.
   ///
-  /// With several threads all queries are asked before the first is taken, and `ask` is called on
-  /// any thread, for several pairs at once. Answers, contacts and counts are those of one thread.
-  /// What bounds them: tests of roots in batches and the takes are one thread's, a frame of few
-  /// pairs ends with the longest, and what one thread has posed another reads from its cache.
-  template <class Counter, class Ask, class Take>
-  void frame(std::span<const Pose> poses, Counter& counter, Ask&& ask, Take&& take) {
-    using Query = std::remove_cvref_t<decltype(ask(0))>;
-    if (!placed_) origin_ = middle_of(poses), placed_ = true;
+  /// With several threads, all queries run before the first `take`, and `make_query` is called on
+  /// any thread, concurrently. Answers, contacts and counts equal those of one thread. Three things
+  /// limit the speedup: the batched test of roots and the calls of `take` are serial, a frame of
+  /// few pairs lasts as long as its longest pair, and threads read posed volumes from each other's
+  /// caches.
+  template <class Counter, class MakeQuery, class Take>
+  void frame(std::span<const Pose> poses, Counter& counter, MakeQuery&& make_query, Take&& take) {
+    using Query = std::remove_cvref_t<decltype(make_query(0))>;
+    if (!has_origin_) origin_ = centre_of(poses), has_origin_ = true;
     bodies_.move(poses, origin_);
-    if constexpr (roots_as_batches && !wants_bound<Query>()) find_roots_apart(counter, ask);
-    if (threads_.count() == 1) return ask_range(0, pairs_.size(), counter, ask, take);
-    answers_.ask<Query>(
+    if constexpr (roots_as_batches && !wants_bound<Query>()) find_roots_apart(counter, make_query);
+    if (threads_.count() == 1) return run_range(0, pairs_.size(), counter, make_query, take);
+    answers_.run<Query>(
         threads_, pairs_.size(), pairs_.size(), counter, [](std::size_t p) { return p; },
         [&](std::size_t begin, std::size_t end, std::size_t, Counter& own, auto&& answer) {
-          ask_range(begin, end, own, ask, answer);
+          run_range(begin, end, own, make_query, answer);
         },
         take);
   }
@@ -91,12 +93,13 @@ class AllPairsOf {
  private:
   static constexpr bool roots_as_batches = BodySet::culls_in_batches && RootsFirst<Strategy>;
 
-  template <class Counter, class Ask, class Take>
-  void ask_range(std::size_t begin, std::size_t end, Counter& counter, Ask& ask, Take& take) {
+  template <class Counter, class MakeQuery, class Take>
+  void run_range(std::size_t begin, std::size_t end, Counter& counter, MakeQuery& make_query,
+                 Take& take) {
     constexpr bool roots_first =
-        roots_as_batches && !wants_bound<std::remove_cvref_t<decltype(ask(0))>>();
+        roots_as_batches && !wants_bound<std::remove_cvref_t<decltype(make_query(0))>>();
     for (std::size_t p = begin; p < end; ++p) {
-      auto query = ask(p);
+      auto query = make_query(p);
       const std::uint64_t tested = counter.n_v + counter.n_p;
       const auto pair = bodies_.pair(pairs_[p], query, counter);
       if constexpr (roots_first) {
@@ -113,18 +116,18 @@ class AllPairsOf {
       } else {
         strategies_[p].run(pair);
       }
-      counter.asked(tested);
+      counter.queried(tested);
       take(p, query);
     }
   }
 
-  template <class Counter, class Ask>
-  void find_roots_apart(Counter& counter, Ask& ask) {
+  template <class Counter, class MakeQuery>
+  void find_roots_apart(Counter& counter, MakeQuery& make_query) {
     fresh_.clear();
     for (std::uint32_t p = 0; p < pairs_.size(); ++p)
       if (strategies_[p].starts_at_roots()) fresh_.push_back(p);
     if (fresh_.empty()) return;
-    auto query = ask(fresh_[0]);
+    auto query = make_query(fresh_[0]);
     bodies_.cull_roots(pairs_, fresh_, query, counter, apart_.data());
   }
 
@@ -134,10 +137,10 @@ class AllPairsOf {
   Threads threads_;
   AnswersInOrder answers_;
   // Only where roots are tested first:
-  std::vector<std::uint32_t> fresh_;  // the pairs for which that is done
-  std::vector<std::uint8_t> apart_;   // for each pair
+  std::vector<std::uint32_t> fresh_;  // pairs whose next run starts at the roots
+  std::vector<std::uint8_t> apart_;   // for each pair, whether its roots are apart
   Vec3<double> origin_ = Vec3<double>::Zero();
-  bool placed_ = false;
+  bool has_origin_ = false;
 };
 
 /// One body for each shape (meshes and hierarchies must outlive this). B is the scalar or batch in

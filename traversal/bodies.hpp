@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Bodies over one kind of volume, and the pairs among them. `AllPairs` and `World` are written
-/// over what this offers, so that the bvlab program can put bodies in its place whose volume is
-/// chosen while it runs (AnyBodies).
+/// A set of bodies over one kind of volume, and the pairs among them. `AllPairs` and `World` use no
+/// more than this interface, so that the bvlab program can substitute bodies whose volume is chosen
+/// at run time (AnyBodies).
 #pragma once
 
 #include <algorithm>
@@ -23,9 +23,9 @@ struct Shape {
   const Hierarchy<V>* hierarchy;
 };
 
-/// The middle of the box around all translations: float volumes are posed relative to it, so that
+/// The centre of the box around all translations. Float volumes are posed relative to it, so that
 /// their precision does not depend on where in the world the bodies are.
-inline Vec3<double> middle_of(std::span<const Pose> poses) {
+inline Vec3<double> centre_of(std::span<const Pose> poses) {
   if (poses.empty()) return Vec3<double>::Zero();
   Vec3<double> low = poses[0].translation, high = low;
   for (const auto& pose : poses) {
@@ -41,27 +41,30 @@ class Bodies {
   static constexpr int W = width<B>();
 
  public:
-  /// Whether roots are worth testing for many pairs at once.
+  /// Whether testing the roots of many pairs at once pays.
   static constexpr bool culls_in_batches = W > 1;
 
   /// One body for each shape; meshes and hierarchies must outlive this.
-  explicit Bodies(std::span<const Shape<V>> shapes) : roots_(shapes.size()) {
+  explicit Bodies(std::span<const Shape<V>> shapes, Frame frame = Frame::world)
+      : roots_(shapes.size()), frame_(PlacedRelatively<V> ? frame : Frame::world) {
     bodies_.reserve(shapes.size());
-    for (const auto& shape : shapes) bodies_.emplace_back(*shape.mesh, *shape.hierarchy);
+    for (const auto& shape : shapes) bodies_.emplace_back(*shape.mesh, *shape.hierarchy, frame);
   }
 
   std::size_t size() const { return bodies_.size(); }
+  Frame frame() const { return frame_; }
   const TriangleMesh& mesh(std::size_t i) const { return bodies_[i].mesh(); }
   Body<V>& operator[](std::size_t i) { return bodies_[i]; }
 
-  /// For all bodies, before anything is timed; else each makes room when it is moved first.
+  /// Allocates for all bodies, so that nothing is allocated while a run is timed. Otherwise a body
+  /// allocates when it is first moved.
   void make_room() {
     for (auto& body : bodies_) body.make_room();
   }
 
-  /// See Body::asked_by.
-  void asked_by(Askers askers) {
-    for (auto& body : bodies_) body.asked_by(askers);
+  /// See Body::set_sharing.
+  void set_sharing(Sharing sharing) {
+    for (auto& body : bodies_) body.set_sharing(sharing);
   }
 
   /// See Body::move.
@@ -75,17 +78,22 @@ class Bodies {
 
   template <class Query, class Counter>
   BodyPair<B, V, Query, Counter> pair(const ObjectPair& pair, Query& query, Counter& counter) {
-    // Pairs may be asked by several threads.
+    // Several threads may query pairs at once.
     static thread_local Workspace workspace;
     return {bodies_[pair.i], bodies_[pair.j], query, counter, workspace};
   }
 
-  /// For each p of `fresh`, whether the query culls the roots of `pairs[p]`, into `apart[p]`. Most
-  /// of the work where bodies are sparse, and a fraction of it if done for W pairs at once. Counts
-  /// volumes posed, not tests.
+  /// For each p of `fresh`, writes to `apart[p]` whether the query culls the roots of `pairs[p]`.
+  /// Where bodies are sparse this is most of the work. In the world frame W pairs are tested at
+  /// once, in a fraction of the time. Counts volumes posed, not tests.
   template <class Query, class Counter>
   void cull_roots(std::span<const ObjectPair> pairs, std::span<const std::uint32_t> fresh,
                   Query& query, Counter& counter, std::uint8_t* apart) {
+    if (frame_ == Frame::body) {
+      counter.posed(fresh.size());
+      for (const auto p : fresh) apart[p] = roots_are_apart(pairs[p], query);
+      return;
+    }
     wanted_.assign(bodies_.size(), 0);
     for (const auto p : fresh) wanted_[pairs[p].i] = wanted_[pairs[p].j] = 1;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -107,9 +115,26 @@ class Bodies {
   }
 
  private:
+  template <class Query>
+  bool roots_are_apart(const ObjectPair& pair, Query& query) {
+    static thread_local Workspace workspace;
+    auto &a = bodies_[pair.i], &b = bodies_[pair.j];
+    const auto* placement = detail::placement_in_b(a, b, workspace);
+    if constexpr (PlacedRelatively<V>) {
+      PairBatch<Element<typename V::scalar>, false> roots;
+      roots.put(0, {0, 0});
+      return roots.culled(
+                 StoredVolumes<V>{a.hierarchy().volumes(), b.hierarchy().volumes(), *placement}, 1,
+                 query) &
+             1;
+    }
+    return false;
+  }
+
   std::vector<Body<V>> bodies_;
   std::vector<Posed<V>> roots_;       // of all bodies, side by side
   std::vector<std::uint8_t> wanted_;  // for each body, whether its root is tested
+  Frame frame_;
 };
 
 }  // namespace bvlab

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A mesh with its hierarchy, standing somewhere. Volumes and triangles are posed when they are
-/// first asked for and never twice until the body moves; a body that stays is never posed again.
+/// A mesh with its hierarchy, in a pose. Volumes and triangles are posed when they are first
+/// needed, at most once between two moves; a body that does not move is never posed again.
 ///
-/// Several threads may ask a body (see once.hpp); one moves it, while nobody asks.
+/// Several threads may use a body at once (see once.hpp). One thread moves it, while no other uses
+/// it.
 ///
-/// All bodies are posed into one frame (the world's, about a common origin), so that what is posed
-/// for one pair serves all the others.
+/// In the world frame all bodies are posed about a common origin, so that a volume posed for one
+/// pair serves all others. In a body's frame no volume is posed here (see frame.hpp).
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,8 @@
 #include <vector>
 
 #include "hierarchies/hierarchy.hpp"
+#include "hierarchies/relative_placement.hpp"
+#include "traversal/frame.hpp"
 #include "traversal/moving_body.hpp"
 
 namespace bvlab {
@@ -20,82 +23,111 @@ namespace bvlab {
 template <BoundingVolume V>
 class Body : public MovingBody {
  public:
-  /// Both must outlive the body; `hierarchy` is over `mesh`. Equal meshes share one hierarchy.
-  Body(const TriangleMesh& mesh, const Hierarchy<V>& hierarchy)
-      : MovingBody(hierarchy.extent()), mesh_(&mesh), hierarchy_(&hierarchy) {}
+  /// Volumes that are not PlacedRelatively use the world frame, whatever `frame` says. `mesh` and
+  /// `hierarchy` must outlive the body; `hierarchy` is over `mesh`. Equal meshes share one
+  /// hierarchy.
+  Body(const TriangleMesh& mesh, const Hierarchy<V>& hierarchy, Frame frame = Frame::world)
+      : MovingBody(hierarchy.extent()),
+        mesh_(&mesh),
+        hierarchy_(&hierarchy),
+        group_(hierarchy),
+        frame_(PlacedRelatively<V> ? frame : Frame::world) {
+    if (frame_ == Frame::body) stamp_ = posed_for_good;
+  }
 
-  /// Puts the body where `pose` says; `origin` is the same for all bodies that are to be compared.
-  /// Says whether anything moved. The first call makes room where that has not been done.
+  /// Sets the pose. `origin` must be the same for all bodies that are tested against each other.
+  /// Returns whether pose or origin changed. The first call allocates if make_room has not been
+  /// called.
   bool move(const Pose& pose, const Vec3<double>& origin) {
-    if (!place(pose, origin)) return false;
-    if (volumes_.empty()) make_room();
+    if (!set_pose(pose, origin)) return false;
+    if (triangles_.empty()) make_room();
     if (epoch_ == 0 || epoch_ >= never_done) forget();
+    if (frame_ == Frame::world) stamp_ = epoch_;
     return true;
   }
 
-  /// Room for what is posed, which a body that nobody comes near does not need.
+  /// Allocates the posed volumes and triangles. A body that no other comes near never needs them.
   void make_room() {
-    volumes_.resize(hierarchy_->size());
-    volumes_posed_.make_room(hierarchy_->size() / 2 + 1, askers_);
+    if (frame_ == Frame::world) volumes_.resize(hierarchy_->size());
+    volumes_posed_.make_room(hierarchy_->sibling_groups(), sharing_);
+    if (frame_ == Frame::body) volumes_posed_.all_done(posed_for_good);
     triangles_.resize(hierarchy_->primitives());
-    triangles_posed_.make_room(hierarchy_->primitives(), askers_);
+    triangles_posed_.make_room(hierarchy_->primitives(), sharing_);
   }
 
-  /// Who asks from now on, until it is moved: several threads may.
-  void asked_by(Askers askers) {
-    askers_ = askers;
-    volumes_posed_.asked_by(askers), triangles_posed_.asked_by(askers);
+  /// Sets whether several threads use the body from now on.
+  void set_sharing(Sharing sharing) {
+    sharing_ = sharing;
+    volumes_posed_.set_sharing(sharing), triangles_posed_.set_sharing(sharing);
   }
 
   const TriangleMesh& mesh() const { return *mesh_; }
   const Hierarchy<V>& hierarchy() const { return *hierarchy_; }
+  Frame frame() const { return frame_; }
 
-  /// Poses the node and its sibling unless that has been done since the body moved.
+  /// The pose from which relative poses to other bodies are formed. Computed once after each move.
+  const OrthonormalPose& orthonormal_pose() {
+    once(orthonormal_done_, epoch_, sharing_,
+         [this] { orthonormal_pose_ = OrthonormalPose(pose_, hierarchy_->extent().reach); });
+    return orthonormal_pose_;
+  }
+
+  /// In the world frame, poses the node and its siblings unless that has been done since the last
+  /// move.
   template <class Counter>
   void require(std::uint32_t node, Counter& counter) {
-    const std::uint32_t siblings = (node + 1) / 2;
-    if (volumes_posed_.done_alone(siblings, epoch_)) return;
-    if (pose_siblings(siblings)) counter.posed(siblings == 0 ? 1 : 2);
+    const std::uint32_t siblings = group_(node);
+    if (volumes_posed_.done_alone(siblings, stamp_)) return;
+    if (pose_siblings(siblings)) counter.posed(in_group(siblings));
+  }
+
+  /// The same for the children of an inner node.
+  template <class Counter>
+  void require_children(const typename Hierarchy<V>::Node& node, Counter& counter) {
+    if (volumes_posed_.done_alone(node.group, stamp_)) return;
+    if (pose_siblings(node.group)) counter.posed(node.children);
   }
 
   /// How many volumes have been posed since the body moved. O(nodes).
   std::size_t posed_volumes() {
     if (volumes_.empty()) return 0;
     std::size_t count = 0;
-    for (std::size_t siblings = 0; siblings < hierarchy_->size() / 2 + 1; ++siblings)
-      if (volumes_posed_.done(siblings, epoch_)) count += siblings == 0 ? 1 : 2;
+    for (std::uint32_t siblings = 0; siblings < hierarchy_->sibling_groups(); ++siblings)
+      if (volumes_posed_.done(siblings, stamp_)) count += in_group(siblings);
     return count;
   }
 
-  /// The posed volumes; only those that were required stand where the body stands.
+  /// The posed volumes. Only those required since the last move are valid.
   const Posed<V>* volumes() const { return volumes_.data(); }
 
-  /// The triangle at a place of the hierarchy's primitives, in the world.
-  const Triangle& triangle(std::uint32_t place) {
-    if (!triangles_posed_.done_alone(place, epoch_)) pose_triangle(place);
-    return triangles_[place];
+  /// The triangle at an index into the hierarchy's primitives, in the world.
+  const Triangle& triangle(std::uint32_t index) {
+    if (!triangles_posed_.done_alone(index, epoch_)) pose_triangle(index);
+    return triangles_[index];
   }
 
  private:
-  /// By itself: it is compiled once for all loops, and what calls it stays small. Says whether
-  /// nobody else has.
+  /// Out of line: it is compiled once for all loops, and its callers stay small. Returns whether
+  /// this thread posed them.
   [[gnu::noinline]] bool pose_siblings(std::uint32_t siblings) {
-    return volumes_posed_(siblings, epoch_, askers_, [this, siblings] {
-      once(prepared_, epoch_, askers_, [this] { prepare(); });
-      if (siblings == 0) return put(0);
-      put(2 * siblings - 1);
-      put(2 * siblings);
+    return volumes_posed_(siblings, stamp_, sharing_, [this, siblings] {
+      once(prepared_, epoch_, sharing_, [this] { prepare(); });
+      const auto& [parent, first, count, least] = hierarchy_->above_group(siblings);
+      for (std::uint32_t node = first; node < first + count; ++node) put(node);
+    });
+  }
+  std::uint32_t in_group(std::uint32_t siblings) const {
+    return hierarchy_->above_group(siblings).count;
+  }
+
+  [[gnu::noinline]] void pose_triangle(std::uint32_t index) {
+    triangles_posed_(index, epoch_, sharing_, [this, index] {
+      const Triangle corners = mesh_->corners(hierarchy_->primitive(index));
+      for (int i = 0; i < 3; ++i) triangles_[index][i] = pose_(corners[i]);
     });
   }
 
-  [[gnu::noinline]] void pose_triangle(std::uint32_t place) {
-    triangles_posed_(place, epoch_, askers_, [this, place] {
-      const Triangle corners = mesh_->corners(hierarchy_->primitive(place));
-      for (int i = 0; i < 3; ++i) triangles_[place][i] = pose_(corners[i]);
-    });
-  }
-
-  /// Made where it is to stand: an assignment would write it, wait for that and copy it.
+  /// Constructed in place: assigning a temporary would store it, wait for the store and copy it.
   void put(std::uint32_t node) {
     ::new (&volumes_[node]) Posed<V>(posed(hierarchy_->volume(node), placement_));
   }
@@ -104,16 +136,25 @@ class Body : public MovingBody {
 
   void forget() {
     volumes_posed_.forget(), triangles_posed_.forget();
-    prepared_ = never_done;
+    if (frame_ == Frame::body) volumes_posed_.all_done(posed_for_good);
+    prepared_ = orthonormal_done_ = never_done;
     epoch_ = 1;
   }
 
+  /// The stamp of volumes that never need posing, so that loops need not check the frame.
+  static constexpr std::uint32_t posed_for_good = 1;
+
   const TriangleMesh* mesh_;
   const Hierarchy<V>* hierarchy_;
+  typename Hierarchy<V>::SiblingGroups group_;
   PlacementOf<V> placement_;
-  std::uint32_t prepared_ = never_done;  // the epoch that `placement_` is of
+  std::uint32_t prepared_ = never_done;  // the epoch of `placement_`
   std::vector<Posed<V>> volumes_;
-  OnceEach volumes_posed_;  // one for two siblings
+  OnceEach volumes_posed_;  // one for each group of siblings
+  std::uint32_t stamp_ = 0;
+  OrthonormalPose orthonormal_pose_;
+  std::uint32_t orthonormal_done_ = never_done;  // the epoch of `orthonormal_pose_`
+  Frame frame_;
   std::vector<Triangle> triangles_;
   OnceEach triangles_posed_;
 };

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Two bodies and the query asked of them: what a strategy runs on.
+/// Two bodies and a query between them: the argument of a strategy's `run`.
 ///
 /// A strategy sees no more than this, so it is written once for all volumes, queries, counters and
-/// widths. What a pair offers:
+/// widths. The members:
 ///   a(), b()              the bodies, as far as their motion is concerned (MovingBody)
-///   query()               the query, which takes the answer
-///   from_front(front)     a traversal from any TrackedFront, which is kept up to date
-///   from_roots<Roots>(s)  the recursive algorithm; Roots is NoFront or NoFrontBoth, s says whether
+///   query()               the query, which holds the answer
+///   from_front(front)     a traversal from any TrackedFront, which it keeps up to date
+///   from_roots<Roots>(s)  the recursive algorithm; Roots is NoFront or NoFrontBoth, s is whether
 ///                         the roots are known to overlap
-/// The last two give the statistics of the traversal. `AnyPair` of the bvlab program offers the
-/// same without naming a volume.
+/// The last two return the statistics of the traversal. `AnyPair` of the bvlab program has the same
+/// members without naming a volume.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@
 
 namespace bvlab {
 
-/// Of objects, by their indices; i < j.
+/// Two objects, by their indices; i < j.
 struct ObjectPair {
   std::uint32_t i, j;
 };

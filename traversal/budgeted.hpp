@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Time-critical collision detection as hubbard1996approximating meant his spheres: at most a
-/// given number of volume tests, the most promising first, and an answer at any time: touching,
-/// apart, or not known yet, with a bound on how deep one surface can have gone into the other.
+/// Time-critical collision detection, as hubbard1996approximating proposed for sphere trees: a
+/// traversal of at most a given number of volume tests, the most promising pairs first. Its answer
+/// is touching, apart, or not known yet with a bound on how deep one surface can have gone into the
+/// other.
 ///
-/// The bound. A pair of nodes in question stands for two patches of surface. Let D be the smaller
-/// patch's diameter, as it stands in the world. If the patches share a point, no point of that
-/// patch is farther than D from it, so none has gone deeper than D past the other surface there.
-/// The pairs
-/// in question are kept in the order of D and the largest is looked at first: its D bounds them
-/// all.
+/// The bound. An open pair of nodes stands for two patches of surface. Let D be the smaller patch's
+/// diameter in the world. If the patches share a point, no point of that patch is farther than D
+/// from it, so none has gone deeper than D past the other surface there. Open pairs are kept in the
+/// order of D, and the largest is expanded first: its D bounds them all.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +23,8 @@
 
 namespace bvlab {
 
-/// The diameter of the patch of surface below each node, in units of the mesh, or a little more:
-/// the diagonal of its box, whatever the volume.
+/// For each node, an upper bound on the diameter of the patch of surface below it, in units of the
+/// mesh: the diagonal of the patch's box, whatever the volume.
 class PatchSizes {
  public:
   template <BoundingVolume V>
@@ -36,12 +35,13 @@ class PatchSizes {
       const auto& node = hierarchy.node(static_cast<std::uint32_t>(i));
       auto& [low, high] = boxes[i];
       if (node.count == 0) {
-        low = boxes[node.first][0].cwiseMin(boxes[node.first + 1][0]);
-        high = boxes[node.first][1].cwiseMax(boxes[node.first + 1][1]);
+        low = boxes[node.first][0], high = boxes[node.first][1];
+        for (std::uint32_t child = node.first + 1; child < node.first + node.children; ++child)
+          low = low.cwiseMin(boxes[child][0]), high = high.cwiseMax(boxes[child][1]);
       } else {
         low = high = mesh.corners(hierarchy.primitive(node.first))[0];
-        for (std::uint32_t place = node.first; place < node.first + node.count; ++place)
-          for (const auto& p : mesh.corners(hierarchy.primitive(place)))
+        for (std::uint32_t index = node.first; index < node.first + node.count; ++index)
+          for (const auto& p : mesh.corners(hierarchy.primitive(index)))
             low = low.cwiseMin(p), high = high.cwiseMax(p);
       }
       // The difference, the norm's five operations and the rounding to float: less than 2^-20.
@@ -60,18 +60,19 @@ enum class Known : std::uint8_t { apart, touching, not_yet };
 
 struct BudgetedAnswer {
   Known known = Known::not_yet;
-  double deepest = 0;       ///< in units of the mesh; 0 where it is known
-  std::uint64_t tests = 0;  ///< of volumes
+  double deepest = 0;       ///< bound on the depth, in units of the mesh; 0 unless not_yet
+  std::uint64_t tests = 0;  ///< volume tests made
 };
 
-/// Room that is used again, and the algorithm. B is the scalar or batch that volumes are tested in;
-/// as many tests are made at a time as it has lanes, and no more than the budget in all.
+/// The algorithm, with buffers kept between calls. B is the scalar or batch in which volumes are
+/// tested: a step tests as many pairs as B has lanes, and all steps together no more than the
+/// budget.
 template <class B, BoundingVolume V>
 class Budgeted {
   static constexpr int W = width<B>();
 
  public:
-  /// `test` decides candidates as in `Touching`. The sizes are of the bodies' hierarchies.
+  /// `test` decides candidates as in `Touching`. The sizes belong to the bodies' hierarchies.
   template <class Counter>
   BudgetedAnswer operator()(Body<V>& a, const PatchSizes& sizes_a, Body<V>& b,
                             const PatchSizes& sizes_b, std::uint64_t budget, TriangleTest test,
@@ -133,7 +134,7 @@ class Budgeted {
                            gather<B>(b.volumes(), nodes_b_.data())));
   }
 
-  /// Whether one of the candidates held does; they are let go.
+  /// Tests the held candidates and discards them. Returns whether one of them touches.
   template <class Counter>
   bool one_touches(TriangleTest test, Counter& counter) {
     counter.primitives(pending_.size());
@@ -143,8 +144,8 @@ class Budgeted {
     return hit;
   }
 
-  /// Two children are put in the queue, or candidates held. Says whether one touches: they are
-  /// tested where they become too many, however large the leaves are.
+  /// Puts the pairs of children into the queue, or holds the candidates of two leaves. Candidates
+  /// are tested when too many are held, however large the leaves are. Returns whether one touches.
   template <class Counter>
   bool split(Body<V>& a, const PatchSizes& sizes_a, Body<V>& b, const PatchSizes& sizes_b, int lane,
              TriangleTest test, Counter& counter) {
@@ -160,17 +161,18 @@ class Budgeted {
         }
     } else if (node_a.count || (!node_b.count && sizes_b[j] > sizes_a[i])) {
       b.require(node_b.first, counter);
-      for (const std::uint32_t child : {node_b.first, node_b.first + 1})
+      for (std::uint32_t child = node_b.first; child < node_b.first + node_b.children; ++child)
         push({std::min(sizes_a[i], sizes_b[child]), i, child});
     } else {
       a.require(node_a.first, counter);
-      for (const std::uint32_t child : {node_a.first, node_a.first + 1})
+      for (std::uint32_t child = node_a.first; child < node_a.first + node_a.children; ++child)
         push({std::min(sizes_a[child], sizes_b[j]), child, j});
     }
     return false;
   }
 
-  /// What a rotation that is not quite one, and rounding to float64, make of the largest size.
+  /// The largest size, enlarged for rotations that are not quite orthonormal and for rounding to
+  /// float64.
   double deepest(const Body<V>& a, const Body<V>& b) const {
     const double stretch = std::max(stretch_of(a.pose()), stretch_of(b.pose()));
     const double grain = 16 * unit_roundoff<double> *

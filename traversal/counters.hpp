@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The counts of T = N_u C_u + N_v C_v + N_p C_p (gottschalk1996obbtree, li1998incremental), or
-/// nothing at all.
+/// Counters of the terms of T = N_u C_u + N_v C_v + N_p C_p (gottschalk1996obbtree,
+/// li1998incremental), and one that counts nothing and compiles to nothing.
 #pragma once
 
 #include <cstdint>
 
 namespace bvlab {
 
-/// Counts where things happen.
+/// Counts each event where it happens.
 struct Counting {
   static constexpr bool counts = true;
   std::uint64_t n_u = 0;         ///< volumes posed
@@ -18,9 +18,9 @@ struct Counting {
   void posed(std::uint64_t volumes) { n_u += volumes; }
   void tested(std::uint64_t pairs) { n_v += pairs; }
   void primitives(std::uint64_t pairs) { n_p += pairs; }
-  /// A pair of bodies has been asked; so much had been tested before.
-  void asked(std::uint64_t before) { considered += n_v + n_p != before; }
-  /// What another thread counted.
+  /// One pair's query is done; `before` is n_v + n_p when it began.
+  void queried(std::uint64_t before) { considered += n_v + n_p != before; }
+  /// Adds the counts of another thread.
   void add(const Counting& other) {
     n_u += other.n_u, n_v += other.n_v, n_p += other.n_p, considered += other.considered;
   }
@@ -34,7 +34,7 @@ struct NotCounting {
   void posed(std::uint64_t) {}
   void tested(std::uint64_t) {}
   void primitives(std::uint64_t) {}
-  void asked(std::uint64_t) {}
+  void queried(std::uint64_t) {}
   void add(const NotCounting&) {}
 };
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Whose children take the place of a pair of nodes that is opened, not both of them leaves.
+/// Which node of a pair is opened, that is, replaced by its children. At least one of the two is no
+/// leaf.
 #pragma once
 
 namespace bvlab {
 
 enum class Descent { a, b, both };
 
-/// Of the larger node, of a's where they are equally large; never of a leaf's. Node is that of a
+/// The larger node, a's where they are equally large, but never a leaf. Node is the node type of a
 /// Hierarchy.
 template <class Node>
 constexpr Descent into_larger(const Node& a, const Node& b) {

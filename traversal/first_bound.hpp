@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A bound for a query that wants one before it starts: one way down to two leaves, always to the
-/// nearer child, and their primitives.
+/// A first upper bound for a query that wants one (distance): one descent from the roots to two
+/// leaves, always to the nearest child, and a test of their primitives.
 #pragma once
 
 #include "traversal/tracked_front.hpp"
 
 namespace bvlab {
 
-/// Says whether the query has had enough.
+/// Returns whether the query is satisfied.
 template <class Traversal>
 bool find_first_bound(Traversal& traversal) {
   NodePair pair{0, 0};
@@ -15,12 +15,15 @@ bool find_first_bound(Traversal& traversal) {
     const auto& a = traversal.a().node(pair.a);
     const auto& b = traversal.b().node(pair.b);
     if (a.count && b.count) break;
-    NodePair far = pair;
-    if (into_larger(a, b) == Descent::b)
-      pair.b = b.first, far.b = b.first + 1;
-    else
-      pair.a = a.first, far.a = a.first + 1;
-    if (traversal.gap(far) < traversal.gap(pair)) pair = far;
+    const bool by_b = into_larger(a, b) == Descent::b;
+    const auto child = [&](std::uint32_t k) {
+      return by_b ? NodePair{pair.a, b.first + k} : NodePair{a.first + k, pair.b};
+    };
+    NodePair nearest = child(0);
+    auto least = traversal.gap(nearest);
+    for (std::uint32_t k = 1; k < (by_b ? b.children : a.children); ++k)
+      if (const auto gap = traversal.gap(child(k)); gap < least) least = gap, nearest = child(k);
+    pair = nearest;
   }
   traversal.hold(pair);
   return traversal.flush();

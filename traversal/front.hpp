@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The front (the talk's separation list): the pairs of nodes at which the last recursion stopped.
-/// All are looked at in every run, a witness first.
+/// Every run tests all of them, a witness first.
 ///
 /// Law: the entries partition the product of the two bodies' leaves, so that every pair of leaves
-/// lies below exactly one entry. Order is free; entry 0 is tested first. A front never shrinks.
+/// lies below exactly one entry. Their order is free; entry 0 is tested first. A front never
+/// shrinks.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +29,7 @@ class Front : public FrontDefaults {
     witnessed_ = false;
   }
 
-  /// Starts from what another front has come to, its witness first.
+  /// Starts from the entries of another front, its witness first.
   template <class Other>
   void restart_from(const Other& front) {
     entries_ = front.entries();
@@ -40,16 +41,16 @@ class Front : public FrontDefaults {
 
   template <class Traversal>
   bool sweep(Traversal& traversal) {
-    const std::size_t entries = size(), first = witnessed();  // what is added needs no second look
+    const std::size_t entries = size(), first = witnessed();  // added entries are not retested
     if (first > 0 && (traversal.look_at_alone(0) || traversal.fill_batches())) return true;
     return traversal.look_at(entries - first, [first](std::size_t i) { return first + i; });
   }
 
-  /// The entry in `slot` is about to be replaced by what it ends in: at least two calls of `add`
-  /// follow for it, and the first fills its place.
+  /// The entry in `slot` is about to be replaced by its descendants: at least two calls of `add`
+  /// follow for it, and the first fills its slot.
   void open(std::size_t slot) { holes_.push_back(static_cast<std::uint32_t>(slot)); }
 
-  /// Adds an entry and says in which slot.
+  /// Adds an entry and returns its slot.
   std::size_t add(const NodePair& pair, Seen = Seen::not_yet, double = 0) {
     if (holes_.empty()) {
       entries_.push_back(pair);
@@ -65,12 +66,12 @@ class Front : public FrontDefaults {
     if (witness != Outcome::none) bring_forward(witness);
   }
 
-  /// Makes the entry in `slot` the first to be tested next time.
+  /// Makes the entry in `slot` the first to be tested in the next run.
   void bring_forward(std::size_t slot) {
     std::swap(entries_[0], entries_[slot]);
     witnessed_ = true;
   }
-  /// Whether entry 0 has been brought forward since the last restart.
+  /// Whether entry 0 is a witness, brought forward since the last restart.
   bool witnessed() const { return witnessed_; }
 
  protected:

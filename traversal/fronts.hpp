@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The fronts that are not one strategy's own: the bvlab program compiles each volume's loops from
-/// all of these, together. A strategy with a front of another kind says so (`using OwnFronts =
-/// TypeList<...>`), and loops from that are compiled for each volume by themselves.
+/// The fronts that no single strategy owns. The bvlab program compiles each volume's loops from all
+/// of these together. A strategy with a front of another kind declares it (`using OwnFronts =
+/// TypeList<...>`); loops from that front are compiled separately for each volume.
 #pragma once
 
 #include "hierarchies/geometry/type_list.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// W volumes from anywhere in an array, as one volume over batches: rows are loaded four scalars at
-/// a time and transposed in registers, which is several times cheaper than lane-by-lane insertion.
+/// Gathers W volumes from anywhere in an array into one volume over batches. Rows are loaded four
+/// scalars at a time and transposed in registers, which is several times cheaper than inserting
+/// lane by lane.
 #pragma once
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The primitives of leaves that could not be told apart, held until there are enough of them to be
-/// tested together. Two leaves with more than `portion` pairs of primitives are tested by
-/// themselves, so much at a time, where they would be held.
+/// A buffer of primitive pairs from leaves whose volumes overlap, held until there are enough of
+/// them to be tested together. Two leaves with more than `portion` pairs are not buffered: they are
+/// tested at once, `portion` pairs at a time.
 #pragma once
 
 #include <algorithm>
@@ -30,12 +30,12 @@ class HeldPrimitives {
         front_(front),
         pending_(workspace.pending) {}
 
-  /// Those of two leaves, from the entry in `slot` (Outcome::none: from none).
+  /// Holds the primitive pairs of two leaves, from the entry in `slot` (Outcome::none: no entry).
   void hold(const Node& a, const Node& b, std::size_t slot) {
     if (is_large(a, b)) [[unlikely]] {
       const Portions done =
-          in_portions(a_, b_, query_, counter_, workspace_, front_, a, b, slot, enough_);
-      enough_ = done.enough;
+          in_portions(a_, b_, query_, counter_, workspace_, front_, a, b, slot, satisfied_);
+      satisfied_ = done.satisfied;
       triangles_ += done.triangles;
       if (done.witness != Outcome::none) witness_ = done.witness;
       return;
@@ -48,24 +48,26 @@ class HeldPrimitives {
     return std::size_t{a.count} * b.count > portion;
   }
 
-  /// Whether to flush now.
+  /// Whether the caller should flush now.
   bool full() const {
-    return enough_ || pending_.size() > std::max<std::size_t>(Query::buffer_size, F::held_at_least);
+    return satisfied_ ||
+           pending_.size() > std::max<std::size_t>(Query::buffer_size, F::held_at_least);
   }
 
-  /// Tests what is held and says whether the query has had enough. Where that was so of two large
-  /// leaves, nothing is tested: what came after them is to be looked at next time.
+  /// Tests what is held and returns whether the query is satisfied. If two large leaves have
+  /// satisfied it already, nothing is tested: the entries of leaves that came after them stay
+  /// untested until the next run.
   bool flush() {
-    if (!enough_) return test();
+    if (!satisfied_) return test();
     for (const Candidate& candidate : pending_)
-      if (candidate.slot != Outcome::none) front_.stays(candidate.slot, Seen::not_yet, 0);
+      if (candidate.slot != Outcome::none) front_.keep(candidate.slot, Seen::not_yet, 0);
     pending_.clear();
     return true;
   }
 
   /// Pairs of primitives tested.
   std::size_t tested() const { return triangles_; }
-  /// The slot of what is worth testing first next time, or Outcome::none.
+  /// The slot of the entry to test first in the next run, or Outcome::none.
   std::size_t witness() const { return witness_; }
   void forget_witness() { witness_ = Outcome::none; }
 
@@ -73,26 +75,27 @@ class HeldPrimitives {
   static constexpr std::size_t portion = 512;
 
   struct Portions {
-    bool enough;
+    bool satisfied;
     std::size_t triangles, witness;
   };
 
-  /// Tests all that is held, then the triangles of two leaves until the query has had enough. By
-  /// an object of its own, so that the other one need not stay in memory for what is so rare.
+  /// Tests all that is held, then the triangles of two large leaves until the query is satisfied.
+  /// This uses an object of its own, so that the other one need not live in memory for so rare a
+  /// case.
   [[gnu::noinline]] static Portions in_portions(Body<V>& body_a, Body<V>& body_b, Query& query,
                                                 Counter& counter, Workspace& workspace, F& front,
                                                 const Node& a, const Node& b, std::size_t slot,
-                                                bool enough) {
+                                                bool satisfied) {
     HeldPrimitives own(body_a, body_b, query, counter, workspace, front);
-    enough = enough || own.test();
-    for (std::uint32_t i = a.first; i < a.first + a.count && !enough; ++i)
-      for (std::uint32_t j = b.first; j < b.first + b.count && !enough; ++j) {
+    satisfied = satisfied || own.test();
+    for (std::uint32_t i = a.first; i < a.first + a.count && !satisfied; ++i)
+      for (std::uint32_t j = b.first; j < b.first + b.count && !satisfied; ++j) {
         own.hold_pair(i, j, slot);
-        if (own.pending_.size() == portion) enough = own.test();
+        if (own.pending_.size() == portion) satisfied = own.test();
       }
-    enough = enough || own.test();
-    if (enough && slot != Outcome::none) front.stays(slot, Seen::not_yet, 0);
-    return {enough, own.triangles_, own.witness_};
+    satisfied = satisfied || own.test();
+    if (satisfied && slot != Outcome::none) front.keep(slot, Seen::not_yet, 0);
+    return {satisfied, own.triangles_, own.witness_};
   }
 
   void hold_pair(std::uint32_t i, std::uint32_t j, std::size_t slot) {
@@ -100,16 +103,16 @@ class HeldPrimitives {
                         b_.hierarchy().primitive(j), slot});
   }
 
-  // Small in most fronts, and the whole traversal stays in registers if it is inlined.
+  // Small for most fronts; inlined, it lets the whole traversal stay in registers.
   [[gnu::always_inline]] bool test() {
     if (pending_.empty()) return false;
     const Outcome outcome = front_.primitives(query_, pending_, workspace_);
     if (outcome.witness != Outcome::none) witness_ = pending_[outcome.witness].slot;
-    const std::size_t tested = outcome.enough ? outcome.witness + 1 : pending_.size();
+    const std::size_t tested = outcome.satisfied ? outcome.witness + 1 : pending_.size();
     triangles_ += tested;
     counter_.primitives(tested);
     pending_.clear();
-    return outcome.enough;
+    return outcome.satisfied;
   }
 
   Body<V>& a_;
@@ -119,7 +122,7 @@ class HeldPrimitives {
   Workspace& workspace_;
   F& front_;
   std::vector<Candidate>& pending_;
-  bool enough_ = false;  // the query has had enough of two large leaves
+  bool satisfied_ = false;  // two large leaves have satisfied the query
   std::size_t triangles_ = 0;
   std::size_t witness_ = Outcome::none;
 };

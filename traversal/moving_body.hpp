@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A body as far as its motion is concerned: what a strategy may know of it, whatever its volumes.
+/// The motion of a body: its pose, and bounds on how far it has moved. It is all that a strategy
+/// may know of a body, whatever the volumes.
 #pragma once
 
 #include <cstdint>
@@ -15,28 +16,30 @@ class MovingBody {
 
   const Pose& pose() const { return pose_; }
   const HierarchyExtent& extent() const { return extent_; }
-  /// The same number means that the body has not moved, unless 2^32 - 1 moves lie between.
+  /// Two equal values mean that the body has not moved in between, unless 2^32 - 1 moves lie
+  /// between.
   std::uint32_t epoch() const { return epoch_; }
-  /// Where it stands. Computed when it is asked for: a strategy that keeps no margins does not ask.
+  /// The current pose, for bounds on later motion. Computed on request: a strategy without margins
+  /// never requests it.
   const ReferencePose& reference_pose() {
     follow();
     return reference_pose_;
   }
-  /// How far any of its points can have moved from each reference pose that was asked for to the
-  /// next, all together: it grows whenever the body has moved.
+  /// An upper bound on how far any point of the body has moved from each requested reference pose
+  /// to the next, summed over all of them. It grows whenever the body has moved.
   double displacement_bound() {
     follow();
     return displacement_bound_;
   }
-  /// The same of what its rotation matrices differ by, in the spectral norm.
-  double turn_bound() {
+  /// The same for the differences of its rotation matrices, in the spectral norm.
+  double rotation_bound() {
     follow();
-    return turn_bound_;
+    return rotation_bound_;
   }
 
  protected:
-  /// Says whether the body has moved.
-  bool place(const Pose& pose, const Vec3<double>& origin) {
+  /// Sets pose and origin; returns whether either changed.
+  bool set_pose(const Pose& pose, const Vec3<double>& origin) {
     if (epoch_ > 0 && pose == pose_ && origin == origin_) return false;
     pose_ = pose;
     origin_ = origin;
@@ -47,23 +50,23 @@ class MovingBody {
   Pose pose_;
   Vec3<double> origin_ = Vec3<double>::Zero();
   std::uint32_t epoch_ = 0;
-  Askers askers_ = Askers::one;  // who asks: several threads may
+  Sharing sharing_ = Sharing::one_thread;  // whether several threads use the body
 
  private:
   void follow() {
-    once(followed_, epoch_, askers_, [this] { follow_here(); });
+    once(followed_, epoch_, sharing_, [this] { follow_here(); });
   }
   void follow_here() {
     const ReferencePose now(pose_, extent_);
-    // Rounded up, so that no step is lost in a long way.
+    // Rounded up, so that the sum of many steps stays an upper bound.
     constexpr double up = 1 + 4 * unit_roundoff<double>;
     if (displacement_bound_ < 0) {
       displacement_bound_ = 0;
-    } else {  // what is no number stays none
-      const double turn = turn_between(reference_pose_, now);
-      const double step = step_between(reference_pose_, now, turn, extent_.radius);
+    } else {  // NaN stays NaN
+      const double rotation = rotation_difference(reference_pose_, now);
+      const double step = step_between(reference_pose_, now, rotation, extent_.radius);
       displacement_bound_ = (displacement_bound_ + step) * up;
-      turn_bound_ = (turn_bound_ + turn * (1 + 32 * unit_roundoff<double>)) * up;
+      rotation_bound_ = (rotation_bound_ + rotation * (1 + 32 * unit_roundoff<double>)) * up;
     }
     reference_pose_ = now;
   }
@@ -71,8 +74,8 @@ class MovingBody {
   HierarchyExtent extent_;
   ReferencePose reference_pose_;
   double displacement_bound_ = -1;  // before the first reference pose
-  double turn_bound_ = 0;
-  std::uint32_t followed_ = never_done;  // the epoch that the reference pose is of
+  double rotation_bound_ = 0;
+  std::uint32_t followed_ = never_done;  // the epoch of the reference pose
 };
 
 }  // namespace bvlab

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Which bodies are near each other: a broad phase over boxes around them, and the pairs whose
-/// boxes meet, in slots. A pair keeps its slot from the frame in which its boxes meet to the one in
-/// which they part; slots are used again.
+/// The pairs of bodies that are near each other: a broad phase over boxes around the bodies, and a
+/// slot for each pair whose boxes overlap. A pair keeps its slot from the frame in which its boxes
+/// begin to overlap to the frame in which they part; slots are reused.
 ///
 /// A frame costs O(m + q) plus what the broad phase takes, for m bodies that moved and q pairs near
-/// them. A body is in the scene from the first time it is moved until it is taken out.
+/// them. A body is in the scene from its first move until it is taken out.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace bvlab {
 template <class Method>
 class NearPairs {
  public:
-  /// `mesh(i)` is body i's, which must outlive this.
+  /// `mesh(i)` returns body i's mesh, which must outlive this.
   template <class Mesh>
   NearPairs(std::size_t objects, int threads, Mesh&& mesh)
       : threads_(threads),
@@ -52,7 +52,7 @@ class NearPairs {
     if (moved_[object] == Moved::no) movers_.push_back(object);
     moved_[object] = Moved::yes;
   }
-  /// Until it is moved again.
+  /// Takes a body out of the scene until it is moved again.
   void take_out(std::uint32_t object) {
     if (!present_[object]) return;
     present_[object] = 0;
@@ -60,22 +60,25 @@ class NearPairs {
     moved_[object] = Moved::yes;
   }
 
-  /// Finds the pairs whose boxes meet: `part(slot)` is told of those that did and do no longer,
-  /// then `meet(slot, pair)` of those that now do. Before, `stand(object)` of everyone who has
-  /// moved and is in the scene, on any thread.
-  template <class Stand, class Meet, class Part>
-  void update(Stand&& stand, Meet&& meet, Part&& part) {
+  /// Finds the pairs whose boxes overlap. Calls `part(slot)` for each pair that no longer overlaps,
+  /// then `meet(slot, pair)` for each that begins to. Before both, calls `set_pose(object)`, on any
+  /// thread, for every body of the scene that has moved.
+  template <class SetPose, class Meet, class Part>
+  void update(SetPose&& set_pose, Meet&& meet, Part&& part) {
     due_.clear();
     if (movers_.empty()) return;
-    if (!placed_) place_origin();
+    if (!has_origin_) choose_origin();
     threads_.share_out(movers_.size(), 128, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t m = begin; m < end; ++m) {
         const std::uint32_t i = movers_[m];
         boxes_[i] = present_[i] ? mesh_boxes_[box_of_[i]](poses_[i], origin_) : outside(i);
-        if (present_[i]) stand(i);
+        if (present_[i]) set_pose(i);
       }
     });
-    method_.overlapping(boxes_);
+    if constexpr (requires { method_.update(boxes_, movers()); })
+      method_.update(boxes_, movers());
+    else
+      method_.overlapping(boxes_);
     const PairChanges changes = method_.changes();
     for (std::size_t k = 0; k < changes.ended.size(); ++k) {
       fetch_ahead(changes.ended, k);
@@ -89,18 +92,18 @@ class NearPairs {
       const auto& [i, j] = changes.began[k];
       meet(begin({i, j}), ObjectPair{i, j});
     }
-    // What is so large that its box is everywhere stays near those that were taken out.
+    // Boxes beyond the range of float overlap even bodies taken out; such a pair starts afresh.
     for (const auto i : movers_)
       if (!present_[i])
         for (const auto& [other, slot] : neighbours_[i]) part(slot), meet(slot, near_[slot].pair);
     find_due();
   }
 
-  /// After `update`: the slots of pairs of which a body has moved.
+  /// After `update`: the slots of pairs of which at least one body has moved.
   std::span<const std::uint32_t> due() const { return due_; }
-  /// The bodies that have.
+  /// The bodies that have moved.
   std::span<const std::uint32_t> movers() const { return movers_; }
-  /// Forgets who has moved.
+  /// Forgets which bodies have moved.
   void settle() {
     for (const auto i : movers_) moved_[i] = Moved::no;
     movers_.clear();
@@ -108,28 +111,28 @@ class NearPairs {
 
   Threads& threads() { return threads_; }
   std::span<const Pose> poses() const { return poses_; }
-  /// What poses are relative to where volumes are posed into the world.
+  /// The origin relative to which volumes are posed into the world.
   const Vec3<double>& origin() const { return origin_; }
   bool present(std::uint32_t object) const { return present_[object]; }
-  /// Of a slot that a pair has.
+  /// The pair in a taken slot.
   const ObjectPair& pair(std::uint32_t slot) const { return near_[slot].pair; }
   std::size_t slots() const { return near_.size(); }
   bool taken(std::uint32_t slot) const { return near_[slot].taken; }
-  /// Pairs whose boxes meet.
+  /// The number of pairs whose boxes overlap.
   std::size_t size() const { return near_.size() - free_.size(); }
 
  private:
   enum class Moved : std::uint8_t { no, yes, done };  ///< done: its pairs are due
   struct Near {
     ObjectPair pair;
-    std::uint32_t place_of_i, place_of_j;  ///< in the lists of neighbours
+    std::uint32_t index_at_i, index_at_j;  ///< in the neighbours of i and j
     bool taken;
   };
   struct Neighbour {
     std::uint32_t other, slot;
   };
 
-  /// A point far away, of its own: nothing meets it but what is larger than floats reach.
+  /// A point far away, different for each body. It overlaps only boxes beyond the range of float.
   static Box<float> outside(std::size_t i) {
     constexpr float far = std::numeric_limits<float>::max() / 4;
     constexpr std::size_t cells = 1 << 11;
@@ -139,25 +142,25 @@ class NearPairs {
     return box;
   }
 
-  /// The middle of the bodies: float boxes and volumes are posed relative to it, so that their
-  /// precision does not depend on where in the world the bodies are.
-  void place_origin() {
+  /// Takes the centre of the bodies as origin. Float boxes and volumes are posed relative to it, so
+  /// that their precision does not depend on where in the world the bodies are.
+  void choose_origin() {
     Eigen::AlignedBox3d all;
     for (const auto i : movers_)
       if (present_[i]) all.extend(poses_[i].translation);
     if (all.isEmpty()) return;
     origin_ = all.min() / 2 + all.max() / 2;
-    placed_ = true;
+    has_origin_ = true;
   }
 
-  /// Slots of the movers' pairs, each once. Where most bodies have moved, in the order in which
-  /// they stand; else by the lists of neighbours, movers along a Morton curve, so that what one
-  /// pair has brought into the cache is there for the next.
+  /// Collects the slots of the movers' pairs, each once. Where more than a quarter of the bodies
+  /// have moved, in the order of slots; else by the lists of neighbours, with movers along a Morton
+  /// curve, so that data that one pair has brought into the cache serves the next.
   void find_due() {
     if (4 * movers_.size() > boxes_.size()) {
       for (std::uint32_t slot = 0; slot < near_.size(); ++slot) {
         const auto [i, j] = near_[slot].pair;
-        const bool moved = (moved_[i] != Moved::no) | (moved_[j] != Moved::no);
+        const bool moved = (moved_[i] != Moved::no) + (moved_[j] != Moved::no) > 0;
         if (near_[slot].taken & moved & present_[i] & present_[j]) due_.push_back(slot);
       }
       return;
@@ -171,7 +174,7 @@ class NearPairs {
     }
     radix_sort(ordered_, spare_, code_bits);
     for (const auto& [code, i] : ordered_) {
-      // A pair of which both have moved is asked once.
+      // A pair whose bodies have both moved is listed once.
       if (present_[i])
         for (const auto& [other, slot] : neighbours_[i])
           if (moved_[other] != Moved::done && present_[other]) due_.push_back(slot);
@@ -180,8 +183,8 @@ class NearPairs {
   }
   static constexpr int code_bits = 21;  ///< 128 cells a side are enough for an order
 
-  /// Lists of neighbours are anywhere in memory: those of pairs that come are brought while others
-  /// are at work, first where they are, then what they hold.
+  /// Prefetches the lists of neighbours of pairs to come, which lie anywhere in memory: first the
+  /// list itself, then its elements.
   void fetch_ahead(std::span<const Pair> pairs, std::size_t k) const {
     if (k + 16 < pairs.size())
       for (const auto i : {pairs[k + 16].i, pairs[k + 16].j})
@@ -218,38 +221,38 @@ class NearPairs {
 
   void end(std::uint32_t slot) {
     Near& gone = near_[slot];
-    remove(gone.pair.i, gone.place_of_i);
-    remove(gone.pair.j, gone.place_of_j);
+    remove(gone.pair.i, gone.index_at_i);
+    remove(gone.pair.j, gone.index_at_j);
     gone.taken = false;
     free_.push_back(slot);
   }
 
-  /// The last one of the body's neighbours takes the place.
-  void remove(std::uint32_t object, std::uint32_t place) {
+  /// Removes one element of a body's list of neighbours; the last element takes its index.
+  void remove(std::uint32_t object, std::uint32_t index) {
     auto& list = neighbours_[object];
-    list[place] = list.back();
+    list[index] = list.back();
     list.pop_back();
-    if (place == list.size()) return;
-    Near& moved = near_[list[place].slot];
-    (moved.pair.i == object ? moved.place_of_i : moved.place_of_j) = place;
+    if (index == list.size()) return;
+    Near& moved = near_[list[index].slot];
+    (moved.pair.i == object ? moved.index_at_i : moved.index_at_j) = index;
   }
 
   Threads threads_;
   Method method_;
   std::vector<RotatedMeshBox> mesh_boxes_;  // one for each mesh
-  std::vector<std::uint32_t> box_of_;       // which of them is a body's
+  std::vector<std::uint32_t> box_of_;       // for each body, the index of its box there
   std::vector<Pose> poses_;
   std::vector<Box<float>> boxes_;
   std::vector<std::vector<Neighbour>> neighbours_;
   std::vector<Near> near_;
-  std::vector<std::uint32_t> free_;                    // slots that no pair has
+  std::vector<std::uint32_t> free_;                    // free slots
   std::vector<std::uint32_t> movers_;                  // since the last update
-  std::vector<Keyed<std::uint32_t>> ordered_, spare_;  // they, with their codes
+  std::vector<Keyed<std::uint32_t>> ordered_, spare_;  // movers, with their Morton codes
   std::vector<std::uint32_t> due_;
   std::vector<Moved> moved_;
   std::vector<std::uint8_t> present_;
   Vec3<double> origin_ = Vec3<double>::Zero();
-  bool placed_ = false;
+  bool has_origin_ = false;
 };
 
 }  // namespace bvlab

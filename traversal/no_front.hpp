@@ -8,7 +8,7 @@
 
 namespace bvlab {
 
-/// Whether the two roots are still to be tested, or overlap as somebody else has found.
+/// Whether the two roots are to be tested, or are known to overlap.
 enum class Start { roots, below_roots };
 
 class NoFront : public FrontDefaults {

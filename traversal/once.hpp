@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What is done when it is first asked for, and once for each stamp, whoever of several threads
-/// asks first: the others wait until it is done. What is done must be short and ask for nothing
-/// that waits in turn.
+/// Work that is done on first request, once for each stamp, even if several threads request it: one
+/// of them does it, the others wait. The work must be short and must not request work that waits in
+/// turn.
 #pragma once
 
 #include <algorithm>
@@ -13,19 +13,21 @@
 
 namespace bvlab {
 
-/// Who asks: one thread alone pays for no more than a comparison.
-enum class Askers : std::uint8_t { one, several };
+/// Whether several threads may request work at the same time. For one thread a request costs no
+/// more than a comparison.
+enum class Sharing : std::uint8_t { one_thread, several_threads };
 
-/// No stamp is one of these: of what is being done, and of what never was.
+/// Reserved stamps: of work in progress, and of work that was never done.
 inline constexpr std::uint32_t in_work = 0xffffffffu, never_done = 0xfffffffeu;
 
-/// Whether it has been done under this stamp.
+/// Whether the work has been done under this stamp.
 inline bool is_done(std::uint32_t& done, std::uint32_t stamp) {
   return std::atomic_ref(done).load(std::memory_order_acquire) == stamp;
 }
 
 namespace detail {
-/// Takes the work, or waits for who has taken it: then it is done.
+/// Claims the work, or waits until the thread that claimed it is done. Returns whether it was
+/// claimed.
 [[gnu::noinline]] inline bool take_work(std::uint32_t& done, std::uint32_t stamp) {
   const std::atomic_ref at(done);
   std::uint32_t seen = at.load(std::memory_order_acquire);
@@ -42,7 +44,7 @@ namespace detail {
 }
 }  // namespace detail
 
-/// Calls work() unless that has been done under this stamp; says whether it was called.
+/// Calls work() unless that has been done under this stamp; returns whether it was called.
 template <class Work>
 [[gnu::noinline]] bool once(std::uint32_t& done, std::uint32_t stamp, Work work) {
   if (!detail::take_work(done, stamp)) return false;
@@ -50,28 +52,28 @@ template <class Work>
   std::atomic_ref(done).store(stamp, std::memory_order_release);
   return true;
 }
-/// The same where it is known who asks.
+/// The same, without atomic operations for one thread.
 template <class Work>
-bool once(std::uint32_t& done, std::uint32_t stamp, Askers askers, Work work) {
-  if (askers == Askers::several) return !is_done(done, stamp) && once(done, stamp, work);
+bool once(std::uint32_t& done, std::uint32_t stamp, Sharing sharing, Work work) {
+  if (sharing == Sharing::several_threads) return !is_done(done, stamp) && once(done, stamp, work);
   if (done == stamp) return false;
   work();
   done = stamp;
   return true;
 }
 
-/// The same for each of many things. What one thread has done alone has stamps of its own, which it
-/// may read as plain numbers: an atomic one, or a look at who asks, makes the loops that ask a
-/// tenth slower.
+/// The same for each of many pieces of work. Work done by a single thread has stamps of its own,
+/// which are read as plain integers: an atomic read, or a check of `Sharing`, makes the loops that
+/// use this a tenth slower.
 class OnceEach {
  public:
-  void make_room(std::size_t count, Askers askers) {
+  void make_room(std::size_t count, Sharing sharing) {
     alone_.assign(count, 0);
-    asked_by(askers);
+    set_sharing(sharing);
   }
-  /// Who asks from now on.
-  void asked_by(Askers askers) {
-    if (askers == Askers::several && shared_.size() != alone_.size())
+  /// Sets who may request work from now on.
+  void set_sharing(Sharing sharing) {
+    if (sharing == Sharing::several_threads && shared_.size() != alone_.size())
       shared_.assign(alone_.size(), 0);
   }
   void forget() {
@@ -79,15 +81,18 @@ class OnceEach {
     std::fill(shared_.begin(), shared_.end(), 0u);
   }
 
+  /// Marks everything as done under this stamp, for any thread.
+  void all_done(std::uint32_t stamp) { std::fill(alone_.begin(), alone_.end(), stamp); }
+
   bool done_alone(std::size_t k, std::uint32_t stamp) const { return alone_[k] == stamp; }
   bool done(std::size_t k, std::uint32_t stamp) {
     return done_alone(k, stamp) || (!shared_.empty() && is_done(shared_[k], stamp));
   }
-  /// As `once`, of what one thread alone has not done. By itself where there is something to do:
-  /// several threads come here for all that has been done.
+  /// As `once`, for what done_alone() does not report as done. Only the work itself is out of line,
+  /// since several threads call this for finished work, too.
   template <class Work>
-  bool operator()(std::size_t k, std::uint32_t stamp, Askers askers, Work work) {
-    if (askers == Askers::one) return do_alone(k, stamp, work);
+  bool operator()(std::size_t k, std::uint32_t stamp, Sharing sharing, Work work) {
+    if (sharing == Sharing::one_thread) return do_alone(k, stamp, work);
     return !is_done(shared_[k], stamp) && once(shared_[k], stamp, work);
   }
 

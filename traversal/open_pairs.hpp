@@ -28,8 +28,8 @@ class OpenPairs {
   }
 
  private:
-  // Each pair is written as it is read, at once: a read that spans two writes waits until both
-  // have reached the cache, and so for all volumes posed before.
+  // Each pair is written and read as one word: a read that spans two writes waits until both have
+  // reached the cache, and with them all volumes posed before.
   std::vector<std::uint64_t> pairs_;
   std::size_t size_ = 0;
 };

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "hierarchies/bounding_volume.hpp"
+#include "hierarchies/relative_placement.hpp"
 #include "traversal/gather.hpp"
 #include "traversal/node_pair.hpp"
 #include "traversal/queries/query.hpp"
@@ -17,7 +17,7 @@ namespace bvlab {
 
 namespace detail {
 
-/// Which pairs of volumes the query culls, as bits; the gaps to `gaps` where they are wanted.
+/// Which pairs of volumes the query culls, as bits. Writes the gaps to `gaps` if kGaps.
 template <bool kGaps, class P, class Query, class T>
 [[gnu::always_inline]] inline std::uint64_t culled(const P& p, const P& q, Query& query,
                                                    [[maybe_unused]] T* gaps) {
@@ -32,9 +32,10 @@ template <bool kGaps, class P, class Query, class T>
   return bits(query.culls(p, q));
 }
 
-/// The same by itself, so that it is compiled once for all fronts and counters.
+/// The same, out of line, so that it is compiled once for all fronts and counters.
 template <bool kGaps, class P, class Query, class T>
-[[gnu::noinline]] std::uint64_t culled_one(const P& p, const P& q, Query& query, T* gaps) {
+[[gnu::noinline, gnu::flatten]] std::uint64_t culled_one(const P& p, const P& q, Query& query,
+                                                         T* gaps) {
   return culled<kGaps>(p, q, query, gaps);
 }
 template <class P>
@@ -42,16 +43,78 @@ template <class P>
   return gap(p, q);
 }
 
-/// And of as many nodes as there are lanes.
+/// The same for as many pairs of nodes as `Some` has lanes.
 template <class Some, bool kGaps, class P, class Query, class T>
-[[gnu::noinline]] std::uint64_t culled_of(const P* a, const std::uint32_t* nodes_a, const P* b,
-                                          const std::uint32_t* nodes_b, Query& query, T* gaps) {
+[[gnu::noinline, gnu::flatten]] std::uint64_t culled_of(const P* a, const std::uint32_t* nodes_a,
+                                                        const P* b, const std::uint32_t* nodes_b,
+                                                        Query& query, T* gaps) {
   return culled<kGaps>(gather<Some>(a, nodes_a), gather<Some>(b, nodes_b), query, gaps);
+}
+
+/// The same for stored volumes: those of a are posed into the frame of b.
+template <bool kGaps, class V, class Query, class T>
+[[gnu::noinline]] std::uint64_t culled_one_in_b(const V& a, const V& b,
+                                                const bvlab::PlacementOf<V>& placement,
+                                                Query& query, T* gaps) {
+  const Posed<V> in_b = posed(a, placement);
+  return culled<kGaps>(in_b, static_cast<const Posed<V>&>(as_stored<V>(b)), query, gaps);
+}
+template <class V>
+[[gnu::noinline]] auto gap_in_b(const V& a, const V& b, const bvlab::PlacementOf<V>& placement) {
+  return gap(posed(a, placement), static_cast<const Posed<V>&>(as_stored<V>(b)));
+}
+template <class Some, bool kGaps, class V, class Query, class T>
+[[gnu::noinline, gnu::flatten]] std::uint64_t culled_of_in_b(
+    const V* a, const std::uint32_t* nodes_a, const V* b, const std::uint32_t* nodes_b,
+    const bvlab::PlacementOf<V>& placement, Query& query, T* gaps) {
+  using Lanes = Over<Posed<V>, Some>;
+  const Lanes in_b = posed(gather<Some>(a, nodes_a), placement);
+  return culled<kGaps>(in_b, static_cast<const Lanes&>(as_stored<V>(gather<Some>(b, nodes_b))),
+                       query, gaps);
 }
 
 }  // namespace detail
 
-/// B is the scalar or batch, of W lanes, that volumes are tested in.
+/// The volumes of two bodies, posed into the world (see frame.hpp).
+template <class V>
+struct PosedVolumes {
+  const Posed<V>*a, *b;
+
+  template <class Some, bool kGaps, class Query, class T>
+  [[gnu::always_inline]] std::uint64_t culled(const std::uint32_t* nodes_a,
+                                              const std::uint32_t* nodes_b, Query& query,
+                                              T* gaps) const {
+    return detail::culled_of<Some, kGaps>(a, nodes_a, b, nodes_b, query, gaps);
+  }
+  template <bool kGaps, class Query, class T>
+  [[gnu::always_inline]] std::uint64_t culled(std::uint32_t node_a, std::uint32_t node_b,
+                                              Query& query, T* gaps) const {
+    return detail::culled_one<kGaps>(a[node_a], b[node_b], query, gaps);
+  }
+  auto gap(const NodePair& pair) const { return detail::gap_between(a[pair.a], b[pair.b]); }
+};
+
+/// The volumes of two bodies as stored: those of a are posed into the frame of b when tested.
+template <class V>
+struct StoredVolumes {
+  const V *a, *b;
+  const PlacementOf<V>& placement;  ///< of a in the frame of b
+
+  template <class Some, bool kGaps, class Query, class T>
+  [[gnu::always_inline]] std::uint64_t culled(const std::uint32_t* nodes_a,
+                                              const std::uint32_t* nodes_b, Query& query,
+                                              T* gaps) const {
+    return detail::culled_of_in_b<Some, kGaps>(a, nodes_a, b, nodes_b, placement, query, gaps);
+  }
+  template <bool kGaps, class Query, class T>
+  [[gnu::always_inline]] std::uint64_t culled(std::uint32_t node_a, std::uint32_t node_b,
+                                              Query& query, T* gaps) const {
+    return detail::culled_one_in_b<kGaps>(a[node_a], b[node_b], placement, query, gaps);
+  }
+  auto gap(const NodePair& pair) const { return detail::gap_in_b(a[pair.a], b[pair.b], placement); }
+};
+
+/// B is the scalar or batch, of W lanes, in which volumes are tested.
 template <class B, bool kGaps>
 class PairBatch {
  public:
@@ -67,25 +130,25 @@ class PairBatch {
     return 0;
   }
 
-  /// As many lanes as were put.
+  /// The mask of the first `count` lanes.
   static constexpr std::uint64_t all(std::size_t count) {
     return (std::uint64_t{2} << (count - 1)) - 1;
   }
 
-  /// Which of the first `count` pairs the query culls, as bits. All volumes have been posed.
-  template <class P, class Query>
-  [[gnu::always_inline]] std::uint64_t culled(const P* a, const P* b, std::size_t count,
+  /// Which of the first `count` pairs the query culls, as bits.
+  template <class Volumes, class Query>
+  [[gnu::always_inline]] std::uint64_t culled(const Volumes& volumes, std::size_t count,
                                               Query& query) {
-    // A pair by itself is not worth a batch, and four are not worth a wide one.
+    // One pair is tested without a batch, and two to four in a narrow one: that costs less.
     if constexpr (W > 4)
-      if (count > 1 && count <= 4) return culled_as<Batch<Element<B>, 4>>(a, b, count, query);
+      if (count > 1 && count <= 4) return culled_as<Batch<Element<B>, 4>>(volumes, count, query);
     if constexpr (W > 1)
-      if (count > 1) return culled_as<B>(a, b, count, query);
-    return detail::culled_one<kGaps>(a[nodes_a_[0]], b[nodes_b_[0]], query, gaps_.data());
+      if (count > 1) return culled_as<B>(volumes, count, query);
+    return volumes.template culled<kGaps>(nodes_a_[0], nodes_b_[0], query, gaps_.data());
   }
 
-  /// The lanes of a mask in the order in which they are to be opened: where a bound is wanted the
-  /// nearest last, so that it is the first to be looked at.
+  /// Calls open(lane) for each lane of a mask. If the query wants a bound, the nearest comes last,
+  /// so that its children are tested first.
   template <class Query, class Open>
   [[gnu::always_inline]] void for_each_near(std::uint64_t mask, Open&& open) const {
     if constexpr (!wants_bound<Query>()) {
@@ -104,13 +167,13 @@ class PairBatch {
   }
 
  private:
-  template <class Some, class P, class Query>
-  [[gnu::always_inline]] std::uint64_t culled_as(const P* a, const P* b, std::size_t count,
+  template <class Some, class Volumes, class Query>
+  [[gnu::always_inline]] std::uint64_t culled_as(const Volumes& volumes, std::size_t count,
                                                  Query& query) {
     for (std::size_t i = count; i < std::size_t{width<Some>()}; ++i)
       nodes_a_[i] = nodes_a_[0], nodes_b_[i] = nodes_b_[0];
-    return detail::culled_of<Some, kGaps>(a, nodes_a_.data(), b, nodes_b_.data(), query,
-                                          gaps_.data()) &
+    return volumes.template culled<Some, kGaps>(nodes_a_.data(), nodes_b_.data(), query,
+                                                gaps_.data()) &
            all(count);
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// THE list of queries. What a query has to offer stands in traverse.hpp.
+/// THE list of queries. The members of a query are listed in queries/query.hpp.
 #pragma once
 
 #include "hierarchies/geometry/type_list.hpp"

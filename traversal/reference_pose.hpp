@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A pose from which motion is measured, and bounds on how far a body has moved since.
 ///
-/// A point of a body, given by v about the body's middle c in the mesh's frame, stands at
+/// A point of a body, given by v relative to the body's centre c in the mesh's frame, lies at
 /// x = (Rc + t) + Rv. From a pose r to a pose f it moves by
 ///
 ///   (c_f - c_r) + (R_f - R_r) v,   |(R_f - R_r) v| <= |R_f - R_r|_2 radius.
 ///
 /// The singular values of the difference of two rotations by an angle of s between them are
 /// 2 sin(s / 2), 2 sin(s / 2) and 0, so that |R_f - R_r|_2 = |R_f - R_r|_F / sqrt(2): nothing needs
-/// a quaternion or an angle. A matrix that is no rotation is within d = |R'R - I|_F of the
-/// orthonormal one next to it (its singular values s give |s - 1| <= |s^2 - 1|), hence
+/// a quaternion or an angle. A matrix that is no rotation is within d = |R'R - I|_F of the nearest
+/// orthonormal one (its singular values s give |s - 1| <= |s^2 - 1|), hence
 ///
 ///   |R_f - R_r|_2 <= (F + d_f + d_r) / sqrt(2) + d_f + d_r,   F = |R_f - R_r|_F,
 ///
@@ -20,14 +20,14 @@
 ///
 /// so that bodies carried along together do not approach.
 ///
-/// Rounding. A vertex as it stands, fl(Rv + t), and a middle, fl(Rc + t), are each off by less than
-/// 8u (reach + |t|) (see placement.hpp): `noise` is the sum of both, twice. It is counted at both
-/// poses. The sums of squares and their roots are off by less than 16 roundings in relative terms,
-/// those of the whole by 16 more: a factor of 1 + 32u pays for all.
+/// Rounding. A posed vertex, fl(Rv + t), and a posed centre, fl(Rc + t), are each off by less than
+/// 8u (reach + |t|) (see placement.hpp). `error_bound` is twice the sum of both, and is counted at
+/// both poses. The sums of squares and their roots are off by less than 16 roundings in relative
+/// terms, those of the whole by 16 more: a factor of 1 + 32u covers all.
 ///
 /// Range. A square that underflows hides a motion below 2^-511, which is less than 2^-500 of what a
-/// deadline loses when it becomes a float (`just_below`): a margin so small is never believed. What
-/// overflows makes the clock infinite or no number, which every comparison takes for passed.
+/// deadline loses when it becomes a float (`just_below`): no query relies on so small a margin. An
+/// overflow makes the clock infinite or NaN, and every comparison treats that as expired.
 #pragma once
 
 #include <algorithm>
@@ -40,36 +40,37 @@
 
 namespace bvlab {
 
-/// Where a body stands, as far as its later motion is to be bounded.
+/// A body's pose, with what is needed to bound its later motion.
 struct ReferencePose {
   Mat3<double> rotation = Mat3<double>::Identity();
   Vec3<double> centre = Vec3<double>::Zero();  ///< of the body, in the world
   double defect = 0;                           ///< at least |R'R - I|_F
-  double noise = 0;                            ///< of everything above, in units of the mesh
+  double error_bound = 0;                      ///< of everything above, in units of the mesh
 
   ReferencePose() = default;
   ReferencePose(const Pose& pose, const HierarchyExtent& extent)
       : rotation(pose.rotation), centre(pose(extent.centre)) {
     constexpr double u = unit_roundoff<double>;
     defect = defect_of(rotation) + 16 * u;
-    noise = 32 * u * (extent.reach + pose.translation.norm()) + std::numeric_limits<double>::min();
+    error_bound =
+        32 * u * (extent.reach + pose.translation.norm()) + std::numeric_limits<double>::min();
   }
 };
 
-/// At least |R_to - R_from|_2.
-inline double turn_between(const ReferencePose& from, const ReferencePose& to) {
+/// An upper bound on |R_to - R_from|_2.
+inline double rotation_difference(const ReferencePose& from, const ReferencePose& to) {
   const double norm = (to.rotation - from.rotation).norm();
   const double defects = from.defect + to.defect;
   if (!(norm + defects < 1.9)) return norm;
   return std::min(norm, (norm + defects) * M_SQRT1_2 + defects);
 }
 
-/// How far any point of a body that went from one pose to another, and turned by so much, can have
-/// come, at most.
-inline double step_between(const ReferencePose& from, const ReferencePose& to, double turn,
+/// An upper bound on the displacement of any point of a body between two poses; `rotation` bounds
+/// |R_to - R_from|_2.
+inline double step_between(const ReferencePose& from, const ReferencePose& to, double rotation,
                            double radius) {
-  return ((to.centre - from.centre).norm() + turn * radius) *
-         (1 + 32 * unit_roundoff<double>)+(from.noise + to.noise);
+  return ((to.centre - from.centre).norm() + rotation * radius) *
+         (1 + 32 * unit_roundoff<double>)+(from.error_bound + to.error_bound);
 }
 
 }  // namespace bvlab

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How much nearer two bodies, and any parts of them, can have come to each other: a clock that
-/// shows an upper bound on it, by which a gap that was measured expires. The bound is derived in
+/// A clock of relative motion: an upper bound on how much nearer two bodies, or any parts of them,
+/// can have come to each other. Measured gaps expire by it. The bound is derived in
 /// reference_pose.hpp.
 #pragma once
 
@@ -12,32 +12,33 @@ namespace bvlab {
 
 class RelativeMotionBound {
  public:
-  /// Begins at zero.
+  /// Starts the clock at zero.
   void restart(MovingBody& a, MovingBody& b) {
     base_ = since_ = 0;
     refer(a, b);
   }
 
-  /// The bodies have moved.
+  /// Advances the clock after the bodies have moved.
   void advance(MovingBody& a, MovingBody& b) {
     const ReferencePose &to_a = a.reference_pose(), &to_b = b.reference_pose();
     const Vec3<double> shift = (to_a.centre - a_.centre) - (to_b.centre - b_.centre);
-    since_ = (shift.norm() + turn_between(a_, to_a) * a.extent().radius +
-              turn_between(b_, to_b) * b.extent().radius) *
-             (1 + 32 * unit_roundoff<double>)+(a_.noise + to_a.noise + b_.noise + to_b.noise);
+    since_ = (shift.norm() + rotation_difference(a_, to_a) * a.extent().radius +
+              rotation_difference(b_, to_b) * b.extent().radius) *
+             (1 + 32 * unit_roundoff<double>)+(a_.error_bound + to_a.error_bound + b_.error_bound +
+                                               to_b.error_bound);
   }
 
-  /// From now on motion is measured from here. What was shown before goes on to hold, but what is
-  /// measured later no longer profits from motions that cancel.
+  /// Makes the current poses the reference poses. Deadlines given before stay valid. But motion
+  /// back towards the former reference poses now counts as motion: it cancels nothing.
   void refer(MovingBody& a, MovingBody& b) {
     base_ = now();
     a_ = a.reference_pose(), b_ = b.reference_pose();
-    since_ = a_.noise + b_.noise;
+    since_ = a_.error_bound + b_.error_bound;
   }
 
-  /// What the clock shows.
+  /// The time on the clock.
   double now() const { return (base_ + since_) * (1 + 4 * unit_roundoff<double>); }
-  /// The part of it since the reference poses that motion is measured from.
+  /// The part of it since the reference poses.
   double since() const { return since_; }
 
   /// Bodies (or parts) that are `gap` apart now cannot touch while the clock shows less than this.
@@ -45,12 +46,12 @@ class RelativeMotionBound {
     return base_ + (gap - since_) - 4 * unit_roundoff<double> * (base_ + gap + since_);
   }
 
-  /// Sets the clock back to what has passed since motion was last referred; says by how much.
+  /// Sets the clock back to the time since the reference poses; returns by how much.
   double set_back() { return std::exchange(base_, 0); }
 
  private:
   ReferencePose a_, b_;
-  double base_ = 0;   // what it showed at those reference poses
+  double base_ = 0;   // the clock at the reference poses
   double since_ = 0;  // how much nearer since then, at most
 };
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The box, along the world's axes, of a mesh that is turned and moved: from its support values in
-/// the 26 directions of a cube's faces, edges and corners, found once.
+/// A box along the world's axes around a mesh in any pose, from the mesh's support values in the 26
+/// directions of a cube's faces, edges and corners, which are computed once.
 ///
-/// Along an axis d the turned mesh reaches as far as the mesh reaches along n = R'd. With
+/// Along an axis d the rotated mesh reaches as far as the mesh reaches along n = R'd. With
 /// coordinates x >= y >= z >= 0 of n, up to order and signs, n = (x-y)(1,0,0) + (y-z)(1,1,0) +
-/// z(1,1,1), so that it reaches no farther than the same sum of support values
-/// (zachmann1998rapid). That is smaller than the box of the turned box, costs the same for every
-/// mesh, and holds whether or not R is a rotation.
+/// z(1,1,1), so that it reaches no farther than the same sum of support values (zachmann1998rapid).
+/// The result is smaller than the box of the rotated box, costs the same for every mesh, and holds
+/// whether or not R is a rotation.
 ///
 /// With u = 2^-53, no vertex farther than `reach` from the mesh's origin, and r the largest number
 /// of R's row, the weights times support values are at most 1.74 r reach in all; their roundings
@@ -46,7 +46,7 @@ class RotatedMeshBox {
     reach_ *= 1 + 8 * unit_roundoff<double>;
   }
 
-  /// Relative to `origin`. What is too large for a float ends at the largest one.
+  /// The box in a pose, relative to `origin`. Bounds too large for a float end at the largest one.
   Box<float> operator()(const Pose& pose, const Vec3<double>& origin) const {
     constexpr float most = std::numeric_limits<float>::max();
     Box<float> box;
@@ -54,7 +54,7 @@ class RotatedMeshBox {
       const auto [lo, hi] = along({pose.rotation(i, 0), pose.rotation(i, 1), pose.rotation(i, 2)},
                                   pose.translation[i], origin[i]);
       const float below = -beyond(-lo), above = beyond(hi);
-      // Written so that what is not a number counts as everywhere.
+      // Written so that NaN gives the box of everything.
       const bool sound = below >= -most && above <= most && below <= above;
       box.lo[i] = sound ? below : -most;
       box.hi[i] = sound ? above : most;
@@ -67,8 +67,8 @@ class RotatedMeshBox {
     double lo, hi;
   };
 
-  /// A float above x, by less than two steps where it is large enough; what is no number stays
-  /// none. A step is at most 2^-23 of a number, so that the sum ends at the next float or above.
+  /// A float above x, by less than two steps where it is large enough; NaN stays NaN. A step is at
+  /// most 2^-23 of a number, so that the sum ends at the next float or above.
   static float beyond(double x) {
     const float y = static_cast<float>(x);
     return y + (std::abs(y) * std::numeric_limits<float>::epsilon() +
@@ -80,7 +80,7 @@ class RotatedMeshBox {
   Interval along(const std::array<double, 3>& n, double translation, double origin) const {
     constexpr int weight[3] = {9, 3, 1};
     const double size[3] = {std::abs(n[0]), std::abs(n[1]), std::abs(n[2])};
-    // Without a branch, for what is largest is anybody's guess.
+    // Without branches: which component is largest cannot be predicted.
     const auto step = [&](int axis) { return n[axis] < 0 ? -weight[axis] : weight[axis]; };
     const int steps[3] = {step(0), step(1), step(2)};
     const bool second = size[1] > size[0];
@@ -88,10 +88,10 @@ class RotatedMeshBox {
     const int of_more = second ? steps[1] : steps[0], of_less = second ? steps[0] : steps[1];
     const bool third = size[2] > more, last = size[2] < less;
     const double large = third ? size[2] : more, small = last ? size[2] : less;
-    const double middle = third ? more : last ? less : size[2];
+    const double median = third ? more : last ? less : size[2];
     const int face = third ? steps[2] : of_more, corner = steps[0] + steps[1] + steps[2];
     const int edge = corner - (last ? steps[2] : of_less);
-    const double x = large - middle, y = middle - small, z = small;
+    const double x = large - median, y = median - small, z = small;
     constexpr int none = at(0, 0, 0);
     const auto reached = [&](int sign) {
       return (x * support_[none + sign * face] + y * support_[none + sign * edge]) +

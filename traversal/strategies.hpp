@@ -2,10 +2,10 @@
 /// THE list of strategies.
 ///
 /// A strategy belongs to one pair of bodies and lives as long as the pair. It is default
-/// constructible, and
-///   run(pair)      answers the pair's query for its bodies as they stand now (see body_pair.hpp);
-///   front_size()   the entries it keeps.
-/// Law: in every run, whatever happened between runs, the query ends up with the answer that
+/// constructible, and has
+///   run(pair)      answers the pair's query for the bodies' current poses (see body_pair.hpp);
+///   front_size()   the number of entries it keeps.
+/// Law: after every run, whatever happened between runs, the query holds the answer that
 /// `Recursive` gives; a distance within 2^-45 of it (distance.hpp).
 #pragma once
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Pairs of bodies over binary trees, a strategy for each: what a World asks (see world_of.hpp).
+/// The pairs of a World over binary trees or any fan-out, each with a strategy of its own (see
+/// world_of.hpp).
 ///
-/// Threads share the pairs. Bodies are moved and volumes posed when they are first asked for,
-/// whoever asks: what is posed and tested is the same for any number of threads.
+/// Threads share the pairs. The first thread that needs a body moves it and poses its volumes: what
+/// is posed and tested is the same for any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +17,11 @@
 
 namespace bvlab {
 
-/// Over any kind of bodies: `Bodies` or what offers the same.
+/// BodySet is `Bodies` or a class with the same members.
 template <class BodySet, class Strategy>
 class StrategyPairs {
  public:
-  /// `bodies` makes the BodySet; each pair begins with a copy of `strategy`.
+  /// The BodySet is constructed from `bodies`; each pair begins with a copy of `strategy`.
   template <class Made>
   StrategyPairs(Made&& bodies, const Strategy& strategy)
       : bodies_(std::forward<Made>(bodies)),
@@ -36,48 +37,49 @@ class StrategyPairs {
   }
   void drop(std::uint32_t slot) { pairs_[slot].strategy = prototype_; }
 
-  /// Bodies are moved when the first pair asks for them; `poses` and `origin` must stay until then.
+  /// Begins a frame. A body is moved when the first of its pairs is queried; `poses` and `origin`
+  /// must stay valid until then.
   template <class Query>
   void begin(std::span<const std::uint32_t>, std::span<const Pose> poses,
              const Vec3<double>& origin, Threads& threads) {
     poses_ = poses, origin_ = &origin;
-    const Askers askers = threads.count() > 1 ? Askers::several : Askers::one;
-    if (askers != askers_) bodies_.asked_by(askers_ = askers);
+    const Sharing sharing = threads.count() > 1 ? Sharing::several_threads : Sharing::one_thread;
+    if (sharing != sharing_) bodies_.set_sharing(sharing_ = sharing);
     if (++frame_ >= never_done) frame_ = 0;
   }
-  void stand(std::uint32_t) {}
+  void set_pose(std::uint32_t) {}
 
-  template <class Counter, class Ask, class Take>
-  void ask(std::span<const std::uint32_t> slots, std::size_t, Counter& counter, Ask&& ask,
-           Take&& take) {
+  template <class Counter, class MakeQuery, class Take>
+  void run(std::span<const std::uint32_t> slots, std::size_t, Counter& counter,
+           MakeQuery&& make_query, Take&& take) {
     for (const std::uint32_t slot : slots) {
-      Asked& asked = pairs_[slot];
-      auto query = ask(slot, asked.pair);
+      PairState& state = pairs_[slot];
+      auto query = make_query(slot, state.pair);
       const std::uint64_t before = counter.n_v + counter.n_p;
-      for (const auto k : {asked.pair.i, asked.pair.j})
-        once(moved_[k], frame_, askers_, [&] { bodies_.move(k, poses_[k], *origin_); });
-      asked.strategy.run(bodies_.pair(asked.pair, query, counter));
-      counter.asked(before);
-      take(slot, asked.pair, query);
+      for (const auto k : {state.pair.i, state.pair.j})
+        once(moved_[k], frame_, sharing_, [&] { bodies_.move(k, poses_[k], *origin_); });
+      state.strategy.run(bodies_.pair(state.pair, query, counter));
+      counter.queried(before);
+      take(slot, state.pair, query);
     }
   }
 
   std::size_t front_size(std::uint32_t slot) const { return pairs_[slot].strategy.front_size(); }
 
  private:
-  struct Asked {
+  struct PairState {
     ObjectPair pair;
     Strategy strategy;
   };
 
   BodySet bodies_;
   Strategy prototype_;
-  std::vector<Asked> pairs_;
+  std::vector<PairState> pairs_;
   std::vector<std::uint32_t> moved_;  // the frame in which each body was moved last
   std::span<const Pose> poses_;
   const Vec3<double>* origin_ = nullptr;
   std::uint32_t frame_ = 0;
-  Askers askers_ = Askers::one;
+  Sharing sharing_ = Sharing::one_thread;
 };
 
 }  // namespace bvlab

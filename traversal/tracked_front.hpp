@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What a front has to offer, so that the loop can start from it and keep it up to date.
+/// The concept of a front: the traversal starts from it and keeps it up to date.
 ///
 /// The front (the talk's separation list) is where the last recursion stopped: the pairs of nodes
-/// that were culled, and the pairs of leaves. What is kept of a pair, which of them a run looks at,
-/// in which order, and what is opened besides is all a front's own matter.
+/// that were culled, and the pairs of leaves. A front decides what it keeps of a pair, which
+/// entries a run tests, in which order, and what is opened besides.
 ///
-/// Law: in every run the entries looked at, and what is known of the others, settle the query; and
+/// Law: in every run the entries tested, with what is known of the others, decide the query; and
 /// the entries partition the product of the two bodies' leaves, so that every pair of leaves lies
 /// below exactly one. A front that keeps nothing (NoFront) starts from the roots.
 #pragma once
@@ -22,66 +22,66 @@
 
 namespace bvlab {
 
-/// What a traversal had to do.
+/// The work of one traversal.
 struct TraversalStatistics {
-  bool everything = true;     ///< false where the query stopped it
+  bool everything = true;     ///< false if the query ended the run early
   std::size_t volumes = 0;    ///< pairs of volumes tested
   std::size_t triangles = 0;  ///< pairs of primitives tested
 };
 
 /// What a run has found out about an entry.
 enum class Seen {
-  culled,  ///< its volumes need no further look; their gap is known where gaps are measured
-  near,    ///< they do, and both are leaves, whose primitives are tested unless a hit ends the run
-  not_yet  ///< nothing, or not all: the run has ended before
+  culled,  ///< the query culls it; its gap is known where gaps are measured
+  near,    ///< not culled, both are leaves; primitives are tested unless a hit ends the run
+  not_yet  ///< not tested, or not completely: the run ended before
 };
 
-/// The members, of which FrontDefaults has those that a simple front need not care about. A slot is
-/// the number under which the front knows an entry.
-///   sweep(traversal)         has entries looked at, by Traversal::look_at; says whether the query
-///                            has had enough
+/// The members. FrontDefaults has those that a simple front need not define. A slot is the number
+/// under which the front knows an entry.
+///   sweep(traversal)         tests entries, by Traversal::look_at; returns whether the query is
+///                            satisfied
 ///   front[slot]              the pair
-///   stays(slot, seen, gap)   an entry looked at stays one: it has survived, if it was culled
-///   open(slot)               it does not: the next pair that is added, of at least two, takes its
-///                            place
-///   add(pair, seen, gap)     the pair is an entry now; says in which slot
-///   finish(witness, enough)  the run is over, ended by the query or not; `witness` is the slot of
-///                            the entry in which the query found what is worth testing first next
-///                            time, or Outcome::none
-///   witnessed()              there is one from the last run, and it is looked at first (else a
-///                            query that wants a bound gets it from one way down from the roots)
-///   opens(query, a, b, gap)  whether two nodes that the query culls are opened all the same
-///   descent(a, b)            of two that are opened: whose children take their place
+///   keep(slot, seen, gap)    a tested entry stays one; `seen` is what the test found
+///   open(slot)               a tested entry is replaced: the next pair that is added, of at least
+///                            two, takes its slot
+///   add(pair, seen, gap)     makes the pair an entry; returns its slot
+///   finish(witness, satisfied)
+///                            the run is over, ended by the query or not; `witness` is the slot
+///                            of the entry to test first in the next run, or Outcome::none
+///   witnessed()              whether the last run left a witness, which is tested first (else a
+///                            query that wants a bound gets it from one descent from the roots)
+///   opens(query, a, b, gap)  whether two nodes are opened although the query culls them
+///   descent(a, b)            which of two opened nodes is replaced by its children
 ///   primitives(query, pending, workspace)
-///                            asks the query about candidates, whose slots say where they come
-///                            from, all of an entry's one after the other
-///   measures_gaps            whether it wants to know `gap`s: for pairs that are culled, at most
-///                            the distance between the volumes, in units of the meshes; else 0
+///                            passes candidates to the query; their slots name their entries, and
+///                            those of one entry are consecutive
+///   measures_gaps            whether the front uses `gap`: for culled pairs, at most the distance
+///                            between the volumes, in units of the meshes; else 0
 ///   held_at_least            candidates that are worth waiting for, as many as fill its batches
 template <class F, class Traversal>
-concept TrackedFront = requires(F front, Traversal& traversal, typename Traversal::Query& query,
-                                const typename Traversal::Node& node, const NodePair& pair,
-                                std::size_t slot, double gap, Seen seen,
-                                std::span<const Candidate> pending, Workspace& workspace) {
-  { front.sweep(traversal) } -> std::same_as<bool>;
-  { front[slot] } -> std::convertible_to<NodePair>;
-  front.stays(slot, seen, gap);
-  front.open(slot);
-  { front.add(pair, seen, gap) } -> std::same_as<std::size_t>;
-  front.finish(slot, true);
-  { front.witnessed() } -> std::same_as<bool>;
-  { front.opens(query, node, node, gap) } -> std::same_as<bool>;
-  { front.descent(node, node) } -> std::same_as<Descent>;
-  { front.primitives(query, pending, workspace) } -> std::same_as<Outcome>;
-  { F::measures_gaps } -> std::convertible_to<bool>;
-  { F::held_at_least } -> std::convertible_to<std::size_t>;
-};
+concept TrackedFront =
+    requires(F front, Traversal& traversal, typename Traversal::Query& query,
+             const typename Traversal::Node& node, const NodePair& pair, std::size_t slot,
+             double gap, Seen seen, std::span<const Candidate> pending, Workspace& workspace) {
+      { front.sweep(traversal) } -> std::same_as<bool>;
+      { front[slot] } -> std::convertible_to<NodePair>;
+      front.keep(slot, seen, gap);
+      front.open(slot);
+      { front.add(pair, seen, gap) } -> std::same_as<std::size_t>;
+      front.finish(slot, true);
+      { front.witnessed() } -> std::same_as<bool>;
+      { front.opens(query, node, node, gap) } -> std::same_as<bool>;
+      { front.descent(node, node) } -> std::same_as<Descent>;
+      { front.primitives(query, pending, workspace) } -> std::same_as<Outcome>;
+      { F::measures_gaps } -> std::convertible_to<bool>;
+      { F::held_at_least } -> std::convertible_to<std::size_t>;
+    };
 
 struct FrontDefaults {
   static constexpr bool measures_gaps = false;
   static constexpr std::size_t held_at_least = 0;
 
-  static void stays(std::size_t, Seen, double) {}
+  static void keep(std::size_t, Seen, double) {}
   static void finish(std::size_t, bool) {}
   static constexpr bool witnessed() { return false; }
   template <class Query, class Node>

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The loop: pairs of nodes are tested W at a time; a pair that the query culls is an end, a pair
-/// of leaves hands its primitives to the query, any other is replaced by two pairs, or by four.
+/// The loop over two hierarchies. Pairs of nodes are tested W at a time. A pair that the query
+/// culls is not descended. A pair of leaves passes its primitives to the query. Any other pair is
+/// replaced by the pairs of one node with the other's children, or by all pairs of children.
 ///
-/// Started from the two roots it is the recursive algorithm, depth first up to W - 1 pairs; else it
-/// visits entries of a front, as the front wants, and keeps it up to date. Volume, query, counter,
-/// width and front are template parameters; nothing here knows which.
+/// Started from the two roots it is the recursive algorithm, depth first up to W - 1 pairs. Started
+/// from a front it tests the entries that the front names, in the front's order, and keeps the
+/// front up to date. Volume, query, counter, width and front are template parameters; fan-out and
+/// frame are the bodies'. The loop depends on none of them.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +20,8 @@
 
 namespace bvlab {
 
-/// One run. What is public is for fronts to sweep with; a bool says whether the query has had
-/// enough. B is the scalar or batch, of W lanes, that volumes are tested in.
+/// One run. The public members are for sweeps of fronts; those that return bool return whether the
+/// query is satisfied. B is the scalar or batch, of W lanes, in which volumes are tested.
 template <class B, class V, class Query, class Counter, class Front>
 class Traversal : public TraversalSteps<B, V, Query, Counter, Front> {
   using Steps = TraversalSteps<B, V, Query, Counter, Front>;
@@ -30,38 +32,38 @@ class Traversal : public TraversalSteps<B, V, Query, Counter, Front> {
   using typename Steps::Node;
 
   TraversalStatistics run() {
-    bool enough = wants_bound<Query>() && !front_.witnessed() && find_first_bound(*this);
-    enough = enough || front_.sweep(*this);
-    while (!open_.empty() && !enough) enough = look_at_open();
-    enough = enough || flush();
+    bool satisfied = wants_bound<Query>() && !front_.witnessed() && find_first_bound(*this);
+    satisfied = satisfied || front_.sweep(*this);
+    while (!open_.empty() && !satisfied) satisfied = look_at_open();
+    satisfied = satisfied || flush();
     while (!open_.empty()) front_.add(open_.pop(), Seen::not_yet, 0);
-    front_.finish(held_.witness(), enough);
-    return {!enough, tests_, held_.tested()};
+    front_.finish(held_.witness(), satisfied);
+    return {!satisfied, tests_, held_.tested()};
   }
 
-  /// Looks at the entries in slots slot(0), slot(1), ..., and below them as far as that fills whole
-  /// batches.
+  /// Tests the entries in slots slot(0), slot(1), ..., and descends below them as far as that fills
+  /// whole batches.
   template <class Slot>
   bool look_at(std::size_t count, Slot&& slot) {
-    bool enough = false;
-    for (std::size_t next = 0, some; next < count && !enough; next += some) {
+    bool satisfied = false;
+    for (std::size_t next = 0, some; next < count && !satisfied; next += some) {
       some = std::min(W, count - next);
-      enough = look_at_entries(some, [&](std::size_t i) { return slot(next + i); });
-      enough = enough || fill_batches();
+      satisfied = look_at_entries(some, [&](std::size_t i) { return slot(next + i); });
+      satisfied = satisfied || fill_batches();
     }
-    return enough;
+    return satisfied;
   }
-  /// Looks at one entry and tests its primitives: most often a witness settles the matter.
+  /// Tests one entry and its primitives at once: most often a witness decides the query.
   bool look_at_alone(std::size_t slot) {
     return look_at_entries(1, [slot](std::size_t) { return slot; }) || flush();
   }
   bool fill_batches() {
-    bool enough = false;
-    while (open_.size() >= W && !enough) enough = look_at_open();
-    return enough;
+    bool satisfied = false;
+    while (open_.size() >= W && !satisfied) satisfied = look_at_open();
+    return satisfied;
   }
 
-  /// A pair that is no entry has been looked at and was not culled.
+  /// Descends below a pair that is no entry and is known not to be culled.
   void enter(const NodePair& pair) {
     open_.reserve(4);
     batch_.put(0, pair);
@@ -75,7 +77,7 @@ class Traversal : public TraversalSteps<B, V, Query, Counter, Front> {
     return look(
         count, mask,
         [&](std::size_t i, Seen seen, double gap) {
-          front_.stays(slot(i), seen, gap);
+          front_.keep(slot(i), seen, gap);
           return static_cast<std::size_t>(slot(i));
         },
         [&](std::size_t i) { front_.open(slot(i)); });
@@ -92,8 +94,8 @@ class Traversal : public TraversalSteps<B, V, Query, Counter, Front> {
         [this](std::size_t i, Seen seen, double gap) { return front_.add(batch_[i], seen, gap); };
   }
 
-  /// `keep` makes the pair in a lane an entry, or leaves it one, and says in which slot; `replace`
-  /// is told that it is none.
+  /// `keep` makes the pair in a lane an entry, or leaves it one, and returns its slot; `replace` is
+  /// called if the pair is replaced by its children.
   template <class Keep, class Replace>
   [[gnu::always_inline]] bool look(std::size_t count, std::uint64_t culled, Keep&& keep,
                                    Replace&& replace) {
@@ -111,7 +113,7 @@ class Traversal : public TraversalSteps<B, V, Query, Counter, Front> {
     return held_.full() && flush();
   }
 
-  /// Of two leaves the primitives are held; any others are replaced.
+  /// Holds the primitives of two leaves; replaces any other pair by its children.
   template <class Keep, class Replace>
   [[gnu::always_inline]] void open_up(std::size_t i, Keep&& keep, Replace&& replace) {
     const NodePair pair = batch_[i];
@@ -125,17 +127,37 @@ class Traversal : public TraversalSteps<B, V, Query, Counter, Front> {
   }
 };
 
-/// Asks the query of two bodies, from a front, which is kept up to date and stays a partition also
-/// where the query ends the run. Says what that cost, and whether everything was seen.
+namespace detail {
+
+/// The placement of a in the frame of b, if volumes are tested there; null in the world frame. It
+/// lies in the workspace and is valid until the next call.
+template <class V>
+const bvlab::PlacementOf<V>* placement_in_b(Body<V>& a, Body<V>& b, Workspace& workspace) {
+  if constexpr (PlacedRelatively<V>)
+    if (a.frame() == Frame::body) {
+      auto& placement = workspace.template scratch<bvlab::PlacementOf<V>>();
+      placement = relative_placement<V>(RelativePose(a.orthonormal_pose(), b.orthonormal_pose()),
+                                        a.hierarchy().extent().reach);
+      return &placement;
+    }
+  return nullptr;
+}
+
+}  // namespace detail
+
+/// Runs the query of two bodies from a front. The front is kept up to date and stays a partition
+/// even if the query ends the run early. Returns what that cost, and whether the run was complete.
 template <class B, class V, class Query, class Counter, class Front>
 TraversalStatistics traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
                              Workspace& workspace, Front&& front) {
   using Run = Traversal<B, V, Query, Counter, std::remove_reference_t<Front>>;
   static_assert(TrackedFront<std::remove_cvref_t<Front>, Run>);
-  return Run(a, b, query, counter, workspace, front).run();
+  static_assert(!requires { front.stays(std::size_t(), Seen::culled, 0.0); },
+                "TrackedFront::stays is named keep: as it is, nothing would call it");
+  return Run(a, b, detail::placement_in_b(a, b, workspace), query, counter, workspace, front).run();
 }
 
-/// The same from the two roots, with nothing kept.
+/// The same from the two roots, without a front.
 template <class B, class V, class Query, class Counter>
 TraversalStatistics traverse_from_roots(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
                                         Workspace& workspace) {

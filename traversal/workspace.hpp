@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Room that is used again from one traversal to the next, for all pairs of bodies.
+/// Buffers that one traversal leaves to the next, for all pairs of bodies.
 #pragma once
 
 #include <any>
@@ -16,10 +16,10 @@ struct Workspace {
   OpenPairs open;
   std::vector<Candidate> pending;
 
-  /// What a front needs while it is swept and no longer: one object of each type that is asked for,
-  /// as it was left.
+  /// Scratch space that a front needs only during its sweep: one object of each type T, in the
+  /// state in which it was left.
   template <class T>
-  T& room() {
+  T& scratch() {
     for (std::any& each : rooms)
       if (T* found = std::any_cast<T>(&each)) return *found;
     return rooms.emplace_back().emplace<T>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Whole scenes: see world_of.hpp for what they cost and offer.
+/// A scene of many moving bodies. See world_of.hpp for its interface and its cost.
 #pragma once
 
 #include <span>
@@ -13,13 +13,13 @@
 
 namespace bvlab {
 
-/// `World(shapes)`, of `Recommended::Shape`, is what is best where nothing is known; meshes and
-/// hierarchies must outlive it. Any others by what their pairs are:
+/// `World(shapes)`, of `Recommended::Shape`, is the recommended configuration; meshes and
+/// hierarchies must outlive it. Any other is named by the type of its pairs:
 /// `World<StrategyPairs<Bodies<B, V>, Strategy>>({shapes, strategy})`.
 template <class Pairs = Recommended::Pairs, class Method = Auto<float, Closed>>
 class World : public WorldOf<Pairs, Method> {
  public:
-  /// What is not there yet may be moved into the scene later, and taken out again.
+  /// The scene is empty at first. Bodies enter it when they are moved, and can be taken out again.
   explicit World(std::type_identity_t<Pairs> pairs, int threads = 1)
       : WorldOf<Pairs, Method>(std::move(pairs), threads) {}
   explicit World(std::span<const Recommended::Shape> shapes,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The corners of W triangles from anywhere, one triangle a lane: nine numbers each, loaded four at
-/// a time and transposed in registers. Cost: about 3 ns a triangle less than number by number.
+/// Gathers the corners of W triangles from anywhere into batches, one triangle a lane: nine numbers
+/// each, loaded four at a time and transposed in registers. Cost: about 3 ns a triangle less than
+/// number by number.
 #pragma once
 
 #include <cstring>
@@ -17,7 +18,7 @@ template <class T, int W>
 struct LanesOf {
   using type [[gnu::vector_size(sizeof(T) * W)]] = T;
 };
-/// W numbers, only to be moved and converted.
+/// W numbers, which are only moved and converted.
 template <class T, int W>
 using Lanes = typename LanesOf<T, W>::type;
 
@@ -47,7 +48,7 @@ template <int W, int P, int Q, int kPairs>
   (std::make_integer_sequence<int, W>{});
 }
 
-/// Four numbers from each of W rows; `column[c]` has the c-th of every row.
+/// Reads four numbers from each of W rows; `column[c]` gets the c-th of every row.
 template <int W>
 [[gnu::always_inline]] inline void transpose_four(const double* const* rows, int offset,
                                                   Lanes<double, W>* column) {
@@ -75,7 +76,7 @@ template <int W>
   column[3] = mixed<W, 2, 3, 0>(odd_01, odd_23);
 }
 
-/// The nine numbers of 8 triangles.
+/// The nine coordinates of 8 triangles, one batch for each coordinate.
 [[gnu::always_inline]] inline void transpose_corners(const Triangle* const* triangles,
                                                      Lanes<double, 8>* column) {
   const double* rows[8];
@@ -96,7 +97,7 @@ template <class S, class L>
 
 static_assert(sizeof(Triangle) == 9 * sizeof(double));
 
-/// One corner after the other, one pair a lane, rounded to the element of S.
+/// The corners of W triangles, one triangle a lane, rounded to the element of S.
 template <Batched S>
 [[gnu::always_inline]] inline Corners<S> gathered(const Triangle* const* triangles) {
   using T = Element<S>;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// THE list of precisions: how much arithmetic a verdict on two triangles is given, and which kind
-/// of error that can make. Every cheaper level errs on one side only.
+/// THE list of precisions: how much arithmetic decides whether two triangles touch, and which
+/// errors that allows. Every cheaper level errs on one side only.
 #pragma once
 
 #include <string_view>
@@ -20,7 +20,7 @@ struct Exact {
 struct Float64 {
   static constexpr std::string_view name = "float64";
   static constexpr std::string_view description =
-      "float64 filter alone: what it cannot tell apart is called touching, so no contact is missed";
+      "float64 filter alone: pairs it cannot decide count as touching, so no contact is missed";
   using Number = double;
   static constexpr bool has_fallback = false;
 };
@@ -28,8 +28,8 @@ struct Float64 {
 struct Float32 {
   static constexpr std::string_view name = "float32";
   static constexpr std::string_view description =
-      "corners rounded to float32, float32 throughout: what it cannot tell apart is called "
-      "touching, so no contact is missed";
+      "corners rounded to float32, float32 throughout: pairs it cannot decide count as touching, "
+      "so no contact is missed";
   using Number = float;
   static constexpr bool has_fallback = false;
 };

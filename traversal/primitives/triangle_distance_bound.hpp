@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A lower bound on the distance of two closed triangles, W pairs at a time, hardly below it where
-/// they are apart: most candidates for the nearest pair are dismissed by it, and only the others
-/// need `distance`. Cost: about a tenth of one.
+/// A lower bound on the distance of two closed triangles, for W pairs at a time, hardly below the
+/// distance where they are apart. Most candidates for the nearest pair are dismissed by it, and
+/// only the others need `distance`. Cost: about a tenth of one.
 ///
 /// The bound is the least over the same 33 candidates as in triangle_distance.hpp, in float64, each
 /// lowered by what rounding can have raised it, and 0 unless the first stage is certain that the
@@ -21,12 +21,12 @@
 ///   to the way, and the square of the distance grows by at most min(|e|, |f|)^2 sin^2. The sine as
 ///   computed is off by less than 8 u.
 /// The latter two may add up for one candidate: the larger is taken twice.
-/// Range: no number is above 2^100, so that products of six differences are finite. Edges may be as
-/// short as they like, and what is made of their squares underflows: where |e|^2 |f|^2 is below
-/// 2^-800 the two are not crossed either, and to leave that out raises the square of the distance
-/// by less than min(|e|, |f|)^2 < 2^-399. Else |n|^2 is above 2^-840 where it counts. A point on an
-/// edge whose square underflows stands anywhere between its ends, which adds less than 2^-399, too,
-/// or is covered by the rounding of w.
+/// Range: no number is above 2^100, so that products of six differences are finite. Edges may be
+/// arbitrarily short, and products of their squares underflow: where |e|^2 |f|^2 is below 2^-800
+/// the two are not crossed either, and to leave that out raises the square of the distance by less
+/// than min(|e|, |f|)^2 < 2^-399. Else |n|^2 is above 2^-840 where it counts. A point on an edge
+/// whose square underflows lies anywhere between its ends, which adds less than 2^-399, too, or is
+/// covered by the rounding of w.
 #pragma once
 
 #include "traversal/primitives/triangle_filter.hpp"
@@ -62,7 +62,7 @@ class DistanceBound {
                                 negative(edges_b.vector[j]), edges_b.square[j],
                                 edges_b.over_square[j], edges_b.size[j]);
     for (int i = 0; i < 3; ++i) {
-      // The face's directions from its first corner: its first edge, and its last one turned.
+      // The face's directions from its first corner: its first edge, and its last one reversed.
       crossing<Inside::face>(w_[i][0], w_size_[i][0], edges_b.vector[0], edges_b.square[0],
                              edges_b.over_square[0], edges_b.size[0], negative(edges_b.vector[2]),
                              edges_b.square[2], edges_b.over_square[2], edges_b.size[2]);
@@ -106,7 +106,8 @@ class DistanceBound {
     square_ = min(square_, square - S(8 * u) * (rounding * rounding));
   }
 
-  /// From an edge's begin to a corner leads w (times `way`), from its end `at_end`.
+  /// Offers the distance between a corner and edge j. `w` leads from the edge's begin to the corner
+  /// (times `way`), `at_end` from its end.
   [[gnu::always_inline]] void corner_edge(const Vector<S>& w, const S& size,
                                           const Vector<S>& at_end, const S& size_at_end,
                                           const Edges& edges, int j, const S& way) {
@@ -114,7 +115,7 @@ class DistanceBound {
     const S s = way * dot<S>(w, e) * edges.over_square[j];
     const S step = way * s;
     const Vector<S> r = {w[0] - step * e[0], w[1] - step * e[1], w[2] - step * e[2]};
-    // So written that an edge without length is its begin.
+    // Written so that an edge of length zero is its begin.
     const Mask<S> inner = s > S(0), behind = s >= S(1);
     const S inner_size = size + 2 * abs(s) * edges.size[j];
     const S square =
@@ -122,7 +123,7 @@ class DistanceBound {
     offer(square, pick<S>(behind, size_at_end, pick<S>(inner, inner_size, size)));
   }
 
-  /// The least of w - s e - t f, where that is inside or nearly so.
+  /// Offers the least |w - s e - t f|, if its s and t are inside, or nearly so.
   template <Inside kInside>
   [[gnu::always_inline]] void crossing(const Vector<S>& w, const S& w_size, const Vector<S>& e,
                                        const S& e_square, const S& over_e_square, const S& e_size,
@@ -159,7 +160,7 @@ class DistanceBound {
 
 }  // namespace filter
 
-/// At most the distance of each pair; 0 where rounding leaves it open whether they touch.
+/// At most the distance of each pair; 0 where rounding leaves open whether they touch.
 template <Scalar S>
 S distance_bound(const Corners<S>& a, const Corners<S>& b) {
   using namespace filter;

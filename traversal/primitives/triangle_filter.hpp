@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What rounded arithmetic can say for certain about two closed triangles, written once over S.
+/// Decides by rounded arithmetic whether two closed triangles touch, except where rounding leaves
+/// the question open. Written once for any scalar or batch S.
 ///
 /// All signs taken are those of determinants of three difference vectors between corners of the
 /// pair, so one bound, computed once a pair from the box of all six corners, serves them all.
 ///
-/// The bound. Let W_x, W_y, W_z be the sides of that box, u the unit roundoff, and D_x the most by
-/// which a computed difference of x coordinates is wrong: u W_x for its own rounding, and 2 u M_x
+/// The bound. Let W_x, W_y, W_z be the sides of that box, u the unit roundoff, and D_x the largest
+/// error of a computed difference of x coordinates: u W_x for its own rounding, and 2 u M_x
 /// more where the corners themselves were rounded to S first (M_x their largest |x|).
-/// A determinant is the sum of six products of a difference along each axis. Wrong differences
+/// A determinant is the sum of six products of a difference along each axis. Errors of differences
 /// change it by at most 6 (D_x W_y W_z + W_x D_y W_z + W_x W_y D_z) to first order. On its way to
 /// the result each product is rounded at most five times (twice multiplied, thrice added):
 /// 6 * 5 u W_x W_y W_z. Without rounded corners that is 48 u W_x W_y W_z. The factors of 49 / 48,
@@ -16,7 +17,7 @@
 /// minors are then multiplied by at most W; so do the products in the bound itself: 32 h max(W, 1)
 /// is more than their sum. Overflow: nothing is certain unless every W is below a reach R with 6
 /// R^3 still finite. A corner beyond S is infinite when it has been rounded: then the bound is
-/// infinite or no number, and all that is certain is what boxes say, since rounding keeps order.
+/// infinite or NaN, and only boxes decide, since rounding keeps order.
 #pragma once
 
 #include <array>
@@ -32,7 +33,7 @@ namespace bvlab {
 template <Scalar S>
 using Corners = std::array<std::array<S, 3>, 3>;
 
-/// Whether the corners stand in S as they were given, or were rounded to it.
+/// Whether the corners are given in S, or were rounded to S.
 enum class CornersAre { given, rounded };
 
 namespace filter {
@@ -40,7 +41,7 @@ namespace filter {
 using std::abs;
 using stdx::abs;
 
-// Whole registers travel between these small functions, so each of them is inlined for certain.
+// Always inlined, since whole registers are passed between these small functions.
 
 /// `condition ? yes : no`, lane by lane.
 template <Scalar S>
@@ -53,7 +54,7 @@ template <Scalar S>
   }
 }
 
-// By value, so that one instruction and no branch comes of it.
+// By value, so that this compiles to one instruction and no branch.
 template <Scalar S>
 [[gnu::always_inline]] inline S min(S x, S y) {
   if constexpr (Batched<S>)
@@ -103,7 +104,7 @@ template <Scalar S>
 }
 
 /// Whether the boxes are apart (a comparison of corners, hence exact, and true of the given corners
-/// if it is true of rounded ones), and how wrong a determinant can be.
+/// if it is true of rounded ones), and the error bound of a determinant.
 template <Scalar S, CornersAre corners>
 struct BoxAndBound {
   Mask<S> apart;
@@ -142,7 +143,7 @@ struct BoxAndBound {
   }
 };
 
-/// Determinants that tell on which side of the plane of `t` three points lie.
+/// Determinants whose signs are the sides of the plane of `t` on which three points lie.
 template <Scalar S>
 [[gnu::always_inline]] inline Vector<S> sides_of(const Corners<S>& t, const Corners<S>& points) {
   const Vector<S> normal = cross<S>(t[1] - t[0], t[2] - t[0]);
@@ -161,14 +162,14 @@ template <Scalar S>
   return min(min(abs(sides[0]), abs(sides[1])), abs(sides[2])) > bound;
 }
 
-/// The corners turned so that the first is alone on its side; `above` says whether that is the
-/// positive one. For known sides, not all the same.
+/// The corners rotated so that the first is alone on its side; `above`: that side is the positive
+/// one. For known sides, not all the same.
 template <Scalar S>
-struct Turned {
+struct Rotated {
   Vector<S> apex, next, last;
   Mask<S> above;
 
-  [[gnu::always_inline]] Turned(const Corners<S>& t, const Vector<S>& sides) {
+  [[gnu::always_inline]] Rotated(const Corners<S>& t, const Vector<S>& sides) {
     const Mask<S> p0 = sides[0] > 0, p1 = sides[1] > 0, p2 = sides[2] > 0;
     const Mask<S> last_alone = !(p0 ^ p1), next_alone = !(p0 ^ p2);
     apex = choose<S>(last_alone, t[2], choose<S>(next_alone, t[1], t[0]));
@@ -188,11 +189,12 @@ struct Certainly {
 
 namespace filter {
 
-/// What the signs of determinants tell, given what the boxes do and how wrong a determinant is.
+/// What the signs of determinants decide, given whether the boxes are apart and the error bound.
 template <Scalar S>
-[[gnu::always_inline]] inline Certainly<S> told_by_signs(const Corners<S>& a, const Corners<S>& b,
-                                                         const Mask<S>& boxes_apart,
-                                                         const S& bound) {
+[[gnu::always_inline]] inline Certainly<S> decided_by_signs(const Corners<S>& a,
+                                                            const Corners<S>& b,
+                                                            const Mask<S>& boxes_apart,
+                                                            const S& bound) {
   Certainly<S> verdict{boxes_apart, Mask<S>(false)};
   if (everywhere<S>(verdict.apart)) return verdict;
   const Vector<S> sides_b = sides_of<S>(a, b);
@@ -204,7 +206,7 @@ template <Scalar S>
   if (everywhere<S>(verdict.apart | !known)) return verdict;
   // The planes cross in a line from which each triangle cuts an interval. With each apex above the
   // other's plane, they overlap unless one of two determinants is positive [guigue2003fast].
-  Turned<S> p(a, sides_a), s(b, sides_b);
+  Rotated<S> p(a, sides_a), s(b, sides_b);
   const Vector<S> q = choose<S>(s.above, p.next, p.last), r = choose<S>(s.above, p.last, p.next);
   const Vector<S> t = choose<S>(p.above, s.next, s.last), w = choose<S>(p.above, s.last, s.next);
   const S first = dot<S>(cross<S>(t - q, s.apex - q), p.apex - q);
@@ -216,24 +218,23 @@ template <Scalar S>
 
 }  // namespace filter
 
-/// Neither is set where rounding leaves the question open.
+/// Decides pairs by rounded arithmetic. Neither mask is set where rounding leaves the question
+/// open.
 template <Scalar S, CornersAre corners = CornersAre::given>
 [[gnu::always_inline]] inline Certainly<S> certainly(const Corners<S>& a, const Corners<S>& b) {
   const filter::BoxAndBound<S, corners> box(a, b);
-  return filter::told_by_signs<S>(a, b, box.apart, box.bound);
+  return filter::decided_by_signs<S>(a, b, box.apart, box.bound);
 }
 
-/// The same of triangles whose corners lie within `off` of those given, in each coordinate: a
-/// difference of coordinates is off by 2 off, and by its own rounding; what follows from that is
-/// said above.
+/// The same for triangles whose corners lie within `off` of those given, in each coordinate. A
+/// difference of coordinates is off by 2 off, and by its own rounding; the bound follows as above.
 template <Scalar S>
 [[gnu::always_inline]] inline Certainly<S> certainly_within(const Corners<S>& a,
                                                             const Corners<S>& b, const S& off) {
   using namespace filter;
   using T = Element<S>;
   constexpr T u = unit_roundoff<S>;
-  // More than what underflows can lose, and quick: products of numbers that are not normal take
-  // microcode.
+  // Covers underflow, and is fast: products of subnormal numbers take microcode.
   constexpr T tiny = std::numeric_limits<T>::min();
   constexpr T reach = sizeof(T) == 8 ? T(0x1p340) : T(0x1p41);
   S side[3], wrong[3];
@@ -247,6 +248,9 @@ template <Scalar S>
     // Differences round, but not across `twice`, which is a number of S.
     apart = apart | (low_b - high_a > twice) | (low_a - high_b > twice);
     side[i] = max(high_a, high_b) - min(low_a, low_b);
+  }
+  if (everywhere<S>(apart)) return {apart, Mask<S>(false)};
+  for (int i = 0; i < 3; ++i) {
     wrong[i] = twice + u * side[i] + tiny;
     side[i] = side[i] + wrong[i];
   }
@@ -256,7 +260,7 @@ template <Scalar S>
                             (30 * u) * ((side[0] * side[1]) * side[2])) +
             tiny * longest;
   bound = pick<S>(longest < S(reach), bound, S(std::numeric_limits<T>::infinity()));
-  return told_by_signs<S>(a, b, apart, bound);
+  return decided_by_signs<S>(a, b, apart, bound);
 }
 
 }  // namespace bvlab

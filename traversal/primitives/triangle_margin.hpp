@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How far two closed triangles can be moved, in any way, before the verdict on whether they share
-/// a point can change: if every point of one moves by less than the margin relative to every point
-/// of the other, it cannot. In float, for up to eight pairs at once.
+/// The margin of a verdict on two closed triangles: how far they can be moved, in any way, before
+/// the verdict on whether they share a point can change. While every point of one moves by less
+/// than the margin relative to every point of the other, the verdict holds. In float, for up to
+/// eight pairs at once.
 ///
 /// Apart: the margin is the distance. Every direction n proves a distance of (least n.q - greatest
 /// n.p) / |n|; tried are the two normals and the vector between the nearest points of the nearest
@@ -27,7 +28,7 @@
 /// - its product with a third, |x| < 3.5, is off by 56u |x| + 3u |n||x| + u |n||x| < 196u + 14u
 /// |n|,
 ///   where |n| <= 12: less than 364u.
-/// `slack` = 512u pays for the last, and 64u |n| for the first, each with room for 3.6u |n| of
+/// `slack` = 512u covers the last, and 64u |n| for the first, each with room for 3.6u |n| of
 /// the rounded corners and for the roots and quotients, which are off by a factor of 1 - 8u. What
 /// divides has a square above 2^-40, so that it is a normal number and known to a few hundred u.
 ///
@@ -67,7 +68,7 @@ template <class S>
   return sqrt(x);
 }
 
-/// How far the triangles are apart at least, as direction n proves.
+/// A lower bound on the distance of the triangles, by their projections on direction n.
 template <Scalar S>
 [[gnu::always_inline]] inline S apart_along(const Vector<S>& n, const Corners<S>& a,
                                             const Corners<S>& b) {
@@ -85,7 +86,7 @@ template <Scalar S>
   return min(max(x, S(0)), S(1));
 }
 
-/// The vector between the nearest points of the nearest two edges, about.
+/// Approximately the vector between the nearest points of the nearest two edges.
 template <Scalar S>
 [[gnu::always_inline]] inline Vector<S> between_edges(const Corners<S>& a, const Corners<S>& b) {
   constexpr float least = 0x1p-60f;
@@ -118,7 +119,7 @@ template <Scalar S>
   return nearest;
 }
 
-/// Of triangles that are apart; not positive if they are not.
+/// The margin of triangles that are apart; not positive if they are not.
 template <Scalar S>
 [[gnu::always_inline]] inline S apart(const Corners<S>& a, const Corners<S>& b) {
   const S edges = apart_along<S>(between_edges<S>(a, b), a, b);
@@ -127,14 +128,15 @@ template <Scalar S>
   return max(edges, max(face_a, face_b));
 }
 
-/// 1 / |n| at most; 0 where that is not known.
+/// At most 1 / |n|; 0 where that is not known.
 template <Scalar S>
 [[gnu::always_inline]] inline S over_norm(const Vector<S>& n) {
   const S square = dot<S>(n, n);
   return pick<S>(square > S(0x1p-40f), S(1 - 8 * u) / (root(square) + S(64 * u)), S(0));
 }
 
-/// By the crossing of `t` by the edges of `edges`; not positive where there is none for certain.
+/// The margin that an edge of `edges` crossing `t` gives; not positive where no edge does for
+/// certain.
 template <Scalar S>
 [[gnu::always_inline]] inline S crossed(const Corners<S>& t, const Corners<S>& edges) {
   const Vector<S> normal = cross<S>(t[1] - t[0], t[2] - t[0]);
@@ -153,14 +155,15 @@ template <Scalar S>
       left = min(left, (side - S(slack)) * inverse);
       right = min(right, (-side - S(slack)) * inverse);
     }
-    // The line passes all three edges on the same side.
+    // The line passes all three edges of t on the same side.
     least = min(least, max(left, right));
     best = max(best, least);
   }
   return best - S(8 * u);
 }
 
-/// Of triangles of which an edge crosses the other for certain; else not positive.
+/// The margin of triangles one of which has an edge that crosses the other for certain; else not
+/// positive.
 template <Scalar S>
 [[gnu::always_inline]] inline S crossing(const Corners<S>& a, const Corners<S>& b) {
   return max(crossed<S>(a, b), crossed<S>(b, a));
@@ -170,16 +173,16 @@ using Four [[gnu::vector_size(32)]] = double;
 using FourWords [[gnu::vector_size(32)]] = std::int64_t;
 using FourFloats [[gnu::vector_size(16)]] = float;
 
-/// x y z and anything: the i-th corner.
+/// The i-th corner as x, y, z and an arbitrary fourth number.
 [[gnu::always_inline]] inline Four corner(const Triangle& t, int i) {
-  // The last one is read from one before, not beyond the triangle.
+  // The last corner is read from one number before it, to stay inside the triangle.
   const double* const first = t[0].data() + 3 * i - (i == 2);
   Four four;
   std::memcpy(&four, first, sizeof four);
-  return i == 2 ? __builtin_shuffle(four, FourWords{1, 2, 3, 3}) : four;
+  return i == 2 ? __builtin_shufflevector(four, four, 1, 2, 3, 3) : four;
 }
 
-/// Corners relative to the first, divided by a power of two, one pair a lane.
+/// The corners of W pairs relative to the first corner, divided by a power of two, one pair a lane.
 template <int W>
 struct Scaled {
   using S = Batch<float, W>;
@@ -198,13 +201,13 @@ struct Scaled {
       }
   }
 
-  /// Four numbers for each corner to `row`; what they were divided by, or 0 where they are too
-  /// large or too small for that.
+  /// Writes four numbers for each corner to `row`. Returns what they were divided by, or 0 where
+  /// they are too large or too small for that.
   [[gnu::always_inline]] static double scaled(const Triangle& p, const Triangle& q, float* row) {
     const Four origin = corner(p, 0);
     Four x[6];
     for (int i = 0; i < 3; ++i) x[i] = corner(p, i) - origin, x[3 + i] = corner(q, i) - origin;
-    // Compared as integers, which is the same without the sign.
+    // Compared as integers, which gives the same order without the sign.
     constexpr std::int64_t all = std::numeric_limits<std::int64_t>::max();
     FourWords most{};
     for (const Four& corner : x) {
@@ -228,9 +231,9 @@ struct Scaled {
 using TriangleTest = std::uint64_t (*)(const Triangle* const* a, const Triangle* const* b,
                                        int count);
 
-/// The same together with their margins. Few are left to `test`: what has a margin is certain.
-// Everything in it is to be inlined, by force: GCC gives up on functions of this length.
-// And a template, so that a program can compile it once (extern template).
+/// The same, with the margins of the pairs. Few pairs are left to `test`: a margin decides a pair.
+// Flattened, because GCC does not inline everything into a function of this length. A template, so
+// that a program can compile it once (extern template).
 template <class = double>
 [[gnu::flatten]] std::uint64_t touching_with_margins(const Triangle* const* a,
                                                      const Triangle* const* b, int count,
@@ -242,7 +245,7 @@ template <class = double>
     const int used = std::min(width, count - first);
     const margin::Scaled<width> pairs(a + first, b + first, used);
     const std::uint64_t all = (std::uint64_t{1} << used) - 1;
-    // What is no number is no margin.
+    // NaN counts as no margin.
     const S apart = margin::apart<S>(pairs.a, pairs.b);
     std::uint64_t open = ~bits(apart > S(0)) & all;
     S margin = apart;
@@ -264,7 +267,7 @@ template <class = double>
   return touching;
 }
 
-/// Margins of those pairs (*a[i], *b[i]), i < count, of which an edge of one crosses the other for
+/// Margins of those pairs (*a[i], *b[i]), i < count, in which an edge of one crosses the other for
 /// certain; not positive for all others.
 template <class = double>
 [[gnu::flatten]] void crossing_margins(const Triangle* const* a, const Triangle* const* b,

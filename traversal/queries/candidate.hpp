@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Two primitives whose leaves could not be told apart, waiting to be tested.
+/// Two primitives whose leaves overlap, held until they are tested; and what queries find out about
+/// them.
 #pragma once
 
 #include <algorithm>
@@ -16,31 +17,31 @@ struct Candidate {
   const Triangle* triangle_a;  ///< in the world
   const Triangle* triangle_b;
   std::uint32_t a, b;  ///< their indices in their meshes
-  std::size_t slot;    ///< of the front's entry they come from, where a front is kept
+  std::size_t slot;    ///< of the front's entry they come from, if there is a front
 };
 
-/// How queries are asked; each takes of it what concerns it.
+/// The options of all queries; each uses those that concern it.
 struct QueryOptions {
   TriangleTest test = intersect_batch<Exact>;
   double relative_error = 0;  ///< of distances
 };
 
-/// What a query made of candidates.
+/// What a query found among candidates.
 struct Outcome {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
-  std::size_t witness = none;  ///< the one worth testing first next time, by its index
-  bool enough = false;         ///< the traversal can end here
+  std::size_t witness = none;  ///< the index of the one to test first in the next run
+  bool satisfied = false;      ///< the query is satisfied: the traversal can stop
 };
 
-/// What is known of a candidate that was tested: how far its triangles can be moved, relative to
-/// each other, before that can change (see triangle_margin.hpp).
+/// The verdict on a tested candidate, and its margin: how far the triangles can be moved, relative
+/// to each other, before the verdict can change (see triangle_margin.hpp).
 struct Verdict {
   double margin = -1;  ///< negative: it was not tested
   bool hit = false;    ///< they share a point
 };
 
-/// Calls `hit(i)` for each candidate whose triangles share a point, in order, until it says to
-/// stop; gives the index at which it did, or their number.
+/// Calls `hit(i)` for each candidate whose triangles share a point, in order, until it returns
+/// true. Returns the index at which it did, or the number of candidates.
 template <class Hit>
 std::size_t for_each_hit(std::span<const Candidate> pending, TriangleTest test, Hit&& hit) {
   constexpr std::size_t at_once = 16;
@@ -60,8 +61,8 @@ std::size_t for_each_hit(std::span<const Candidate> pending, TriangleTest test, 
 
 constexpr std::size_t verdicts_at_once = 16;
 
-/// Gives each candidate its verdict, 16 at a time, and calls `block(first, count, hits)` for those,
-/// bit i of `hits` being the verdict on candidate `first + i`, until it says to stop.
+/// Gives each candidate its verdict, 16 at a time. After each block calls `block(first, count,
+/// hits)`, bit i of `hits` being the verdict on candidate `first + i`, until it returns true.
 template <class Block>
 void with_margins(std::span<const Candidate> pending, std::span<Verdict> verdicts,
                   TriangleTest test, Block&& block) {

@@ -14,7 +14,7 @@
 
 namespace bvlab {
 
-/// Triangle of the first mesh, triangle of the second.
+/// The indices of a triangle of the first mesh and one of the second.
 using Contact = std::array<std::uint32_t, 2>;
 
 class Contacts {
@@ -28,7 +28,7 @@ class Contacts {
   explicit Contacts(std::vector<Contact>& found, TriangleTest test = intersect_batch<Exact>)
       : test_(test), found_(found) {}
 
-  static Contacts asked(const QueryOptions& options, std::vector<Contact>& found) {
+  static Contacts from_options(const QueryOptions& options, std::vector<Contact>& found) {
     return Contacts(found, options.test);
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// How far apart are the two surfaces? 0 where they touch.
 ///
-/// A pair of volumes is left alone once its gap cannot make the answer smaller by more than the
+/// A pair of volumes is culled once its gap cannot make the answer smaller by more than the
 /// relative error allowed (quinlan1994efficient): the answer d satisfies D <= d <= (1 + a) D for
 /// the true distance D, up to 2^-45 of it and the rounding of one triangle distance (see
 /// triangle_distance.hpp).
@@ -34,7 +34,9 @@ class Distance {
 
   explicit Distance(double relative_error = 0) : relative_error_(relative_error) {}
 
-  static Distance asked(const QueryOptions& options) { return Distance(options.relative_error); }
+  static Distance from_options(const QueryOptions& options) {
+    return Distance(options.relative_error);
+  }
 
   template <class P>
   auto culls(const P& a, const P& b) const {
@@ -48,7 +50,7 @@ class Distance {
 
   Outcome primitives(std::span<const Candidate> pending) {
     Outcome outcome;
-    for (std::size_t first = 0; first < pending.size() && !outcome.enough; first += at_once) {
+    for (std::size_t first = 0; first < pending.size() && !outcome.satisfied; first += at_once) {
       const std::size_t count = std::min(at_once, pending.size() - first);
       std::array<double, at_once> lower{};
       if (limit_ < std::numeric_limits<double>::infinity()) lower = bounds(&pending[first], count);
@@ -57,20 +59,21 @@ class Distance {
     return outcome;
   }
 
-  /// Margins are distances, rounded down: those that cannot make the answer smaller need no other.
+  /// Margins are distances, rounded down: candidates whose margin cannot make the answer smaller
+  /// are not measured.
   Outcome primitives(std::span<const Candidate> pending, std::span<Verdict> verdicts) {
     Outcome outcome;
     with_margins(pending, verdicts, intersect_batch<Exact>,
                  [&](std::size_t first, std::size_t count, std::uint64_t hits) {
                    if (hits) {
                      const auto i = first + static_cast<std::size_t>(std::countr_zero(hits));
-                     outcome = {.witness = i, .enough = known(pending[i].a, pending[i].b)};
+                     outcome = {.witness = i, .satisfied = known(pending[i].a, pending[i].b)};
                      return true;
                    }
                    std::array<double, verdicts_at_once> lower{};
                    for (std::size_t i = 0; i < count; ++i) lower[i] = verdicts[first + i].margin;
                    look_at(pending, first, std::span(lower).first(count), outcome);
-                   return outcome.enough;
+                   return outcome.satisfied;
                  });
     return outcome;
   }
@@ -80,24 +83,24 @@ class Distance {
     distance_ = limit_ = 0;
     return true;
   }
-  /// Nothing has moved since this was the answer.
-  void stays(double distance) { distance_ = distance; }
+  /// Repeats the last answer; nothing has moved since.
+  void repeat(double distance) { distance_ = distance; }
 
-  /// In units of the meshes; infinity before anything was seen.
+  /// In units of the meshes; infinity before any candidate was tested.
   double distance() const { return distance_; }
   double answer() const { return distance_; }
 
  private:
   static constexpr std::size_t at_once = native_width<double>;
-  /// What is nearer by less than this is taken for as near: the point of a mesh that is nearest is
-  /// most often a corner of six triangles, and most pairs that were looked at would be its own.
+  /// Distances that differ by less than this relative amount count as equal: the nearest point of a
+  /// mesh is most often a corner of six triangles, which would otherwise all be measured.
   static constexpr double alike = 0x1p-45;
 
-  /// Distances in the order of their lower bounds, until the least bound is no longer below what
-  /// is looked for.
+  /// Measures candidates in the order of their lower bounds, until the least bound cannot improve
+  /// the answer.
   void look_at(std::span<const Candidate> pending, std::size_t first, std::span<double> lower,
                Outcome& outcome) {
-    while (!outcome.enough) {
+    while (!outcome.satisfied) {
       const std::size_t i =
           static_cast<std::size_t>(std::min_element(lower.begin(), lower.end()) - lower.begin());
       if (!(lower[i] < limit_)) return;
@@ -108,7 +111,7 @@ class Distance {
       distance_ = d;
       limit_ = std::max(d / (1 + relative_error_) * (1 - alike),
                         std::numeric_limits<double>::denorm_min());
-      outcome = {.witness = first + i, .enough = d == 0};
+      outcome = {.witness = first + i, .satisfied = d == 0};
     }
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What a query has to offer.
+/// The concept of a query.
 #pragma once
 
 #include <concepts>
@@ -11,19 +11,22 @@
 
 namespace bvlab {
 
-/// A query says which pairs of volumes need no further look, and takes the primitives of the rest.
-///   culls(p, q)           a mask over posed volumes p of body a and q of body b; where no bound is
-///                         wanted, a matter of the volumes alone
-///   primitives(pending)   takes one candidate or more; says whether the traversal can end
-///   buffer_size           the most candidates that are held back before `primitives` is called
-///   wants_bound           if there and true: one pair of near leaves is handed over first, near
-///                         pairs are looked at before far ones, and `culls(gap)` says the same
-/// The bvlab program makes it by `asked(options)` and takes `answer()`, true or false or a number;
-/// or makes it by `asked(options, found)`, and it appends pairs of primitives to `found`. And for
-/// strategies that keep margins:
-///   primitives(pending, verdicts)   the same, saying of each candidate what was found
-///   limit()                         surfaces farther apart than this matter to the query no more
-///   known(a, b)                     two triangles still share a point; says whether that is enough
+/// A query decides which pairs of volumes are culled, and tests the primitives of the rest.
+///   culls(p, q)           a mask over posed volumes p of body a and q of body b; unless the query
+///                         wants a bound, it depends on the volumes alone
+///   primitives(pending)   tests one candidate or more; its outcome: is the query satisfied?
+///   buffer_size           the most candidates that are held before `primitives` is called
+///   wants_bound           if present and true: one pair of near leaves is tested first, near pairs
+///                         are tested before far ones, and `culls(gap)` decides the same
+/// The bvlab program makes a query by `from_options(options)` and reads `answer()`, a bool or a
+/// number; or makes it by `from_options(options, found)`, and the query appends pairs of primitives
+/// to `found`.
+///
+/// For strategies that keep margins:
+///   primitives(pending, verdicts)   the same, with a verdict on each candidate
+///   limit()                         surfaces farther apart than this no longer matter to the query
+///   known(a, b)                     two triangles still share a point; returns whether that
+///                                   satisfies the query
 template <class Q, class P>
 concept Query = requires(Q query, const P& p, std::span<const Candidate> pending) {
   { Q::name } -> std::convertible_to<std::string_view>;

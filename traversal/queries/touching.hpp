@@ -21,7 +21,7 @@ class Touching {
 
   explicit Touching(TriangleTest test = intersect_batch<Exact>) : test_(test) {}
 
-  static Touching asked(const QueryOptions& options) { return Touching(options.test); }
+  static Touching from_options(const QueryOptions& options) { return Touching(options.test); }
 
   template <class P>
   auto culls(const P& a, const P& b) const {
@@ -32,21 +32,21 @@ class Touching {
     const std::size_t first = for_each_hit(pending, test_, [](std::size_t) { return true; });
     if (first == pending.size()) return {};
     touching_ = true;
-    return {.witness = first, .enough = true};
+    return {.witness = first, .satisfied = true};
   }
 
-  /// Of several hits the one that lasts longest is the witness.
+  /// Of several hits the one with the largest margin is the witness.
   Outcome primitives(std::span<const Candidate> pending, std::span<Verdict> verdicts) {
     Outcome outcome;
     with_margins(pending, verdicts, test_, [&](std::size_t first, std::size_t, std::uint64_t hits) {
       for (; hits; hits &= hits - 1) {
         const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(hits));
-        if (!outcome.enough || verdicts[i].margin > verdicts[outcome.witness].margin)
-          outcome = {.witness = i, .enough = true};
+        if (!outcome.satisfied || verdicts[i].margin > verdicts[outcome.witness].margin)
+          outcome = {.witness = i, .satisfied = true};
       }
-      return outcome.enough;
+      return outcome.satisfied;
     });
-    touching_ = touching_ || outcome.enough;
+    touching_ = touching_ || outcome.satisfied;
     return outcome;
   }
 

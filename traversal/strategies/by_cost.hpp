@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A separation list that is rebuilt when its upkeep has become more expensive than a rebuild pays
-/// for.
+/// A separation list that is rebuilt when its upkeep has become more expensive than a rebuild.
 ///
 /// A rebuild that finds n leaves of the test tree takes 2n - 1 tests, runs after it n and, as the
 /// list grows and gets out of date, more. As with any machine that wears out, the mean cost of a
@@ -36,19 +35,19 @@ class ByCost {
     return statistics;
   }
 
-  /// Starts again from the roots next time.
+  /// The next run starts from the roots.
   void forget() { front_.clear(); }
 
   const Front& front() const { return front_; }
   std::size_t front_size() const { return front_.size(); }
 
  private:
-  /// Runs that a hit cuts short cost little and can let the list grow: the most entries, for each
-  /// node.
+  /// The most entries for each node of the two hierarchies: runs that a hit cuts short cost little
+  /// and can let the list grow.
   static constexpr std::size_t room = 16;
 
   Front front_;
-  double cost_ = 0, runs_ = 0;  // since the last rebuild, that included
+  double cost_ = 0, runs_ = 0;  // since the last rebuild, including it
   bool worn_out_ = false;
 };
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A front whose entries need not be looked at for a while: each has a deadline on the clock of an
-/// Approach, and until the clock shows that much, nothing below the entry can touch; or, at an
-/// entry whose triangles have been tested, no verdict can have changed.
+/// A front whose entries are not tested before their deadlines. A deadline is a time on the clock
+/// of an approach (relative_motion_bound.hpp). Until the clock shows that time, nothing below the
+/// entry can touch; or, for an entry whose triangles have been tested, no verdict can have changed.
 ///
-/// More precisely, an entry of deadline e stands for surfaces at least e - now apart: those that
-/// are not asked within a limit of l need a look only if e <= now + l. Deadlines lie in an array of
-/// their own, so that those that have passed are found by comparing a whole register at once: 16
-/// entries in two or three instructions, cheaper than any order kept among them while a front has
-/// less than some ten thousand entries, and nothing has to be moved when a deadline changes.
+/// More precisely, an entry of deadline e stands for surfaces at least e - now apart: for a query
+/// with a limit of l, it is due only if e <= now + l. Deadlines lie in an array of their own, and a
+/// whole register of them is compared at once: 16 entries in two or three instructions. That is
+/// cheaper than any order kept among them while a front has less than some ten thousand entries,
+/// and nothing has to be moved when a deadline changes.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 
 namespace bvlab {
 
-/// A pair of triangles found to share a point, which it goes on to do until the deadline.
+/// A pair of triangles that share a point, and go on to do so until the deadline.
 struct KnownHit {
   std::uint32_t slot;
   float deadline;
@@ -30,9 +30,9 @@ struct KnownHit {
 };
 
 /// A float below x, but not by much: half a unit in the last place is lost to the first rounding
-/// and as much to the second; the last term is for what underflows. Of any x: what is beyond the
-/// largest float comes down below it, for an infinite deadline would be no number when something
-/// is taken from it, and would never pass.
+/// and as much to the second; the last term covers underflow. For any x: a value beyond the largest
+/// float comes down below it, since an infinite deadline would become NaN when something is
+/// subtracted from it, and would never pass.
 inline float just_below(double x) {
   const auto y = static_cast<float>(std::min(x, double{std::numeric_limits<float>::max()}));
   return y - std::abs(y) * 0x1p-22f - std::numeric_limits<float>::min();
@@ -67,7 +67,7 @@ class MarginFront {
 
   void open(std::size_t slot) { holes_.push_back(static_cast<std::uint32_t>(slot)); }
 
-  /// Adds an entry and says in which slot. One that has passed is to be looked at.
+  /// Adds an entry and returns its slot. An entry whose deadline has passed is due.
   std::size_t add(const NodePair& pair, double deadline = passed) {
     std::size_t slot = entries_.size();
     if (holes_.empty()) {
@@ -83,25 +83,25 @@ class MarginFront {
   }
 
   void expire_at(std::size_t slot, double deadline) {
-    // Written so that what is no number has passed.
+    // Written so that a deadline of NaN has passed.
     deadlines_[slot] = deadline > passed ? just_below(deadline) : passed;
     earliest_ = std::min(earliest_, deadlines_[slot]);
   }
 
-  /// Not after this, whatever else is said.
+  /// Moves the deadline to an earlier time, never to a later one.
   void expire_by(std::size_t slot, double deadline) {
     const float before = deadlines_[slot];
     expire_at(slot, deadline);
     deadlines_[slot] = std::min(deadlines_[slot], before);
   }
 
-  /// Some that were collected have been given none: the traversal was cut short.
+  /// Some entries that were collected have no new deadline: the traversal was cut short.
   void leave_rest() { earliest_ = passed; }
 
-  /// No deadline is before this.
+  /// A lower bound on all deadlines.
   float earliest() const { return earliest_; }
 
-  /// Slots whose deadlines are not above `time`, in order. They are to be given new ones.
+  /// Slots whose deadlines are not above `time`, in order. The caller gives them new deadlines.
   void collect(double time, std::vector<std::uint32_t>& due) {
     using Some = stdx::native_simd<float>;
     constexpr std::size_t width = Some::size();
@@ -117,7 +117,7 @@ class MarginFront {
       else
         for (std::size_t i = first; i < n; ++i) some[i - first] = deadlines_[i];
       const auto later = some > limit;
-      // Where the limit is infinite, what fills the last register is not later either.
+      // Where the limit is infinite, the lanes that fill up the last register are not later either.
       const std::size_t taken = std::min(width, n - first);
       for (std::uint64_t rest = ~bits(later) & ((std::uint64_t{1} << taken) - 1); rest;
            rest &= rest - 1)
@@ -129,14 +129,14 @@ class MarginFront {
     earliest_ = stdx::hmin(earliest);
   }
 
-  /// The clock was set back by so much.
+  /// The clock was set back by `by`.
   void set_back(double by) {
     for (auto& deadline : deadlines_) deadline = just_below(deadline - by);
     for (auto& hit : hits_) hit.deadline = just_below(hit.deadline - by);
     earliest_ = just_below(earliest_ - by);
   }
 
-  /// All deadlines have passed.
+  /// Makes all deadlines pass.
   void expire() {
     std::fill(deadlines_.begin(), deadlines_.end(), passed);
     earliest_ = passed;
@@ -145,14 +145,14 @@ class MarginFront {
 
   float deadline(std::size_t slot) const { return deadlines_[slot]; }
 
-  /// Makes the entry in `slot` the first to be tested next time.
+  /// Makes the entry in `slot` the first to be tested in the next run.
   void bring_forward(std::size_t slot) { witness_ = static_cast<std::uint32_t>(slot); }
-  /// Whether that has happened since the last restart, and which entry it was.
+  /// Whether there is a witness, brought forward since the last restart, and its slot.
   bool witnessed() const { return witness_ != nowhere; }
   std::uint32_t witness() const { return witness_; }
 
-  /// Whether its margin is used up soon: then it is only looked at, some times, before it is
-  /// measured again.
+  /// Whether the witness's margin is expected to be used up soon. If so, its next tests, up to
+  /// `most_brief_looks`, only find whether it still hits, and measure no margin.
   void expect(bool soon) { brief_looks_ = soon ? most_brief_looks : 0; }
   bool take_brief_look() { return brief_looks_ > 0 && brief_looks_-- > 0; }
 

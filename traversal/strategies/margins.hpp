@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A front of which only those entries are looked at whose gaps the bodies can have closed since
-/// they were measured; verdicts on triangles stay as long as their margins do.
+/// A front that tests only those entries whose gaps the bodies can have closed since they were
+/// measured. Verdicts on triangles hold as long as their margins do.
 ///
 /// The cost of a run follows the motion, not the length of the front: an entry of gap g costs one
-/// test in about g / (motion per run) runs. So it pays to open pairs that are apart, but hardly:
-/// two children with wide gaps cost less than a parent with a narrow one. A pair is opened while
-/// its gap is below six times the last motion.
+/// test in about g / (motion per run) runs. So it pays to open pairs that are apart by a small gap:
+/// two children with wide gaps cost less than a parent with a narrow one (MarginSweep::opens).
 ///
 /// Motion is bounded between reference poses rather than along the path (see
-/// relative_motion_bound.hpp), so a body that jitters about a place is nearly free. What was
+/// relative_motion_bound.hpp), so a body that jitters about a pose is nearly free. What was
 /// measured at a distance r + d counts 2d less than at r: once d passes four times the last motion,
-/// r is moved up.
+/// the reference poses are moved up.
 ///
-/// The front is rebuilt from the roots when that is due by the rule for replacing a machine whose
-/// upkeep rises: when a run (smoothed) costs more than the mean since the last rebuild, that
-/// included. A front too long by then, because bodies moved apart, is replaced; and one of which a
-/// jump has made more entries due than the last rebuild took tests is replaced at once.
+/// The front is rebuilt from the roots by the rule for replacing a machine whose upkeep rises: when
+/// a run (smoothed) costs more than the mean since the last rebuild, including the rebuild. This
+/// replaces a front that is too long because the bodies moved apart.
 ///
-/// A run in which nothing is due costs some additions; it is a matter of tens of nanoseconds. When
-/// the query is another than last time, all is due; the parameters of a query are to stay.
+/// A run in which nothing is due costs some additions: tens of nanoseconds. When the query is
+/// another than in the last run, all entries are due. The parameters of a query must not change
+/// between runs.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +34,7 @@ class Margins {
  public:
   static constexpr std::string_view name = "margins";
   static constexpr std::string_view description =
-      "a front whose entries are not looked at before the bodies can have closed their gaps";
+      "a front whose entries are retested only once the bodies can have closed their gaps";
 
   template <class Pair>
   TraversalStatistics run(const Pair& pair) {
@@ -43,22 +42,23 @@ class Margins {
     return look(pair);
   }
 
-  /// The first half of a run: whether nothing is due, so that this is all of it.
+  /// The first half of a run: whether nothing is due. If so, the run is over.
   template <class Pair>
   bool quiet(const Pair& pair) {
     return !front_.empty() && unchanged(pair.a(), pair.b(), pair.query());
   }
-  /// The other half.
+  /// The second half.
   template <class Pair>
   TraversalStatistics look(const Pair& pair) {
     MovingBody &a = pair.a(), &b = pair.b();
     auto& query = pair.query();
     using Query = typename Pair::Query;
     if (front_.empty() || worn_out_) rebuild(a, b);
-    // What one query learned of triangles is not what another asks: the first hit of an entry, say.
-    if (asked_ != &Query::name) front_.expire();
+    // What one query found out about triangles does not serve another, such as the first hit of an
+    // entry.
+    if (last_query_ != &Query::name) front_.expire();
     if (repeat_hits(query)) {
-      asked_ = &Query::name;
+      last_query_ = &Query::name;
       quiet_until_ = front_.hits().front().deadline;
       return {};
     }
@@ -68,11 +68,11 @@ class Margins {
     return statistics;
   }
 
-  /// Starts again from the roots next time.
+  /// The next run starts from the roots.
   void forget() { front_.clear(); }
 
-  /// Starts from the first `count` entries of a list next time, as if a rebuild had just left them;
-  /// `step` is how much nearer the bodies come from run to run, about.
+  /// The next run starts from the first `count` entries of a list, as if a rebuild had just left
+  /// them; `step` is about how much nearer the bodies come from run to run.
   void start_from(const Front& list, std::size_t count, MovingBody& a, MovingBody& b, double step) {
     front_.clear();
     rebuild(a, b);
@@ -82,22 +82,22 @@ class Margins {
     for (std::size_t slot = 0; slot < count; ++slot) front_.add(list[slot]);
     if (list.witnessed()) front_.bring_forward(0);
     cost_ = static_cast<double>(count);  // the other half of a rebuild's tests
-    asked_ = nullptr;
+    last_query_ = nullptr;
   }
 
-  /// Whether the witness is going to last so short that its margin is not worth while.
+  /// Whether the witness is expected to last so short that measuring its margin does not pay.
   void expect(bool soon) { front_.expect(soon); }
 
-  /// The same, but never a rebuild: not all entries need be there, and where this finds nothing the
-  /// query is still to be answered.
+  /// The second half, but never with a rebuild. The front may lack entries: where no hit is found,
+  /// the query is not answered yet.
   template <class Pair>
   TraversalStatistics look_as_it_is(const Pair& pair) {
     worn_out_ = false;
     return look(pair);
   }
 
-  /// Of what the last run looked at, the share that comes up in a run if each brings the bodies
-  /// nearer by `step`: an entry whose gap is g comes up in every (g / step)-th run.
+  /// The share of the last run's entries that is due in a run, if each run brings the bodies nearer
+  /// by `step`: an entry whose gap is g is due in every (g / step)-th run.
   double due_in_a_run(double step) const {
     const auto share = [&](double deadline) {
       const double gap = deadline - shown_;
@@ -109,7 +109,7 @@ class Margins {
     for (std::size_t slot = 0; slot < front_.size(); ++slot) due += share(front_.deadline(slot));
     return due / static_cast<double>(front_.size());
   }
-  /// How often it has been rebuilt from the roots, or started from a list.
+  /// How often the front has been rebuilt from the roots, or started from a list.
   std::uint32_t rebuilds() const { return rebuilds_; }
 
   std::size_t front_size() const { return front_.size(); }
@@ -120,7 +120,7 @@ class Margins {
   static constexpr double triangles = 4;  // one pair of triangles costs as much as pairs of volumes
   static constexpr double farthest = 1024;  // radii after which the clock is set back
 
-  /// Follows the bodies. Says whether nothing can have changed, and answers the query then.
+  /// Follows the bodies. If nothing can have changed, answers the query and returns true.
   template <class Query>
   bool unchanged(MovingBody& a, MovingBody& b, Query& query) {
     const double displacement = a.displacement_bound() + b.displacement_bound();
@@ -128,20 +128,20 @@ class Margins {
     const bool moved = a.epoch() != epoch_a_ || b.epoch() != epoch_b_;
     epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
     if (moved) {
-      // Displacement bounds are sums of many steps, rounded up; what is wrong with their own sum is
+      // Displacement bounds are sums of many steps, rounded up; the rounding of their own sum is
       // added.
       step_ = displacement - displacement_ + 4 * unit_roundoff<double> * displacement;
       displacement_ = displacement;
       shown_ = (shown_ + step_) * (1 + 4 * unit_roundoff<double>);
     }
     if constexpr (requires { query.distance(); }) {
-      if (!moved && asked_ == &Query::name) return query.stays(distance_), true;
-    } else if (asked_ == &Query::name && (!moved || shown_ < quiet_until_)) {
+      if (!moved && last_query_ == &Query::name) return query.repeat(distance_), true;
+    } else if (last_query_ == &Query::name && (!moved || shown_ < quiet_until_)) {
       for (const auto& hit : front_.hits())
         if (query.known(hit.a, hit.b)) break;
       return true;
     }
-    // Also where only the query is another: quiet runs have not followed.
+    // Also where only the query has changed: quiet runs do not advance the clock.
     follow(a, b);
     return false;
   }
@@ -159,14 +159,14 @@ class Margins {
     shown_ = clock_.now();
   }
 
-  /// Tells the query of the hits that are sure to stay; the others are found again. Says whether
-  /// that is enough.
+  /// Passes to the query the hits that are sure to stay; the others are found again. Returns
+  /// whether the query is satisfied.
   template <class Query>
   bool repeat_hits(Query& query) {
     auto& hits = front_.hits();
     if constexpr (Query::one_hit_is_enough)
-      // The entry is to be looked at again, also where the run ends before its turn comes and the
-      // bodies have gone back by the next one, to where its deadline has not passed.
+      // The entry stays due even if the run ends before it is tested, and the bodies then go back
+      // to where its deadline has not passed.
       std::erase_if(hits, [&](const KnownHit& hit) {
         const bool over = !(hit.deadline > shown_);
         if (over) front_.expire_at(hit.slot, MarginFront::passed);
@@ -206,7 +206,7 @@ class Margins {
 
   template <class Query>
   void remember(const Query& query) {
-    asked_ = &Query::name;
+    last_query_ = &Query::name;
     if constexpr (requires { query.distance(); })
       distance_ = query.distance();
     else
@@ -215,16 +215,16 @@ class Margins {
 
   MarginFront front_;
   RelativeMotionBound clock_;
-  std::uint32_t epoch_a_ = 0, epoch_b_ = 0;  // when they were last looked at
-  double displacement_ = 0;                  // of both bodies, when they were last looked at
-  double step_ = 0;                          // how far they have moved since the time before
-  double shown_ = 0;                         // at least what the clock shows
-  double quiet_until_ = 0;                   // the answer is what it was while the clock shows less
+  std::uint32_t epoch_a_ = 0, epoch_b_ = 0;  // at the last run
+  double displacement_ = 0;                  // of both bodies, at the last run
+  double step_ = 0;                          // how much nearer since the run before, at most
+  double shown_ = 0;                         // at least the time on the clock
+  double quiet_until_ = 0;                   // the answer is known while the clock shows less
   double distance_ = 0;
-  double upkeep_ = 0, cost_ = 0, runs_ = 0;  // of a run, smoothed; since the last rebuild
+  double upkeep_ = 0, cost_ = 0, runs_ = 0;  // tests of a run, smoothed; since the rebuild
   std::uint32_t rebuilds_ = 0;
   bool worn_out_ = false;
-  const std::string_view* asked_ = nullptr;  // the query that was answered last
+  const std::string_view* last_query_ = nullptr;  // the query of the last run
 };
 
 }  // namespace bvlab

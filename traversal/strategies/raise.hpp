@@ -2,9 +2,9 @@
 /// A separation list that rises again where the bodies have come apart, so that it need not be
 /// rebuilt from the roots (li1998incremental; ehmann2001accurate raises its fronts, too).
 ///
-/// The law of cost: two siblings whose parent is apart cost one test too many in every run, and a
-/// parent tried in vain costs one test; one that is apart takes the place of two and saves one. If
-/// a share h of the parents come apart in a run, trying all in every T-th run costs 1 / T + h T / 2
+/// The law of cost. Two siblings whose parent is apart cost one test too many in every run. A
+/// parent tried in vain costs one test; one that is apart replaces two entries and saves one. If a
+/// share h of the parents come apart in a run, trying all in every T-th run costs 1 / T + h T / 2
 /// for each, which is least where as much is spent in vain as is lost by raising late. But h falls
 /// with the time since the parent was last seen to overlap, so it is tried after 1 run, 2, 4, ...
 /// (see rising_front.hpp): of those tried first, one in seven is apart in little motion, nine in
@@ -12,17 +12,17 @@
 /// Bodies at rest, with n entries, take n tests a run and at most n / 32 for parents.
 ///
 /// A rebuild that finds n leaves of the test tree takes 2n - 1 tests. Where bodies jump, sinking
-/// and rising takes more than that: then the list is dropped and built again in the next run; if no
-/// run of the new one is any cheaper, only after twice as many runs from the roots, up to 16. As
-/// the list has more entries than the test tree would have leaves, a run is too expensive from (2n
-/// - 1) / 1.2 tests on, n being the entries it leaves (with 1 or 1.5 in place of 1.2 more tests
-/// were made on the whole).
+/// and rising takes more than that: then the list is dropped and rebuilt in the next run. If no run
+/// of the new list is any cheaper, it is rebuilt only after twice as many runs from the roots, up
+/// to 16. As the list has more entries than the test tree would have leaves, a run is too expensive
+/// from (2n - 1) / 1.2 tests on, n being the entries it leaves (with 1 or 1.5 in place of 1.2 more
+/// tests were made on the whole).
 ///
-/// Runs cut short: the pair that was hit is tested first in the next run, before any parent, and
-/// a hit there ends that run at once. Else parents come next, so that what was raised stays raised
-/// when a hit then cuts the run short; pairs that were pushed but not reached stay in the list, and
-/// are tried like all others. Such a run does not count for or against the list. For distances
-/// parents are tried against the bound that the witness, or else one way down, has given.
+/// Runs cut short. The pair that was hit is tested first in the next run, before any parent, and a
+/// hit there ends that run at once. Parents come next, so that what was raised stays raised if a
+/// hit then cuts the run short. Pairs that were pushed but not tested stay in the list, and are
+/// tried like all others. Such a run does not count for or against the list. For distances, parents
+/// are tried against the bound that the witness, or else one descent from the roots, has given.
 #pragma once
 
 #include <algorithm>
@@ -59,7 +59,8 @@ class Raise {
   std::size_t front_size() const { return front_.size(); }
 
  private:
-  /// The most entries for each node: runs that hits cut short can let the list grow.
+  /// The most entries for each node of the two hierarchies: runs that hits cut short can let the
+  /// list grow.
   static constexpr std::size_t room = 16;
   static constexpr unsigned longest_pause = 16;
   static constexpr double surplus = 1.2;
@@ -79,9 +80,9 @@ class Raise {
   }
 
   RisingFront front_;
-  bool paid_ = false;        // some run since the list was last built
-  unsigned recursions_ = 0;  // that are left before it is built again
-  unsigned pause_ = 1;       // runs from when it was dropped to when that is done
+  bool paid_ = false;        // some run of this list was cheaper
+  unsigned recursions_ = 0;  // runs from the roots before it is rebuilt
+  unsigned pause_ = 1;       // runs from its drop to its rebuild
 };
 
 }  // namespace bvlab

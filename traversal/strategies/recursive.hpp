@@ -36,8 +36,8 @@ struct Recursive : detail::FromTheRoots<NoFront> {
 };
 
 /// The same, but a pair of inner nodes is replaced by the four pairs of their children. With
-/// batches that is what one wants: half as many steps that wait for each other, and where most
-/// pairs that overlap have children that do, up to a third fewer tests ((4n - 1) / 3 for n leaves).
+/// batches that is better: half as many steps that wait for each other, and where most overlapping
+/// pairs have overlapping children, up to a third fewer tests ((4n - 1) / 3 for n leaves).
 struct RecursiveBoth : detail::FromTheRoots<NoFrontBoth> {
   static constexpr std::string_view name = "recursive-both";
   static constexpr std::string_view description =

@@ -1,37 +1,55 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A front that can also rise: two entries that are the children of one pair are replaced by it
-/// where it needs no further look (ehmann2001accurate).
+/// A front that can also rise: entries that are all the children of one pair are replaced by that
+/// pair where it is apart (ehmann2001accurate).
 ///
-/// Law: whatever is raised, the front stays a partition, of pairs that recursion makes. A pair
-/// comes about in one way: larger nodes are descended before smaller ones, and a child that is
-/// larger than its parent right after it; so the parent that was descended last is that of the two
-/// with the smaller `least_above`. The sibling is the pair with the other child, found by a table.
+/// Law: whatever is raised, the front stays a partition, of pairs that recursion makes. Recursion
+/// makes a pair in one way only: larger nodes are descended before smaller ones, and a child that
+/// is larger than its parent right after it. So of the two parents the one descended last is the
+/// one with the smaller `least` (Hierarchy::Above). The siblings of an entry are the pairs with the
+/// other children of that parent; a table finds their slots.
 ///
-/// Two siblings in the front (a sibling pair) are tried in the run after the second one came into
-/// it, and after j times in vain in the next run whose number 2^j divides, j up to `most_failures`.
-/// A pair just raised is tried with its sibling in the same run, so that a front can rise all the
-/// way at once. An entry whose sibling is not there costs nothing: it is idle until that comes.
+/// Siblings that are all in the front are tried in the run after the last of them was added, and
+/// after j failures in the next run whose number 2^j divides, j up to `most_failures`. A pair just
+/// raised is tried with its siblings in the same run, so that a front can rise all the way at once.
+/// An entry that lacks a sibling costs nothing: it is idle until that sibling is added.
+/// once. An entry of which a sibling is not there costs nothing: it is idle until that comes.
 #pragma once
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <tuple>
+#include <span>
 #include <vector>
 
 #include "traversal/front.hpp"
 
 namespace bvlab {
 
-/// Two siblings in a front, by their slots.
-struct SiblingPair {
+/// Entries of a front that are all the children of one pair, proposed to be replaced by it.
+struct Siblings {
   NodePair parent;
-  std::uint32_t first, second;
+  std::uint32_t slot;           ///< of the entry that represents them
+  std::uint32_t others, count;  ///< the slots of the others, in Proposals::slots
   bool raised = false;
-  bool stays = false;  // raised, and its parent was not
+  bool kept = false;  ///< raised, and its parent was not raised
+};
+struct Proposals {
+  std::vector<Siblings> all;
+  std::vector<std::uint32_t> slots;  ///< the first `used` are in use
+  std::uint32_t used = 0;
+
+  void clear() { all.clear(), used = 0; }
+  std::span<const std::uint32_t> others_of(const Siblings& siblings) const {
+    return {slots.data() + siblings.others, siblings.count};
+  }
+  /// Room for `count` slots; they are kept when `used` is increased.
+  std::uint32_t* room(std::uint32_t count) {
+    if (slots.size() < used + count) slots.resize(2 * (used + count));
+    return slots.data() + used;
+  }
 };
 
-/// Where in a front an entry is: open addressing, linear, at most half full.
+/// The slot of each entry of a front: a hash table with linear probing, at most half full.
 class SlotTable {
  public:
   static constexpr std::uint32_t nowhere = static_cast<std::uint32_t>(-1);
@@ -40,20 +58,20 @@ class SlotTable {
   void clear() { std::fill(slots_.begin(), slots_.end(), nowhere); }
 
   std::uint32_t find(const NodePair& pair, const Entries& entries) const {
-    return slots_[place_of(pair, entries)];
+    return slots_[index_of(pair, entries)];
   }
 
-  /// The entry in `slot` is there now. Of an entry that was in another slot before only the pair
-  /// may have stayed the same; one whose pair is to change is erased before it does.
+  /// Records that an entry is in `slot`. If the entry was in another slot before, that is
+  /// overwritten. If its pair is to change, it must be erased before.
   void set(std::size_t slot, const Entries& entries) {
     if (2 * entries.size() > slots_.size()) grow(entries);
-    slots_[place_of(entries[slot], entries)] = static_cast<std::uint32_t>(slot);
+    slots_[index_of(entries[slot], entries)] = static_cast<std::uint32_t>(slot);
   }
 
   void erase(const NodePair& pair, const Entries& entries) {
-    std::size_t hole = place_of(pair, entries);
+    std::size_t hole = index_of(pair, entries);
     slots_[hole] = nowhere;
-    // What could not be put where it belongs moves up.
+    // Entries that were displaced from their home by the erased one move up.
     for (std::size_t i = next(hole); slots_[i] != nowhere; i = next(i))
       if (behind(home(entries[slots_[i]]), i) >= behind(hole, i)) {
         slots_[hole] = slots_[i];
@@ -70,8 +88,8 @@ class SlotTable {
     return ((std::uint64_t{pair.a} << 32 | pair.b) * 0x9e3779b97f4a7c15u) >> 32 & mask();
   }
 
-  /// Where it is, or where it belongs.
-  std::size_t place_of(const NodePair& pair, const Entries& entries) const {
+  /// The index at which the pair is, or where it belongs.
+  std::size_t index_of(const NodePair& pair, const Entries& entries) const {
     std::size_t i = home(pair);
     while (slots_[i] != nowhere && !(entries[slots_[i]] == pair)) i = next(i);
     return i;
@@ -81,7 +99,7 @@ class SlotTable {
     std::vector<std::uint32_t> old(std::bit_ceil(4 * entries.size()), nowhere);
     old.swap(slots_);
     for (const std::uint32_t slot : old)
-      if (slot != nowhere) slots_[place_of(entries[slot], entries)] = slot;
+      if (slot != nowhere) slots_[index_of(entries[slot], entries)] = slot;
   }
 
   std::vector<std::uint32_t> slots_;
@@ -120,15 +138,15 @@ class RisingFront : public Front {
   }
 
   void bring_forward(std::size_t slot) {
-    // They are found by what they are, so they leave the table before they are exchanged.
+    // The table finds entries by their pairs, so they leave it before they are exchanged.
     if (slot != 0) table_.erase(entries_[0], entries_), table_.erase(entries_[slot], entries_);
     Front::bring_forward(slot);
     std::swap(failures_[0], failures_[slot]);
     if (slot != 0) table_.set(slot, entries_), table_.set(0, entries_);
   }
 
-  /// Parents are tried when the witness has been looked at and did not settle the matter, before
-  /// all other entries. What was raised has been tested.
+  /// Parents are tried after the witness, if it did not decide the query, and before all other
+  /// entries. What was raised has been tested.
   template <class Traversal>
   bool sweep(Traversal& traversal) {
     if (witnessed() && traversal.look_at_alone(0)) return true;
@@ -136,111 +154,122 @@ class RisingFront : public Front {
     return traversal.look_at(size() - raised - first, [first](std::size_t i) { return first + i; });
   }
 
-  /// The sibling pairs that are due. Each run asks once, when its witness did not settle the
-  /// matter.
+  /// Proposes the siblings that are due. Called once in each run whose witness did not decide the
+  /// query.
   template <class H>
-  void propose(const H& a, const H& b, std::vector<SiblingPair>& sibling_pairs) {
-    sibling_pairs.clear();
+  void propose(const H& a, const H& b, Proposals& proposals) {
+    proposals.clear();
     const auto due = static_cast<unsigned>(std::countr_zero(++run_));
     for (std::size_t slot = 0; slot < size(); ++slot)
       if (failures_[slot] <= due) {
-        const SiblingPair siblings = sibling_pair_of(slot, a, b);
-        if (siblings.second == SlotTable::nowhere) {
+        if (!add_siblings_of(slot, a, b, proposals)) {
           failures_[slot] = idle;
         } else {
-          failures_[siblings.second] = idle;  // the first one speaks for both
-          sibling_pairs.push_back(siblings);
+          for (const auto other : proposals.others_of(proposals.all.back()))
+            failures_[other] = idle;
         }
       }
   }
 
-  /// The parent of sibling_pairs[i] is apart: replaces its children, and proposes it with its
-  /// sibling.
+  /// The parent of proposals.all[i] is apart: it replaces its children, and is proposed with its
+  /// siblings.
   template <class H>
-  void raise(const H& a, const H& b, std::vector<SiblingPair>& sibling_pairs, std::size_t i) {
-    sibling_pairs[i].raised = true;
-    const auto [parent, first, second] =
-        std::tuple(sibling_pairs[i].parent, sibling_pairs[i].first, sibling_pairs[i].second);
+  void raise(const H& a, const H& b, Proposals& proposals, std::size_t i) {
+    proposals.all[i].raised = true;
+    const Siblings siblings = proposals.all[i];
+    const std::uint32_t first = siblings.slot;
     table_.erase(entries_[first], entries_);
-    table_.erase(entries_[second], entries_);
-    entries_[first] = parent;
+    for (const auto slot : proposals.others_of(siblings)) {
+      table_.erase(entries_[slot], entries_);
+      failures_[slot] = gone;
+    }
+    entries_[first] = siblings.parent;
     table_.set(first, entries_);
     failures_[first] = fresh;
-    failures_[second] = gone;
-    const SiblingPair next = sibling_pair_of(first, a, b);
-    if (next.second != SlotTable::nowhere) sibling_pairs.push_back(next);
+    add_siblings_of(first, a, b, proposals);
   }
 
-  /// It is not.
-  void refuse(const SiblingPair& siblings) {
-    auto& failures = failures_[siblings.first];
+  /// The parent of proposals.all[i] is not apart.
+  void refuse(const Proposals& proposals, std::size_t i) {
+    auto& failures = failures_[proposals.all[i].slot];
     if (failures < most_failures) ++failures;
   }
 
-  /// Puts what was raised behind all other entries, and says how many that is.
-  std::size_t settle(std::vector<SiblingPair>& sibling_pairs) {
+  /// Moves raised entries behind all others, and returns their number.
+  std::size_t settle(Proposals& proposals) {
     std::size_t raised = 0;
-    for (SiblingPair& siblings : sibling_pairs) {
-      siblings.stays = siblings.raised && failures_[siblings.first] == fresh &&
-                       entries_[siblings.first] == siblings.parent;
-      if (!siblings.stays) continue;
+    for (Siblings& siblings : proposals.all) {
+      siblings.kept = siblings.raised && failures_[siblings.slot] == fresh &&
+                      entries_[siblings.slot] == siblings.parent;
+      if (!siblings.kept) continue;
       table_.erase(siblings.parent, entries_);
-      failures_[siblings.first] = gone;
+      failures_[siblings.slot] = gone;
       ++raised;
     }
-    for (const SiblingPair& siblings : sibling_pairs)
-      if (siblings.raised) fill(siblings.first), fill(siblings.second);
-    for (const SiblingPair& siblings : sibling_pairs)
-      if (siblings.stays) add(siblings.parent);
+    for (const Siblings& siblings : proposals.all)
+      if (siblings.raised) {
+        fill(siblings.slot);
+        for (const auto slot : proposals.others_of(siblings)) fill(slot);
+      }
+    for (const Siblings& siblings : proposals.all)
+      if (siblings.kept) add(siblings.parent);
     return raised;
   }
 
  private:
-  /// Tries the parents that are proposed and, where one is apart, its parent after it. Says how
-  /// many have been raised: they stand behind all other entries.
+  /// Tries the proposed parents and, where one is apart, its parent after it. Returns how many have
+  /// been raised: they come after all other entries.
   template <class Traversal>
   std::size_t rise(Traversal& traversal) {
-    auto& pairs = traversal.workspace().template room<std::vector<SiblingPair>>();
-    propose(traversal.a(), traversal.b(), pairs);
-    for (std::size_t next = 0; next < pairs.size();) {
-      const std::size_t count = std::min(Traversal::W, pairs.size() - next);
+    auto& proposals = traversal.workspace().template scratch<Proposals>();
+    propose(traversal.a(), traversal.b(), proposals);
+    for (std::size_t next = 0; next < proposals.all.size();) {
+      const std::size_t count = std::min(Traversal::W, proposals.all.size() - next);
       std::uint64_t apart =
-          traversal.culled(count, [&](std::size_t i) { return pairs[next + i].parent; });
+          traversal.culled(count, [&](std::size_t i) { return proposals.all[next + i].parent; });
       for (std::size_t i = 0; i < count; ++i, ++next, apart >>= 1)
         if (apart & 1)
-          raise(traversal.a(), traversal.b(), pairs, next);
+          raise(traversal.a(), traversal.b(), proposals, next);
         else
-          refuse(pairs[next]);
+          refuse(proposals, next);
     }
-    const std::size_t raised = settle(pairs);
+    const std::size_t raised = settle(proposals);
     if (!witnessed()) traversal.forget_witness();
     return raised;
   }
 
-  /// The longest wait is 2^most_failures runs: for bodies at rest, whose sibling pairs are at most
-  /// half their entries, 1/32 of a test for each entry and run. Of 1 to 1024 runs, on random walks,
+  /// The longest wait is 2^most_failures runs: for bodies at rest, of whose entries at most half
+  /// represent siblings, 1/32 of a test for each entry and run. Of 1 to 1024 runs, on random walks,
   /// 8 and 16 are within 7 % of the best at every motion.
   static constexpr std::uint8_t most_failures = 4;
-  /// Not failures: due in no run; raised in this one; not an entry any more.
+  /// Not counts of failures: never due; raised in this run; no longer an entry.
   static constexpr std::uint8_t idle = 253, fresh = 254, gone = 255;
 
-  static std::uint32_t sibling(std::uint32_t node) { return ((node + 1) ^ 1) - 1; }
-
-  /// Of an entry, without a second one where that is not in the front; the roots never have one.
+  /// Proposes an entry with its siblings, unless one of them is not in the front. The roots have no
+  /// siblings.
   template <class H>
-  SiblingPair sibling_pair_of(std::size_t slot, const H& a, const H& b) const {
+  [[gnu::always_inline]] bool add_siblings_of(std::size_t slot, const H& a, const H& b,
+                                              Proposals& proposals) const {
     const NodePair pair = entries_[slot];
-    NodePair parent = pair, other = pair;
-    const bool by_b =
-        pair.a == 0 || (pair.b != 0 && !(b.least_above(pair.b) > a.least_above(pair.a)));
-    if (by_b)
-      parent.b = b.parent(pair.b), other.b = sibling(pair.b);
-    else
-      parent.a = a.parent(pair.a), other.a = sibling(pair.a);
-    return {parent, static_cast<std::uint32_t>(slot), table_.find(other, entries_)};
+    if (pair.a == 0 && pair.b == 0) return false;
+    const auto &above_a = a.above(pair.a), &above_b = b.above(pair.b);
+    const bool by_b = pair.a == 0 || (pair.b != 0 && !(above_b.least > above_a.least));
+    const std::uint32_t own = by_b ? pair.b : pair.a;
+    const auto& above = by_b ? above_b : above_a;
+    std::uint32_t* to = proposals.room(above.count);
+    for (std::uint32_t k = 1; k < above.count; ++k) {
+      const std::uint32_t next = own + k,
+                          child = next - (next < above.first + above.count ? 0 : above.count);
+      *to = table_.find(by_b ? NodePair{pair.a, child} : NodePair{child, pair.b}, entries_);
+      if (*to++ == SlotTable::nowhere) return false;
+    }
+    proposals.all.push_back({by_b ? NodePair{pair.a, above.parent} : NodePair{above.parent, pair.b},
+                             static_cast<std::uint32_t>(slot), proposals.used, above.count - 1});
+    proposals.used += above.count - 1;
+    return true;
   }
 
-  /// Moves the last entry that there is into a slot where there is none.
+  /// Moves the last valid entry into `slot` if that is vacant.
   void fill(std::size_t slot) {
     while (!failures_.empty() && failures_.back() == gone) drop_last();
     if (!(slot < size() && failures_[slot] == gone)) return;

@@ -8,13 +8,13 @@
 /// n leaves, a rebuild makes 2n - 1 tests and each other run n: over a period (2n - 1 + (1 + k) n)
 /// / (2 + k).
 ///
-/// What the talk leaves open is decided so:
-/// - a rebuild is not itself a run without growth, so the run after it always uses the list;
+/// The talk leaves some cases open. Here:
+/// - a rebuild does not count as a run without growth, so the run after it always uses the list;
 /// - a run that a hit cuts short counts like any other: as growth where the list grew, and as a run
-///   without growth where it did not (were it not to count, the list of two bodies in lasting
-///   contact would never be rebuilt, and in long runs it grows to ten times what it need be);
+///   without growth where it did not (if it did not count, the list of two bodies in lasting
+///   contact would never be rebuilt, and in long runs it grows to ten times the necessary length);
 /// - the pair that was hit stays in the list and is tested first in the next run (a witness);
-/// - pairs that were pushed but not reached when a hit cut a run short stay in the list.
+/// - pairs that were pushed but not tested when a hit cut a run short stay in the list.
 #pragma once
 
 #include <string_view>
@@ -30,7 +30,7 @@ class Deferred {
       "separation list, rebuilt once it has not grown for 1 + k runs (deferred:k; k = 1 as "
       "published)";
 
-  /// `defer`: how many runs without growth are let pass before the one that triggers a rebuild.
+  /// `defer`: how many runs without growth pass before the one that triggers a rebuild.
   explicit Deferred(unsigned defer = 1) : defer_(defer) {}
 
   template <class Pair>

@@ -12,7 +12,7 @@
 
 namespace bvlab {
 
-/// from[index[lane]].
+/// Lane by lane from[index[lane]].
 template <int W>
 [[gnu::always_inline]] inline Batch<float, W> gathered(const float* from,
                                                        const Batch<std::int32_t, W>& index) {

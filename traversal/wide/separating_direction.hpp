@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Directions in which two bodies do not reach each other, for many pairs at once, one pair a lane,
-/// by their support maps: nothing is posed but a direction. The first is that of their centres; the
-/// next ones are mirrored in the plane between the two supports (chung1996quick).
+/// Directions that separate two bodies, for many pairs at once, one pair a lane, by the bodies'
+/// support maps: nothing is posed but a direction. The first direction is that between their
+/// centres; each further one is mirrored in the plane between the two supports (chung1996quick).
 ///
-/// Of pairs of bunnies whose balls meet and whose convex hulls do not, four in five are told apart
-/// by the first and 19 in 20 by the first two; and of those whose balls meet and that do not touch,
-/// four in five or more have hulls that are apart.
+/// Of pairs of bunnies whose spheres overlap and whose convex hulls do not, the first direction
+/// separates four in five and the first two 19 in 20; and of those whose spheres overlap and that
+/// do not touch, four in five or more have hulls that are apart.
 ///
-/// Derivation. A vertex of a stands within 2 noise (OrthonormalPose) of c_a + R_a v, v from the
-/// centre in the mesh, whatever matrix R_a is. For any d, with the support functions h,
+/// Derivation. A vertex of a lies within 2 error_a (`error_bound` of OrthonormalPose) of c_a + R_a
+/// v, v from the centre in the mesh, whatever matrix R_a is. For any d, with the support functions
+/// h,
 ///
-///   d.(x_b - x_a) >= d.(c_b - c_a) - h_a(R_a'd) - h_b(-R_b'd) - 2 |d| (noise_a + noise_b).
+///   d.(x_b - x_a) >= d.(c_b - c_a) - h_a(R_a'd) - h_b(-R_b'd) - 2 |d| (error_a + error_b).
 ///
 /// Let e be the unit roundoff of float, r a radius; to first order:
 /// - centres are kept in float from a common origin, each off by e |c|_1; their difference, and its
 ///   product with d, by 4e |d||c_b - c_a|;
 /// - R'd, whose entries are rounded and which is at most 1.1 |d| long, is off by 8e |d|, and h of
-/// it
-///   by 9e |d| r;
-/// - the place of g = R'd in its cell is off by 4e of the face's width, and a fraction of the cell
-///   is exact: h of a direction within 12e |g| of g is interpolated, which is off by 14e |d| r;
-///   weights and their sum by 8e of samples that are at most sqrt(3) r, times |g|: 16e |d| r;
+///   it by 9e |d| r;
+/// - the position of g = R'd in its cell is off by 4e of the face's width, and a fraction of the
+///   cell is exact: h of a direction within 12e |g| of g is interpolated, which is off by 14e |d|
+///   r; weights and their sum by 8e of samples that are at most sqrt(3) r, times |g|: 16e |d| r;
 /// - the sum by 3e of its terms.
-/// So `slack`, which is 2 noise + 64e r + 2e |c|_1, of both, and 8e |c_b - c_a| is more than all of
-/// it for |d| <= 1 + 8e; a number whose square is normal is added, which outweighs what underflows.
+/// So `slack`, which is 2 error_bound + 64e r + 2e |c|_1, of both, and 8e |c_b - c_a| exceed all of
+/// it for |d| <= 1 + 8e; a number whose square is normal is added, which covers underflow.
 #pragma once
 
 #include <algorithm>
@@ -46,7 +46,7 @@ class SeparatingDirections {
   using S = Batch<float, width>;
   using Indices = Batch<std::int32_t, width>;
 
-  /// Adds a mesh; says by which number bodies name it.
+  /// Adds a mesh; returns the number by which bodies name it.
   std::int32_t add(const SupportMap& map) {
     const auto first = static_cast<std::int32_t>(samples_.size());
     samples_.insert(samples_.end(), map.table().begin(), map.table().end());
@@ -54,10 +54,10 @@ class SeparatingDirections {
   }
   void resize(std::size_t bodies) { bodies_.resize(bodies); }
 
-  /// `centre` of the ball that the map is about, from the common origin; `radius` of that ball;
-  /// `noise` as in OrthonormalPose.
-  void stand(std::size_t body, std::int32_t map, const Mat3<double>& rotation,
-             const Vec3<double>& centre, double radius, double noise) {
+  /// `centre` of the sphere that the map is about, from the common origin; `radius` of that sphere;
+  /// `error_bound` as in OrthonormalPose.
+  void set_pose(std::size_t body, std::int32_t map, const Mat3<double>& rotation,
+                const Vec3<double>& centre, double radius, double error_bound) {
     constexpr double e = unit_roundoff<float>;
     Body& to = bodies_[body];
     for (int i = 0; i < 3; ++i) {
@@ -66,7 +66,7 @@ class SeparatingDirections {
     }
     const double tiny = std::ldexp(1.0, std::numeric_limits<float>::min_exponent / 2 + 4);
     const double slack =
-        (2 * noise + 2 * e * centre.lpNorm<1>() + 64 * e * radius + tiny) * (1 + 4 * e);
+        (2 * error_bound + 2 * e * centre.lpNorm<1>() + 64 * e * radius + tiny) * (1 + 4 * e);
     to.slack = static_cast<float>(slack);
     to.reach = static_cast<float>((radius + slack) * (1 + 4 * e));
     to.map = map;
@@ -74,7 +74,7 @@ class SeparatingDirections {
 
   /// Pairs of bodies, one a lane.
   struct Pairs {
-    Indices a, b;  ///< 16 times their numbers
+    Indices a, b;  ///< 16 times their indices
     Vec3<S> between;
     S slack;
   };
@@ -84,14 +84,14 @@ class SeparatingDirections {
       p.between[i] = of<&Body::centre>(p.b, i) - of<&Body::centre>(p.a, i);
     return p;
   }
-  /// Which balls may meet.
-  [[gnu::always_inline]] std::uint64_t balls_meet(const Pairs& p) const {
+  /// Which spheres may overlap.
+  [[gnu::always_inline]] std::uint64_t spheres_meet(const Pairs& p) const {
     const S reach = of<&Body::reach>(p.a) + of<&Body::reach>(p.b);
     return ~bits(squared_norm<S>(p.between) * S(1 - 16 * unit_roundoff<float>) > reach * reach);
   }
 
-  /// How far they are apart at least, 0 where nothing is told, by `most` directions; those are
-  /// tried from `d` on, and what tells them apart is left there.
+  /// At most the distance of each pair, 0 where no direction separates it. Up to `most` directions
+  /// are tried, beginning with `d`; the separating one is written to `d`.
   [[gnu::always_inline]] S gaps(const Pairs& p, Vec3<S>& d, int most) const {
     constexpr float e = unit_roundoff<float>;
     const auto rotation_a = rotation(p.a), rotation_b = rotation(p.b);
@@ -103,15 +103,15 @@ class SeparatingDirections {
     Vec3<S> next = d;
     for (int tried = 1;; ++tried) {
       const Vec3<S> minus(-next[0], -next[1], -next[2]);
-      const Support a = support(map_a, turned_back(rotation_a, next));
-      const Support b = support(map_b, turned_back(rotation_b, minus));
+      const Support a = support(map_a, rotated_back(rotation_a, next));
+      const Support b = support(map_b, rotated_back(rotation_b, minus));
       const S gap = ((dot<S>(next, p.between) - a.height) - b.height) - margin;
       const auto better = gap > found;
       stdx::where(better, found) = gap * S(1 - 16 * e);
       for (int i = 0; i < 3; ++i) stdx::where(better, d[i]) = next[i];
       if (tried == most || stdx::all_of(found > S(0.0f))) return found;
       Vec3<S> w = p.between;
-      const Vec3<S> to_b = turned(rotation_b, b.point), to_a = turned(rotation_a, a.point);
+      const Vec3<S> to_b = rotated(rotation_b, b.point), to_a = rotated(rotation_a, a.point);
       for (int i = 0; i < 3; ++i) w[i] = (w[i] + to_b[i]) - to_a[i];
       const S twice = S(2.0f) * dot<S>(next, w) / dot<S>(w, w);
       for (int i = 0; i < 3; ++i) next[i] = next[i] - twice * w[i];
@@ -127,7 +127,7 @@ class SeparatingDirections {
   struct alignas(64) Body {
     float rotation[9] = {};  // row by row
     float centre[3] = {};
-    // Nothing is told of a body before it stands.
+    // A body without a pose is never found apart from another.
     float slack = std::numeric_limits<float>::infinity();
     float reach = std::numeric_limits<float>::infinity();
     std::int32_t map = 0;
@@ -159,20 +159,20 @@ class SeparatingDirections {
         gathered<width>(reinterpret_cast<const float*>(&bodies_[0].map), body));
   }
 
-  [[gnu::always_inline]] static Vec3<S> turned(const Rotation& r, const Vec3<S>& v) {
+  [[gnu::always_inline]] static Vec3<S> rotated(const Rotation& r, const Vec3<S>& v) {
     const auto along = [&](std::size_t i) {
       return fused<S>(r[i + 2], v[2], fused<S>(r[i + 1], v[1], r[i] * v[0]));
     };
     return {along(0), along(3), along(6)};
   }
-  [[gnu::always_inline]] static Vec3<S> turned_back(const Rotation& r, const Vec3<S>& v) {
+  [[gnu::always_inline]] static Vec3<S> rotated_back(const Rotation& r, const Vec3<S>& v) {
     const auto along = [&](std::size_t i) {
       return fused<S>(r[i + 6], v[2], fused<S>(r[i + 3], v[1], r[i] * v[0]));
     };
     return {along(0), along(1), along(2)};
   }
 
-  /// Interpolated height, and the support of the nearest sample.
+  /// The interpolated height, and the support point of the nearest sample.
   [[gnu::always_inline]] Support support(const Indices& map, const Vec3<S>& g) const {
     using stdx::abs, stdx::max, stdx::min;
     constexpr int row = SupportMap::row;
@@ -185,11 +185,11 @@ class SeparatingDirections {
     stdx::where(by_y, face) = S(2.0f), stdx::where(by_z, face) = S(4.0f);
     stdx::where(along < S(0.0f), face) = face + S(1.0f);
     const S scale = S(half) / longest;
-    const auto place = [&](const S& at) __attribute__((always_inline)) {
+    const auto position = [&](const S& at) __attribute__((always_inline)) {
       return min(S(2 * half), max(S(0.0f), fused<S>(at, scale, S(half))));
     };
-    // What is no number becomes 0, so that it is in the table.
-    const S s = finite(place(u)), t = finite(place(v));
+    // NaN becomes 0, so that it is in the table.
+    const S s = finite(position(u)), t = finite(position(v));
     const S i = cell_of(s), j = cell_of(t), p = s - i, q = t - j;
     const auto sample = [&](const S& first, const S& second) __attribute__((always_inline)) {
       return (map + stdx::static_simd_cast<Indices>((face * row + first) * row + second)) * 4;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Pairs of nodes that a traversal has yet to open. The one to be opened next is the least in order
-/// of the last 32, not of all: that one is found in registers without a branch, and is nearly
-/// always the least of all.
+/// The pairs of nodes that a traversal has yet to open. The next one is the least in order of the
+/// last 32, not of all: that one is found in registers without a branch, and is nearly always the
+/// least of all.
 ///
-/// What is not taken in an order is taken as from a stack.
+/// Where order does not matter the last pair is taken, as from a stack.
 #pragma once
 
 #include <algorithm>
@@ -66,13 +66,49 @@ template <int F>
   for (; mask; mask &= mask - 1) *out++ = x[static_cast<std::size_t>(std::countr_zero(mask))];
 }
 
+/// The lane of the mask with the least number, as a bit; the first if there are several, any if
+/// there is a NaN.
+template <class S, std::size_t parts>
+[[gnu::always_inline]] inline std::uint64_t least_of(std::uint64_t mask,
+                                                     const std::array<S, parts>& x) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+  if constexpr (parts == 1) {
+    const __m512 others = _mm512_set1_ps(std::numeric_limits<float>::infinity());
+    const __m512 all =
+        _mm512_mask_mov_ps(others, static_cast<__mmask16>(mask), static_cast<__m512>(x[0]));
+    const __m256 eight = _mm256_min_ps(_mm512_castps512_ps256(all), _mm512_extractf32x8_ps(all, 1));
+    __m128 four = _mm_min_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
+    four = _mm_min_ps(four, _mm_permute_ps(four, 0x4e));
+    four = _mm_min_ps(four, _mm_permute_ps(four, 0xb1));
+    // Written so that NaN is found, too.
+    const std::uint64_t found =
+        _mm512_cmp_ps_mask(all, _mm512_broadcastss_ps(four), _CMP_NGT_UQ) & mask;
+    return found & -found;
+  }
+#endif
+  int least = std::countr_zero(mask);
+  const auto at = [&](int lane) {
+    const auto k = static_cast<std::size_t>(lane);
+    return x[k / S::size()][k % S::size()];
+  };
+  for (std::uint64_t rest = mask & (mask - 1); rest; rest &= rest - 1)
+    if (at(std::countr_zero(rest)) < at(least)) least = std::countr_zero(rest);
+  return std::uint64_t{1} << least;
+}
+
 }  // namespace detail
 
-class Frontier {
+/// Which of the pairs that a step leaves is taken next: they are pushed accordingly.
+enum class Next { any, nearest_child };
+
+/// The nodes of one body in sixteen lanes.
+using NodesOfLanes [[gnu::vector_size(64)]] = std::uint32_t;
+
+class WorkQueue {
  public:
   static constexpr std::size_t window = 32;
 
-  Frontier() { grow(512); }
+  WorkQueue() { grow(512); }
 
   void clear() { size_ = 0; }
   bool empty() const { return size_ == 0; }
@@ -84,7 +120,7 @@ class Frontier {
     order_[window + size_++] = order;
   }
 
-  /// Pairs of `other` with first, first + 1, ... of `side`, as bits of the mask say.
+  /// Pushes `other` with first + k of `side`, for each set bit k of the mask.
   template <int F>
   [[gnu::always_inline]] void push_lanes(int side, std::uint64_t mask, std::uint32_t first,
                                          std::uint32_t other, const Batch<float, F>& order) {
@@ -95,12 +131,47 @@ class Frontier {
     size_ += static_cast<std::size_t>(std::popcount(mask));
   }
 
+  /// Pushes a pair for each set bit of the mask; `order` is that of all sixteen, in registers.
+  template <class S, std::size_t parts>
+  [[gnu::always_inline]] void push_sixteen(std::uint64_t mask, const NodesOfLanes& a,
+                                           const NodesOfLanes& b,
+                                           const std::array<S, parts>& order) {
+    reserve();
+    float* to = &order_[window + size_];
+#if defined(__AVX512F__)
+    if constexpr (parts == 1) {
+      const auto lanes = static_cast<__mmask16>(mask);
+      _mm512_storeu_si512(&id_[0][size_], _mm512_maskz_compress_epi32(lanes, (__m512i)a));
+      _mm512_storeu_si512(&id_[1][size_], _mm512_maskz_compress_epi32(lanes, (__m512i)b));
+      _mm512_storeu_ps(to, _mm512_maskz_compress_ps(lanes, static_cast<__m512>(order[0])));
+      size_ += static_cast<std::size_t>(std::popcount(mask));
+      return;
+    }
+#endif
+    for (; mask; mask &= mask - 1, ++size_) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(mask));
+      id_[0][size_] = a[lane], id_[1][size_] = b[lane];
+      *to++ = order[lane / S::size()][lane % S::size()];
+    }
+  }
+
+  /// The same, the least in order last.
+  template <class S, std::size_t parts>
+  [[gnu::always_inline]] void push_sixteen_least_last(std::uint64_t mask, const NodesOfLanes& a,
+                                                      const NodesOfLanes& b,
+                                                      const std::array<S, parts>& order) {
+    if (mask == 0) return;
+    const std::uint64_t least = detail::least_of(mask, order);
+    push_sixteen(mask & ~least, a, b, order);
+    push_sixteen(least, a, b, order);
+  }
+
   NodePair take_last() {
     --size_;
     return {id_[0][size_], id_[1][size_]};
   }
 
-  /// The least in order of the last 32, of several the last; with its order.
+  /// Takes the least in order of the last 32, the last if there are several, and writes its order.
   [[gnu::always_inline]] NodePair take_least(float& order) {
     const std::size_t at = least();
     order = order_[window + at];
@@ -123,7 +194,7 @@ class Frontier {
     four = _mm_min_ps(four, _mm_permute_ps(four, 0x4e));
     four = _mm_min_ps(four, _mm_permute_ps(four, 0xb1));
     const __m512 value = _mm512_broadcastss_ps(four);
-    // Written so that what is no number is found, too.
+    // Written so that NaN is found, too.
     const std::uint32_t found =
         static_cast<std::uint32_t>(_mm512_cmp_ps_mask(last, value, _CMP_NGT_UQ)) << 16 |
         _mm512_cmp_ps_mask(first, value, _CMP_NGT_UQ);
@@ -139,7 +210,7 @@ class Frontier {
   void reserve() {
     if (size_ + 16 > id_[0].size()) grow(2 * id_[0].size());
   }
-  /// In front of the first stand 32 that never are the least.
+  /// Before the first order lie 32 infinite ones, which are never the least.
   void grow(std::size_t capacity) {
     id_[0].resize(capacity), id_[1].resize(capacity);
     order_.resize(window + capacity + 16);

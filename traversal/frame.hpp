@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The frame in which two volumes are tested.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace bvlab {
+
+/// world: all bodies are posed into one frame. A volume is posed when it is first needed, at most
+/// once between two moves of its body, and serves all pairs. body: nothing is kept. Whenever two
+/// volumes are tested, that of the first body is posed into the frame of the second, whose volumes
+/// are used as stored. So N_u <= N_v in the world frame, and N_u = N_v in a body's frame.
+enum class Frame : std::uint8_t { world, body };
+
+constexpr std::string_view name_of(Frame frame) {
+  return frame == Frame::world ? "world" : "body";
+}
+
+}  // namespace bvlab

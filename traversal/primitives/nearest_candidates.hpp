@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The 33 ways in which two triangles that are apart can be nearest: at a corner and an edge, at
+/// two edges, or at a corner and a face. Each is formed in T, float64 or double-double, with what
+/// its roundings may be and whether float64 can be trusted on it. triangle_distance.hpp has the
+/// bounds.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "hierarchies/geometry/double_double.hpp"
+#include "hierarchies/geometry/triangle_mesh.hpp"
+
+namespace bvlab {
+
+namespace nearest {
+
+template <class T>
+using Vector = std::array<T, 3>;
+
+template <class T>
+Vector<T> difference(const Vec3<double>& a, const Vec3<double>& b) {
+  if constexpr (std::is_same_v<T, DoubleDouble>)
+    return {T::sum(a[0], -b[0]), T::sum(a[1], -b[1]), T::sum(a[2], -b[2])};
+  else
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+template <class T>
+Vector<T> cross(const Vector<T>& u, const Vector<T>& v) {
+  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+}
+template <class T>
+T dot(const Vector<T>& u, const Vector<T>& v) {
+  return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+
+/// Whether float64 can be trusted on where, or whether, a candidate is. `parallel`: two edges, or a
+/// face's own, at an angle below 2^-48. Then some end or edge is as near in all but the second
+/// order, (2^-48 L)^2 / 2d, which matters only where d is much smaller than L. `open`: an angle
+/// below 2^-20, or points so close to where the candidate ends that rounding may have put them
+/// outside, and that would matter.
+enum class Doubt { none, parallel, open };
+
+/// One way in which two triangles can be nearest: the vector from a's point to b's and the
+/// parameters of those points. Infinite where there is no such way.
+template <class T>
+struct Candidate {
+  T squared = T(std::numeric_limits<double>::infinity());
+  T s = T(0), t = T(0);
+  double rounding = 0;  ///< |w| + 2 |s e| + 2 |t f|, each the sum of coordinates' magnitudes
+  Doubt doubt = Doubt::none;
+};
+
+template <class T>
+double magnitude(const Vector<T>& v) {
+  return std::abs(static_cast<double>(v[0])) + std::abs(static_cast<double>(v[1])) +
+         std::abs(static_cast<double>(v[2]));
+}
+
+/// The vector w - s e - t f.
+template <class T>
+Candidate<T> reached(const Vector<T>& w, const T& s, const Vector<T>& e, const T& t,
+                     const Vector<T>& f) {
+  Candidate<T> candidate;
+  Vector<T> r;
+  for (int i = 0; i < 3; ++i) r[i] = w[i] - s * e[i] - t * f[i];
+  candidate.squared = dot(r, r);
+  candidate.s = s, candidate.t = t;
+  candidate.rounding = magnitude(w) + 2 * (std::abs(static_cast<double>(s)) * magnitude(e) +
+                                           std::abs(static_cast<double>(t)) * magnitude(f));
+  return candidate;
+}
+
+/// The vector w between two corners.
+template <class T>
+Candidate<T> corners_apart(const Vector<T>& w) {
+  Candidate<T> candidate;
+  candidate.squared = dot(w, w);
+  candidate.rounding = magnitude(w);
+  return candidate;
+}
+
+/// Corner p, edge a b: the point of the edge is a + s (b - a).
+///
+/// s |e| is off by up to 12 u |w|, so that a point said to be at an end may be inside by as much.
+/// At a that is next to nothing beside |r| = |w|. At b, where |w| <= |e| + |r|, it makes |r| too
+/// long by a factor of up to 1 + (12 u |w| / |r|)^2 / 2, which is below 1 + 2u only if |r| > 2^-24
+/// |e|.
+template <class T>
+Candidate<T> corner_edge(const Vec3<double>& p, const Vec3<double>& a, const Vec3<double>& b) {
+  const Vector<T> e = difference<T>(b, a), w = difference<T>(p, a);
+  const T along = dot(w, e), length = dot(e, e);
+  if (!(along > T(0))) return corners_apart<T>(w);
+  if (!(along < length)) {
+    Candidate<T> end = corners_apart<T>(difference<T>(p, b));
+    end.s = T(1);
+    if (!(static_cast<double>(end.squared) > 0x1p-48 * static_cast<double>(length)))
+      end.doubt = Doubt::open;
+    return end;
+  }
+  return reached<T>(w, along / length, e, T(0), e);
+}
+
+/// The nearest points of two lines or of a point and a plane: w - s e - t f is orthogonal to e and
+/// f. By cross products, which lose half as many digits as Gram's determinant where e and f are
+/// nearly parallel. `inner` says whether s and t are inside, given by how much (negative: outside).
+template <class T, class Inside>
+Candidate<T> orthogonal(const Vector<T>& w, const Vector<T>& e, const Vector<T>& f,
+                        const Inside& inside) {
+  const Vector<T> n = cross(e, f);
+  const T square = dot(n, n);
+  const double sine_squared = static_cast<double>(square) /
+                              (static_cast<double>(dot(e, e)) * static_cast<double>(dot(f, f)));
+  Candidate<T> candidate;
+  // So written that 0 / 0 is parallel.
+  const Doubt narrow = !(sine_squared >= 0x1p-96) ? Doubt::parallel
+                       : sine_squared < 0x1p-40   ? Doubt::open
+                                                  : Doubt::none;
+  candidate.doubt = narrow;
+  if (!(square > T(0))) return candidate;
+  // What is wrong with n would stay in s e + t f; t made from s leaves only s's own error, and of
+  // that what is orthogonal to f.
+  const T s = dot(cross(w, f), n) / square;
+  Vector<T> rest;
+  for (int i = 0; i < 3; ++i) rest[i] = w[i] - s * e[i];
+  const T t = dot(rest, f) / dot(f, f);
+  const double depth = static_cast<double>(inside(s, t));
+  if (depth > 0) {
+    candidate = reached<T>(w, s, e, t, f);
+    candidate.doubt = narrow;
+  } else if (narrow == Doubt::none &&
+             -depth < 0x1p-20 * (1 + magnitude(w) / std::min(magnitude(e), magnitude(f)))) {
+    candidate.doubt = Doubt::open;
+  }
+  return candidate;
+}
+
+/// Inner points of the edges a b and c d: a + s (b - a) and c + t (d - c).
+template <class T>
+Candidate<T> edge_edge(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c,
+                       const Vec3<double>& d) {
+  return orthogonal<T>(difference<T>(c, a), difference<T>(b, a), difference<T>(c, d),
+                       [](const T& s, const T& t) {
+                         return std::min(std::min(s, t), std::min(T(1) - s, T(1) - t));
+                       });
+}
+
+/// Corner p, inner point a + s (b - a) + t (c - a) of a face.
+template <class T>
+Candidate<T> corner_face(const Vec3<double>& p, const Vec3<double>& a, const Vec3<double>& b,
+                         const Vec3<double>& c) {
+  return orthogonal<T>(
+      difference<T>(p, a), difference<T>(b, a), difference<T>(c, a),
+      [](const T& s, const T& t) { return std::min(std::min(s, t), T(1) - s - t); });
+}
+
+constexpr int corner_edges = 18, edge_edges = 9, corner_faces = 6;
+constexpr int candidates = corner_edges + edge_edges + corner_faces;
+
+/// The k-th candidate: corners of a against edges of b, the reverse, edges, corners of a against b,
+/// corners of b against a.
+template <class T>
+Candidate<T> candidate(const Triangle& a, const Triangle& b, int k) {
+  const auto next = [](int i) { return i == 2 ? 0 : i + 1; };
+  if (k < corner_edges) {
+    const int i = k % 9 / 3, j = k % 3;
+    return k < 9 ? corner_edge<T>(a[i], b[j], b[next(j)]) : corner_edge<T>(b[i], a[j], a[next(j)]);
+  }
+  k -= corner_edges;
+  if (k < edge_edges) return edge_edge<T>(a[k / 3], a[next(k / 3)], b[k % 3], b[next(k % 3)]);
+  k -= edge_edges;
+  return k < 3 ? corner_face<T>(a[k], b[0], b[1], b[2])
+               : corner_face<T>(b[k - 3], a[0], a[1], a[2]);
+}
+
+/// The points of the k-th candidate, from its parameters.
+inline std::array<Vec3<double>, 2> points_of(const Triangle& a, const Triangle& b, int k, double s,
+                                             double t) {
+  const auto next = [](int i) { return i == 2 ? 0 : i + 1; };
+  const auto along = [&](const Triangle& triangle, int j, double r) -> Vec3<double> {
+    const auto &p = triangle[j], &q = triangle[next(j)];
+    return r == 1 ? q : Vec3<double>(p + r * (q - p));
+  };
+  const auto inside = [&](const Triangle& q) -> Vec3<double> {
+    return q[0] + s * (q[1] - q[0]) + t * (q[2] - q[0]);
+  };
+  if (k < 9) return {a[k / 3], along(b, k % 3, s)};
+  if (k < corner_edges) return {along(a, k % 3, s), b[k % 9 / 3]};
+  k -= corner_edges;
+  if (k < edge_edges) return {along(a, k / 3, s), along(b, k % 3, t)};
+  k -= edge_edges;
+  if (k < 3) return {a[k], inside(b)};
+  return {inside(a), b[k - 3]};
+}
+
+}  // namespace nearest
+
+}  // namespace bvlab

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The answer of a pair's last run, which holds while neither body moves.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <string_view>
+
+#include "traversal/queries/query.hpp"
+#include "traversal/tracked_front.hpp"
+
+namespace bvlab {
+
+/// The query is answered by yes or no, and a hit settles it.
+template <class Query>
+concept YesOrNo =
+    !wants_bound<Query>() && Query::one_hit_is_enough && requires(const Query& query) {
+      { query.answer() } -> std::same_as<bool>;
+    };
+
+class LastAnswer {
+ public:
+  /// Gives the query the last answer if it can be repeated and nothing has moved since; returns
+  /// whether that was so.
+  template <class Pair>
+  bool repeat(const Pair& pair) {
+    using Query = typename Pair::Query;
+    const std::uint32_t a = pair.a().epoch(), b = pair.b().epoch();
+    const bool same = known_ && a == epoch_a_ && b == epoch_b_ && query_ == &Query::name;
+    if constexpr (requires { pair.query().distance(); }) {
+      if (same) pair.query().repeat(distance_);
+    } else if constexpr (YesOrNo<Query>) {
+      if (same && touching_) pair.query().known(0, 0);  // which triangles is no part of a yes
+    }
+    epoch_a_ = a, epoch_b_ = b;
+    query_ = &Query::name;
+    return same;
+  }
+
+  /// Keeps the answer if it is yes or no, or a number, or that nothing was found.
+  template <class Pair>
+  void remember(const Pair& pair, const TraversalStatistics& statistics) {
+    auto& query = pair.query();
+    if constexpr (requires { query.distance(); })
+      known_ = true, distance_ = query.distance();
+    else if constexpr (YesOrNo<typename Pair::Query>)
+      known_ = true, touching_ = query.answer();
+    else
+      known_ = statistics.everything && statistics.triangles == 0;
+  }
+  void remember_touching() { known_ = touching_ = true; }
+  void forget() { known_ = false; }
+
+ private:
+  bool known_ = false, touching_ = false;
+  std::uint32_t epoch_a_ = 0, epoch_b_ = 0;
+  const std::string_view* query_ = nullptr;
+  double distance_ = 0;
+};
+
+}  // namespace bvlab

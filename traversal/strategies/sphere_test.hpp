@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Whether spheres about the origins of two bodies' frames are apart, by translations alone: no
+/// volume is posed. After a pair that is near, the test rests for eight runs.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "hierarchies/geometry/written_out.hpp"
+#include "hierarchies/hierarchy_extent.hpp"
+
+namespace bvlab {
+
+class SphereTest {
+ public:
+  enum class Result : std::uint8_t { apart, near, not_tested };
+
+  template <class Pair>
+  Result operator()(const Pair& pair) {
+    if (until_test_ > 0) return --until_test_, Result::not_tested;
+    // What is added to the radii is far more than rotations can be off and rounding can do.
+    if (radii_ == 0)
+      radii_ = (radius(pair.a().extent()) + radius(pair.b().extent())) * (1 + 0x1p-20) +
+               (pair.a().extent().reach + pair.b().extent().reach) * 0x1p-40;
+    const Vec3<double>&a = pair.a().pose().translation, &b = pair.b().pose().translation;
+    const double radii = radii_ + (a.lpNorm<1>() + b.lpNorm<1>()) * 0x1p-40 + pair.query().limit();
+    const double squared = (a - b).squaredNorm();
+    if (squared > radii * radii && squared > tiny) return Result::apart;
+    until_test_ = rest;
+    return Result::near;
+  }
+
+  /// Counts a run in which the roots were tested instead; returns whether the rest is over.
+  bool batch_is_over() { return --until_test_ <= 0; }
+  void look_now() { until_test_ = 0; }
+
+ private:
+  static constexpr int rest = 8;            // runs
+  static constexpr double tiny = 0x1p-900;  // squares below have lost digits to underflow
+
+  /// Of a sphere about the frame's origin that holds the mesh. Volumes may reach much farther.
+  static double radius(const HierarchyExtent& extent) {
+    return std::min(extent.reach, stable_norm(extent.centre) + extent.radius);
+  }
+
+  int until_test_ = 0;
+  double radii_ = 0;  // of both bodies, together
+};
+
+}  // namespace bvlab

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Tests that decide pairs of bodies before any tree is traversed, a register of pairs at a time:
+/// spheres around the bodies, and directions that separate them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "traversal/body_pair.hpp"
+#include "traversal/wide/separating_direction.hpp"
+
+namespace bvlab {
+
+/// A set of pairs of bodies, by their indices. Each is still undecided, or decided to be apart or
+/// unchanged. One for each thread.
+class PairSieve {
+ public:
+  using Indices = SeparatingDirections::Indices;
+  static constexpr std::size_t width = SeparatingDirections::width;
+
+  /// Empties the sieve and makes room for `pairs` pairs, with a register behind them.
+  void begin(std::size_t pairs) {
+    if (undecided_.size() < pairs + width)
+      undecided_.resize(pairs + width), decided_.resize(pairs + width);
+    undecided_count_ = decided_count_ = 0;
+  }
+  void add(std::uint32_t pair) { undecided_[undecided_count_++] = static_cast<std::int32_t>(pair); }
+  std::span<const std::int32_t> undecided() const {
+    return std::span(undecided_).first(undecided_count_);
+  }
+  std::span<const std::int32_t> decided() const {
+    return std::span(decided_).first(decided_count_);
+  }
+
+  /// Decides the pairs for which `decides(pair)` is true, one at a time.
+  template <class Decides>
+  void sift(Decides&& decides) {
+    sift_slowly([&](std::size_t p) { put(static_cast<std::int32_t>(p), !decides(p)); });
+  }
+  /// Calls `take(pair)` for each undecided pair. `take` may let pairs wait, and `put`s them back in
+  /// any order; they are written behind the pair that is read.
+  template <class Take>
+  void sift_slowly(Take&& take) {
+    const std::size_t count = std::exchange(undecided_count_, 0);
+    for (std::size_t k = 0; k < count; ++k) take(at(k));
+  }
+  void put(std::int32_t pair, std::size_t is_undecided) {
+    undecided_[undecided_count_] = decided_[decided_count_] = pair;
+    undecided_count_ += is_undecided, decided_count_ += 1 - is_undecided;
+  }
+
+  /// Pairs for which `skips(pair)` is true stay undecided. The others are tested a register at a
+  /// time: `test(pairs, used)` returns the bits of those that stay undecided. Returns how many were
+  /// tested.
+  template <class Skips, class Test>
+  std::size_t sift_batches(Skips&& skips, Test&& test) {
+    std::size_t skipped = 0;
+    for (std::size_t k = 0; k < undecided_count_; ++k)
+      if (skips(at(k))) std::swap(undecided_[k], undecided_[skipped++]);
+    const std::size_t count = std::exchange(undecided_count_, skipped);
+    for (std::size_t k = skipped; k < count; k += width) {
+      const Indices pairs(&undecided_[k], stdx::element_aligned);
+      const std::size_t used = std::min(width, count - k);
+      const std::uint64_t stay = test(pairs, used);
+      alignas(64) std::array<std::int32_t, width> pair;
+      pairs.copy_to(pair.data(), stdx::vector_aligned);
+      for (std::size_t lane = 0; lane < used; ++lane) put(pair[lane], stay >> lane & 1);
+    }
+    return count - skipped;
+  }
+
+ private:
+  std::size_t at(std::size_t k) const { return static_cast<std::size_t>(undecided_[k]); }
+
+  std::vector<std::int32_t> undecided_, decided_;
+  std::size_t undecided_count_ = 0, decided_count_ = 0;
+};
+
+class EarlyCulling {
+ public:
+  using Indices = PairSieve::Indices;
+
+  /// Adds the next body, by the support map of its mesh. Bodies of one mesh share one copy.
+  void add_body(const SupportMap& map) {
+    const auto [known, fresh] = added_.try_emplace(&map, 0);
+    if (fresh) known->second = directions_.add(map);
+    maps_.push_back(known->second);
+    directions_.resize(maps_.size());
+  }
+
+  /// `centre` of the body's sphere from the common origin, `error_bound` as in OrthonormalPose.
+  void set_pose(std::size_t body, const Mat3<double>& rotation, const Vec3<double>& centre,
+                double radius, double error_bound) {
+    directions_.set_pose(body, maps_[body], rotation, centre, radius, error_bound);
+  }
+
+  /// Decides pairs whose spheres are apart.
+  void cull_by_spheres(PairSieve& sieve, std::span<const ObjectPair> pairs) const {
+    sieve.sift_batches([](std::size_t) { return false; },
+                       [&](const Indices& numbers, std::size_t used) {
+                         return directions_.spheres_meet(pairs_of(pairs, numbers, used));
+                       });
+  }
+
+  /// Decides pairs that a direction separates, and calls `apart(pair, gap)` for each, with at most
+  /// their distance. Those for which `skips(pair)` stay undecided. Returns how many were tested.
+  template <class Skips, class Apart>
+  std::size_t cull_by_directions(PairSieve& sieve, std::span<const ObjectPair> pairs, Skips&& skips,
+                                 Apart&& apart) const {
+    return sieve.sift_batches(skips, [&](const Indices& numbers, std::size_t used) {
+      const auto batch = pairs_of(pairs, numbers, used);
+      auto direction = SeparatingDirections::normalized(batch.between);
+      const auto gaps = directions_.gaps(batch, direction, most_directions);
+      const std::uint64_t near = ~bits(gaps > 0.0f);
+      for (std::size_t lane = 0; lane < used; ++lane)
+        if (!(near >> lane & 1)) apart(static_cast<std::size_t>(numbers[lane]), gaps[lane]);
+      return near;
+    });
+  }
+
+ private:
+  static constexpr int most_directions = 2;
+
+  /// The first `used` of these pairs, one a lane; the other lanes repeat pair 0.
+  SeparatingDirections::Pairs pairs_of(std::span<const ObjectPair> pairs, const Indices& numbers,
+                                       std::size_t used) const {
+    constexpr int width = static_cast<int>(PairSieve::width);
+    Indices offset = 2 * numbers;
+    const Indices lanes([](auto lane) { return static_cast<std::int32_t>(lane); });
+    stdx::where(lanes >= static_cast<std::int32_t>(used), offset) = 0;
+    const auto body = [&](const std::uint32_t& first) {
+      return std::bit_cast<Indices>(
+          gathered<width>(reinterpret_cast<const float*>(&first), offset));
+    };
+    return directions_.pairs(body(pairs[0].i), body(pairs[0].j));
+  }
+
+  SeparatingDirections directions_;
+  std::map<const SupportMap*, std::int32_t> added_;
+  std::vector<std::int32_t> maps_;  // for each body, the number of its map in directions_
+};
+
+}  // namespace bvlab

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A step of a traversal of two trees of four children a node, in sixteen lanes. Where the two
+/// nodes are alike in size, four children are tested against four; else one node against the
+/// sixteen grandchildren of the other, the larger one or the one that is no leaf (see
+/// block_hierarchy.hpp).
+///
+/// Four against four halves the number of steps between bodies that are alike in size. It is bad
+/// where one is far larger, as all four of its children overlap all four of the other's. See
+/// siblings_kernel.hpp for the members of a kernel.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+#include "hierarchies/wide/block_hierarchy.hpp"
+#include "traversal/primitives/triangle_filter.hpp"
+#include "traversal/primitives/triangle_gap.hpp"
+#include "traversal/wide/relative_frame.hpp"
+#include "traversal/wide/sixteen_lanes.hpp"
+#include "traversal/wide/work_queue.hpp"
+
+namespace bvlab {
+
+struct MixedKernel {
+  static constexpr std::string_view name = "mixed";
+  static constexpr std::string_view description =
+      "four children against four where nodes are alike in size, else one against sixteen "
+      "grandchildren";
+  /// Volumes whose sibling test also compares a volume in each lane with another in each.
+  template <class V>
+  static constexpr bool takes = requires(const typename SiblingTestOf<V>::FrameChange& frame_change,
+                                         const Over<V, SixteenLanes>& lanes) {
+    SiblingTestOf<V>::in_lanes(lanes, frame_change);
+  };
+  /// Sixteen lanes leave so many pairs open that descending to the nearest child of a step, rather
+  /// than to the nearest of all open pairs, finds a hit sooner and waits for less.
+  static constexpr bool nearest_child_first = true;
+  /// Nodes whose sizes differ by no more than this factor are alike.
+  static constexpr float alike = 2;
+
+  template <BoundingVolume V, int F>
+  using Hierarchy = BlockHierarchy<V>;
+  template <BoundingVolume V, int F>
+  using Body = WideBody<BlockHierarchy<V>>;
+
+  template <BoundingVolume V, int F>
+  class PairFrame {
+    static_assert(F == BlockHierarchy<V>::fan_out, "blocks are four by four");
+    using Tree = BlockHierarchy<V>;
+    using Node = typename Tree::Node;
+    using Block = typename Tree::Block;
+    using SiblingTest = SiblingTestOf<V>;
+    using FrameChange = typename SiblingTest::FrameChange;
+
+   public:
+    using S = SixteenLanes;
+    static constexpr std::size_t parts = 16 / S::size();
+
+    void begin(Body<V, F>& a, Body<V, F>& b) {
+      trees_ = {&a.hierarchy(), &b.hierarchy()};
+      const RelativePose a_from_b(a.orthonormal_pose(), b.orthonormal_pose());
+      const RelativePose b_from_a(b.orthonormal_pose(), a.orthonormal_pose());
+      const double reach_a = trees_[0]->reach(), reach_b = trees_[1]->reach();
+      // Constructed in place: a copy in wider pieces than were written would stall.
+      ::new (&frame_change_[1]) FrameChange(SiblingTest::frame_change(a_from_b, reach_a, reach_b));
+      ::new (&frame_change_[0]) FrameChange(SiblingTest::frame_change(b_from_a, reach_b, reach_a));
+      transforms_[0].begin(a_from_b, reach_a, reach_b);
+      transforms_[1].begin(b_from_a, reach_b, reach_a);
+    }
+    const CornerTransform& a_to_b() const { return transforms_[0]; }
+    NodePair roots() const { return {trees_[0]->root(), trees_[1]->root()}; }
+    /// `touched` is a pair of leaves.
+    void retry(const NodePair& touched, WorkQueue&, WorkQueue& triangles) const {
+      triangles.push(touched, 0);
+    }
+
+    /// Four children of a, posed into b's frame, against four of b.
+    struct FourByFour {
+      const PairFrame& pair_frame;
+      const typename Tree::Row &row_a, &row_b;
+      NodePair node;
+      std::uint64_t used;
+
+      std::uint64_t lanes() const { return used; }
+      [[gnu::always_inline]] Over<V, S> posed(std::size_t part) const {
+        return SiblingTest::in_lanes(
+            volumes([&](std::size_t k) { return each_of_four(row_a.volume[k].data(), part); }),
+            pair_frame.frame_change_[1]);
+      }
+      [[gnu::always_inline]] Over<V, S> others(std::size_t part) const {
+        return volumes([&](std::size_t k) { return four_repeated(row_b.volume[k].data(), part); });
+      }
+      [[gnu::always_inline]] S sizes(std::size_t part) const {
+        return each_of_four(row_a.size.data(), part) + four_repeated(row_b.size.data(), part);
+      }
+      [[gnu::always_inline]] OverlapLanes<S> overlap(std::size_t part) const {
+        return SiblingTest::template overlap<S>(posed(part), pair_frame.frame_change_[1],
+                                                others(part), sizes(part));
+      }
+      [[gnu::always_inline]] GapLanes<S> separation(std::size_t part) const {
+        return separation_by<S>(posed(part), pair_frame.frame_change_[1], others(part),
+                                sizes(part));
+      }
+      [[gnu::always_inline]] S gaps(std::size_t part) const {
+        return SiblingTest::template gaps<S>(posed(part), pair_frame.frame_change_[1],
+                                             others(part));
+      }
+      [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles, std::uint64_t left,
+                                       const std::array<S, parts>& order, Next next) const {
+        push_nodes(nodes, triangles, left, each_of_four(row_a.name.data()),
+                   four_repeated(row_b.name.data()), order, next);
+      }
+      ReferenceSphere reference_sphere() const { return pair_frame.reference_sphere(node); }
+    };
+
+    /// One volume, posed into the other body's frame, against the sixteen lanes of a block.
+    struct OneBySixteen {
+      const PairFrame& pair_frame;
+      std::size_t side;  ///< whose nodes are in the lanes
+      const Block& block;
+      std::uint32_t single, name;
+      std::uint64_t used;
+      typename SiblingTest::PosedNode posed;
+
+      std::uint64_t lanes() const { return used; }
+      [[gnu::always_inline]] Over<V, S> others(std::size_t part) const {
+        return volumes([&](std::size_t k) { return of_sixteen(block.volume[k].data(), part); });
+      }
+      [[gnu::always_inline]] S sizes(std::size_t part) const {
+        return of_sixteen(block.size.data(), part);
+      }
+      [[gnu::always_inline]] OverlapLanes<S> overlap(std::size_t part) const {
+        return SiblingTest::template overlap<S>(posed, pair_frame.frame_change_[side], others(part),
+                                                sizes(part));
+      }
+      [[gnu::always_inline]] GapLanes<S> separation(std::size_t part) const {
+        return separation_by<S>(posed, pair_frame.frame_change_[side], others(part),
+                                sizes(part) + S(posed.size));
+      }
+      [[gnu::always_inline]] S gaps(std::size_t part) const {
+        return SiblingTest::template gaps<S>(posed, pair_frame.frame_change_[side], others(part));
+      }
+      [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles, std::uint64_t left,
+                                       const std::array<S, parts>& order, Next next) const {
+        const NodesOfLanes many = of_sixteen(block.name.data()), same = NodesOfLanes{} + name;
+        push_nodes(nodes, triangles, left, side ? same : many, side ? many : same, order, next);
+      }
+      ReferenceSphere reference_sphere() const {
+        return reference_sphere_of(pair_frame.trees_[1 - side]->node_sphere(single), 1 - side,
+                                   pair_frame.transforms_);
+      }
+    };
+
+    template <class Counter, class Look>
+    [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Look&& look) const {
+      const std::uint32_t i = Tree::number_of(pair.a), j = Tree::number_of(pair.b);
+      const Node &a = trees_[0]->node(i), &b = trees_[1]->node(j);
+      const bool inner = !((pair.a | pair.b) & Tree::leaf_flag);
+      const bool leaves = pair.a & pair.b & Tree::leaf_flag;  // both roots are leaves
+      if ((inner && a.size <= alike * b.size && b.size <= alike * a.size) || leaves) {
+        counter.posed(static_cast<std::uint64_t>(std::popcount(a.children)));
+        look(FourByFour{*this,
+                        leaves ? trees_[0]->root_alone() : trees_[0]->row(a.first),
+                        leaves ? trees_[1]->root_alone() : trees_[1]->row(b.first),
+                        {i, j},
+                        leaves ? 1 : every_fourth(a.children) * 15 & b.children * 0x1111u});
+        return;
+      }
+      counter.posed(1);
+      if (!a.leaf && (b.leaf || a.size > b.size))
+        look(OneBySixteen{*this, 0, trees_[0]->block(a.first), j, pair.b, a.grandchildren,
+                          SiblingTest::posed_node(b.volume, b.size, frame_change_[0])});
+      else
+        look(OneBySixteen{*this, 1, trees_[1]->block(b.first), i, pair.a, b.grandchildren,
+                          SiblingTest::posed_node(a.volume, a.size, frame_change_[1])});
+    }
+
+    /// Up to four triangles of a against up to four of b.
+    class Triangles {
+     public:
+      [[gnu::always_inline]] Triangles(const PairFrame& pair_frame, const NodePair& pair)
+          : pair_frame_(pair_frame),
+            node_{Tree::number_of(pair.a), Tree::number_of(pair.b)},
+            a_(pair_frame.trees_[0]->node(node_.a)),
+            b_(pair_frame.trees_[1]->node(node_.b)) {
+        using Four = CornerTransform::Four;
+        const auto& own = pair_frame_.trees_[0]->corners(a_.first).corner;
+        const auto from = [](const auto& p) { return Four(p.data(), stdx::vector_aligned); };
+        for (std::size_t i = 0; i < 3; ++i) {
+          const auto transformed =
+              pair_frame.transforms_[0](from(own[i][0]), from(own[i][1]), from(own[i][2]));
+          for (std::size_t k = 0; k < 3; ++k)
+            transformed[k].copy_to(transformed_[i][k].data(), stdx::vector_aligned);
+        }
+      }
+
+      std::uint64_t lanes() const { return every_fourth(a_.children) * 15 & b_.children * 0x1111u; }
+      std::uint32_t of_a(int lane) const {
+        return pair_frame_.trees_[0]->triangle(a_.first + static_cast<std::uint32_t>(lane / 4));
+      }
+      std::uint32_t of_b(int lane) const {
+        return pair_frame_.trees_[1]->triangle(b_.first + static_cast<std::uint32_t>(lane % 4));
+      }
+      [[gnu::always_inline]] std::array<Corners<S>, 2> corners(std::size_t part) const {
+        const auto& lanes = pair_frame_.trees_[1]->corners(b_.first).corner;
+        std::array<Corners<S>, 2> of;
+        for (std::size_t i = 0; i < 3; ++i)
+          for (std::size_t k = 0; k < 3; ++k) {
+            of[0][i][k] = each_of_four(transformed_[i][k].data(), part);
+            of[1][i][k] = four_repeated(lanes[i][k].data(), part);
+          }
+        return of;
+      }
+      /// At most the distance of any pair; not positive where no bound is known.
+      template <class Counter>
+      [[gnu::noinline]] float gap(Counter&) const {
+        float least = std::numeric_limits<float>::infinity();
+        for (std::size_t part = 0; part < parts; ++part) {
+          const auto [x, y] = corners(part);
+          least = std::min(
+              least, stdx::hmin(triangle_gap<S>(x, y, S(pair_frame_.a_to_b().error_bound()))));
+        }
+        return least;
+      }
+      ReferenceSphere reference_sphere() const { return pair_frame_.reference_sphere(node_); }
+
+     private:
+      const PairFrame& pair_frame_;
+      NodePair node_;
+      const Node &a_, &b_;
+      alignas(16) std::array<std::array<std::array<float, 4>, 3>, 3> transformed_;
+    };
+    [[gnu::always_inline]] Triangles triangles(const NodePair& pair) const { return {*this, pair}; }
+
+   private:
+    /// The sphere of the smaller of two nodes.
+    ReferenceSphere reference_sphere(const NodePair& node) const {
+      const auto &a = trees_[0]->node_sphere(node.a), &b = trees_[1]->node_sphere(node.b);
+      return a.radius < b.radius ? reference_sphere_of(a, 0, transforms_)
+                                 : reference_sphere_of(b, 1, transforms_);
+    }
+
+    /// A batch of volumes, filled field by field.
+    template <class Field>
+    [[gnu::always_inline]] static Over<V, S> volumes(const Field& field) {
+      static_assert(sizeof(Over<V, S>) == sizeof(S) * Tree::fields);
+      Over<V, S> result;
+#pragma GCC unroll 32
+      for (std::size_t k = 0; k < Tree::fields; ++k) {
+        const S lanes = field(k);
+        std::memcpy(reinterpret_cast<char*>(&result) + sizeof lanes * k, &lanes, sizeof lanes);
+      }
+      return result;
+    }
+
+    template <class Lanes, class PosedNode>
+    [[gnu::always_inline]] static GapLanes<Lanes> separation_by(const PosedNode& posed,
+                                                                const FrameChange& frame_change,
+                                                                const Over<V, Lanes>& others,
+                                                                const Lanes& sizes) {
+      const Lanes gap = SiblingTest::template separation<Lanes>(posed, frame_change, others);
+      return {gap, gap * roughly_one_over<Lanes>(sizes)};
+    }
+
+    /// Pairs of two leaves go to the queue of triangles.
+    [[gnu::always_inline]] static void push_nodes(WorkQueue& nodes, WorkQueue& triangles,
+                                                  std::uint64_t left, const NodesOfLanes& a,
+                                                  const NodesOfLanes& b,
+                                                  const std::array<S, parts>& order, Next next) {
+      const std::uint64_t leaves = left & highest_bits(a & b);
+      if (next == Next::nearest_child)
+        nodes.push_sixteen_least_last(left & ~leaves, a, b, order);
+      else
+        nodes.push_sixteen(left & ~leaves, a, b, order);
+      if (leaves) triangles.push_sixteen(leaves, a, b, order);
+    }
+
+    std::array<const Tree*, 2> trees_;
+    std::array<FrameChange, 2> frame_change_;    // into the frame of that side
+    std::array<CornerTransform, 2> transforms_;  // of a to b, and back
+  };
+};
+
+}  // namespace bvlab

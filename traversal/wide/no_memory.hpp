@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The memory of a pair of bodies that starts from the roots in every frame.
+///
+/// A memory is what pairs of bodies keep from frame to frame. WidePairs calls
+///   add_body(sphere, reach), resize(pairs)  for the bodies and the number of pairs
+///   forget(pair)                            when a pair parts
+///   begin_frame<Query>()                    another query than before starts without memory
+///   move(i, body, pose, culling, origin)    body i is at `pose`
+///   rest(i)                                 body i does not move
+///   require(body, pose)                     a traversal is about to need the body
+///   answer_valid<Query>(pair, bodies)       whether the last answer holds, by one comparison
+///   repeat(pair, query)                     gives a query the last answer
+///   cull<Query>(sieve, scene, counter)      decides pairs by what is kept
+///   skips_directions(pair)                  see EarlyCulling::cull_by_directions
+///   apart(pair, bodies, gap)                a direction has separated the pair
+///   start<Query>(pair, bodies)              where a traversal starts
+///   remember(pair, bodies, query, measure)  what the traversal has found
+/// and has Measure<S>, what a traversal measures for it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "hierarchies/wide/fitting.hpp"
+#include "traversal/wide/early_culling.hpp"
+#include "traversal/wide/wide_traversal.hpp"
+
+namespace bvlab {
+
+/// What a memory may use to decide pairs early.
+struct PairScene {
+  std::span<const ObjectPair> pairs;
+  std::span<const Pose> poses;                  ///< of all bodies
+  std::span<const TriangleMesh* const> meshes;  ///< of all bodies
+  const EarlyCulling& culling;
+};
+
+class NoMemory {
+ public:
+  static constexpr std::string_view name = "recursive";
+  template <class S>
+  using Measure = NotMeasuring;
+
+  void add_body(const MeshSphere& sphere, double) { spheres_.push_back(sphere); }
+  void resize(std::size_t pairs) { touched_.resize(pairs); }
+  static void forget(std::size_t) {}
+  template <class Query>
+  static void begin_frame() {}
+
+  template <class Body>
+  void move(std::size_t i, Body& body, const Pose& pose, EarlyCulling& culling,
+            const Vec3<double>& origin) const {
+    body.set_pose(pose);
+    culling.set_pose(i, pose.rotation, pose(spheres_[i].centre) - origin, spheres_[i].radius,
+                     body.orthonormal_pose().error_bound);
+  }
+  static void rest(std::size_t) {}
+  template <class Body>
+  static void require(Body&, const Pose&) {}
+
+  template <class Query>
+  static constexpr bool answer_valid(std::size_t, const ObjectPair&) {
+    return false;
+  }
+  template <class Query>
+  static void repeat(std::size_t, Query&) {}
+  template <class Query, class Counter>
+  static void cull(PairSieve& sieve, const PairScene& scene, Counter&) {
+    scene.culling.cull_by_spheres(sieve, scene.pairs);
+  }
+  static constexpr bool skips_directions(std::size_t) { return false; }
+  static void apart(std::size_t, const ObjectPair&, double) {}
+
+  template <class Query>
+  TraversalStart start(std::size_t p, const ObjectPair&) const {
+    if constexpr (AnswersTouching<Query>)
+      return {touched_[p] ? Expect::touching : Expect::apart};
+    else
+      return {};
+  }
+  template <class Query>
+  void remember(std::size_t p, const ObjectPair&, const Query& query, const NotMeasuring&) {
+    if constexpr (AnswersTouching<Query>) touched_[p] = query.touching();
+  }
+
+ private:
+  /// Queries whose one-bit answer is what to expect next.
+  template <class Query>
+  static constexpr bool AnswersTouching = requires(Query query) { query.touching(); };
+
+  std::vector<MeshSphere> spheres_;
+  std::vector<std::uint8_t> touched_;  // in the last frame; only the order of steps depends on it
+};
+
+}  // namespace bvlab

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Two bodies in each other's frames. Volumes stay in the frames of their meshes; the relative pose
+/// takes one node at a time into the frame of the other body. Nothing is cached but that pose.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <new>
+#include <utility>
+
+#include "hierarchies/geometry/relative_pose.hpp"
+#include "hierarchies/wide/sibling_test.hpp"
+#include "hierarchies/wide/wide_hierarchy.hpp"
+
+namespace bvlab {
+
+/// A mesh with its wide hierarchy at a pose. Vertices are posed on request and not kept.
+template <class Hierarchy>
+class WideBody {
+ public:
+  WideBody(const TriangleMesh& mesh, const Hierarchy& hierarchy)
+      : mesh_(&mesh), hierarchy_(&hierarchy) {}
+
+  const Hierarchy& hierarchy() const { return *hierarchy_; }
+  const OrthonormalPose& orthonormal_pose() const { return orthonormal_pose_; }
+  const Pose& pose() const { return pose_; }
+
+  /// Returns whether the body has moved.
+  bool set_pose(const Pose& pose) {
+    if (posed_ && pose == pose_) return false;
+    pose_ = pose, posed_ = true;
+    orthonormal_pose_ = OrthonormalPose(pose, hierarchy_->reach());
+    return true;
+  }
+
+  /// The mesh's triangle of this index, in the world: every verdict is on these corners.
+  Triangle triangle(std::uint32_t index) const { return pose_(mesh_->corners(index)); }
+
+ private:
+  const TriangleMesh* mesh_;
+  const Hierarchy* hierarchy_;
+  Pose pose_;
+  OrthonormalPose orthonormal_pose_;
+  bool posed_ = false;
+};
+
+/// Takes corners of a into the frame of b's mesh, in float, for the float filter of triangles. The
+/// fourth number of `Four` is unused.
+class CornerTransform {
+ public:
+  using Four = Batch<float, 4>;
+
+  /// Corners are rounded (e r), as are rotation and translation; three products and sums follow.
+  void begin(const RelativePose& a_from_b, double reach_a, double reach_b) {
+    constexpr double e = unit_roundoff<float>;
+    error_bound_ = static_cast<float>((16 * e * (reach_a + a_from_b.length) + 2 * e * reach_b +
+                                       a_from_b.error_bound) *
+                                      (1 + 8 * e)) +
+                   std::numeric_limits<float>::min();
+    for (int i = 0; i < 3; ++i)
+      rounded_to_float(a_from_b.column[static_cast<std::size_t>(i)])
+          .copy_to(column_[i], stdx::vector_aligned);
+    rounded_to_float(a_from_b.translation).copy_to(translation_, stdx::vector_aligned);
+  }
+
+  [[gnu::always_inline]] Four operator()(float x, float y, float z) const {
+    const auto from = [](const float* p) { return Four(p, stdx::vector_aligned); };
+    return fused<Four>(from(column_[2]), Four(z),
+                       fused<Four>(from(column_[1]), Four(y),
+                                   fused<Four>(from(column_[0]), Four(x), from(translation_))));
+  }
+
+  /// The same of several points, one a lane.
+  template <Batched S>
+  [[gnu::always_inline]] std::array<S, 3> operator()(const S& x, const S& y, const S& z) const {
+    std::array<S, 3> result;
+    for (std::size_t i = 0; i < 3; ++i)
+      result[i] = fused<S>(
+          S(column_[2][i]), z,
+          fused<S>(S(column_[1][i]), y, fused<S>(S(column_[0][i]), x, S(translation_[i]))));
+    return result;
+  }
+
+  /// The error bound of each coordinate of a transformed corner, in units of the meshes.
+  float error_bound() const { return error_bound_; }
+
+ private:
+  alignas(16) float column_[3][4], translation_[4];
+  float error_bound_;
+};
+
+/// A sphere around the triangles of a node of a or b, with its centre in the frames of both meshes.
+/// Relative motion of the bodies is bounded on it (see wide_front.hpp).
+struct ReferenceSphere {
+  alignas(16) std::array<float, 4> centre_in_a, centre_in_b;  ///< the fourth number is unused
+  float radius;
+  float error_bound;  ///< of each coordinate
+};
+
+/// The reference sphere of a node of the body `side`, 0 for a; transforms[0] takes points of a to
+/// b, transforms[1] back.
+[[gnu::always_inline]] inline ReferenceSphere reference_sphere_of(
+    const NodeSphere& sphere, std::size_t side, const std::array<CornerTransform, 2>& transforms) {
+  ReferenceSphere reference;
+  auto &own = side == 0 ? reference.centre_in_a : reference.centre_in_b,
+       &other = side == 0 ? reference.centre_in_b : reference.centre_in_a;
+  std::copy_n(sphere.centre, 3, own.begin());
+  transforms[side](sphere.centre[0], sphere.centre[1], sphere.centre[2])
+      .copy_to(other.data(), stdx::vector_aligned);
+  reference.radius = sphere.radius, reference.error_bound = transforms[side].error_bound();
+  return reference;
+}
+
+/// Two bodies over wide trees. A side is 0 for a and 1 for b.
+template <BoundingVolume V, int F>
+class RelativeFrame {
+  using SiblingTest = SiblingTestOf<V>;
+  using T = typename V::scalar;
+  using S = Batch<T, F>;
+  using Hierarchy = WideHierarchy<V, F>;
+
+ public:
+  using PosedNode = typename SiblingTest::PosedNode;
+
+  void begin(WideBody<Hierarchy>& a, WideBody<Hierarchy>& b) {
+    hierarchies_ = {&a.hierarchy(), &b.hierarchy()};
+    const RelativePose a_from_b(a.orthonormal_pose(), b.orthonormal_pose());
+    const double reach_a = a.hierarchy().reach(), reach_b = b.hierarchy().reach();
+    const RelativePose b_from_a(b.orthonormal_pose(), a.orthonormal_pose());
+    // Constructed in place: a copy in wider pieces than were written would stall.
+    using FrameChange = typename SiblingTest::FrameChange;
+    ::new (&frame_change_[1]) FrameChange(SiblingTest::frame_change(a_from_b, reach_a, reach_b));
+    ::new (&frame_change_[0]) FrameChange(SiblingTest::frame_change(b_from_a, reach_b, reach_a));
+    transforms_[0].begin(a_from_b, reach_a, reach_b);
+    transforms_[1].begin(b_from_a, reach_b, reach_a);
+  }
+
+  /// A node of `side`, in the frame of the other side.
+  template <class Counter>
+  [[gnu::always_inline]] PosedNode posed_node(std::size_t side, std::uint32_t node,
+                                              Counter& counter) const {
+    counter.posed(1);
+    const auto& of = hierarchies_[side]->node(node);
+    return SiblingTest::posed_node(of.volume, of.size, frame_change_[1 - side]);
+  }
+  /// The child of a node of `side` in a lane.
+  template <class Counter>
+  PosedNode posed_child(std::size_t side, std::uint32_t node, int lane, Counter& counter) const {
+    counter.posed(1);
+    const auto& of = hierarchies_[side]->children(node);
+    return SiblingTest::posed_node(lane_of<V>(of.volumes, lane),
+                                   T(of.size[static_cast<std::size_t>(lane)]),
+                                   frame_change_[1 - side]);
+  }
+
+  /// Tests `posed`, of the other side, against all children of a node of `side`.
+  [[gnu::always_inline]] OverlapLanes<S> overlap(std::size_t side, std::uint32_t node,
+                                                 const PosedNode& posed) const {
+    const auto& lanes = hierarchies_[side]->children(node);
+    return SiblingTest::template overlap<S>(posed, frame_change_[side], lanes.volumes, lanes.size);
+  }
+  [[gnu::always_inline]] S gaps(std::size_t side, std::uint32_t node,
+                                const PosedNode& posed) const {
+    return SiblingTest::template gaps<S>(posed, frame_change_[side],
+                                         hierarchies_[side]->children(node).volumes);
+  }
+  /// At most the distance to each lane, negative where they may overlap; cheaper than gaps, and as
+  /// tight for volumes that are close to each other.
+  [[gnu::always_inline]] GapLanes<S> separation(std::size_t side, std::uint32_t node,
+                                                const PosedNode& posed) const {
+    const auto& lanes = hierarchies_[side]->children(node);
+    if constexpr (requires {
+                    SiblingTest::template separation<S>(posed, frame_change_[side], lanes.volumes);
+                  }) {
+      const S gap = SiblingTest::template separation<S>(posed, frame_change_[side], lanes.volumes);
+      return {gap, gap * roughly_one_over<S>(lanes.size + S(posed.size))};
+    } else {
+      return {gaps(side, node, posed), overlap(side, node, posed).order};
+    }
+  }
+
+  const CornerTransform& a_to_b() const { return transforms_[0]; }
+  ReferenceSphere reference_sphere(std::size_t side, std::uint32_t node) const {
+    return reference_sphere_of(hierarchies_[side]->node_sphere(node), side, transforms_);
+  }
+
+ private:
+  std::array<const Hierarchy*, 2> hierarchies_;
+  std::array<typename SiblingTest::FrameChange, 2> frame_change_;  // into the frame of that side
+  std::array<CornerTransform, 2> transforms_;                      // of a to b, and back
+};
+
+}  // namespace bvlab

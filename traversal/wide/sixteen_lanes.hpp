@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Sixteen lanes in as many registers as they need: part `p` of them is lanes p W and up, W being
+/// the width of a register. Two sets of four numbers are spread over sixteen lanes so that each
+/// number of one meets each of the other: lane 4 i + j has number i of the one and number j of the
+/// other.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "hierarchies/geometry/scalar.hpp"
+#include "traversal/wide/work_queue.hpp"
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+#include <immintrin.h>
+#endif
+
+namespace bvlab {
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+inline constexpr bool sixteen_in_one_register = native_width<float> == 16;
+#else
+inline constexpr bool sixteen_in_one_register = false;
+#endif
+
+using SixteenLanes = Batch<float, (native_width<float> < 16 ? native_width<float> : 16)>;
+
+namespace detail {
+inline constexpr std::size_t width_of_part = SixteenLanes::size();
+}
+
+/// Number i in lanes 4 i to 4 i + 3. The numbers are 16-byte aligned, here and below.
+[[gnu::always_inline]] inline SixteenLanes each_of_four(const float* four,
+                                                        [[maybe_unused]] std::size_t part) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+  if constexpr (sixteen_in_one_register) {
+    const __m512i index = _mm512_set_epi32(3, 3, 3, 3, 2, 2, 2, 2, 1, 1, 1, 1, 0, 0, 0, 0);
+    return SixteenLanes(_mm512_permutexvar_ps(index, _mm512_castps128_ps512(_mm_load_ps(four))));
+  }
+#endif
+  constexpr std::size_t W = detail::width_of_part;
+  if constexpr (W <= 4)
+    return SixteenLanes(four[W * part / 4]);
+  else
+    return SixteenLanes([&](auto lane) { return four[(W * part + lane) / 4]; });
+}
+
+/// Number j in lanes j, j + 4, j + 8 and j + 12.
+[[gnu::always_inline]] inline SixteenLanes four_repeated(const float* four,
+                                                         [[maybe_unused]] std::size_t part) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+  if constexpr (sixteen_in_one_register)
+    return SixteenLanes(_mm512_broadcast_f32x4(_mm_load_ps(four)));
+#endif
+  constexpr std::size_t W = detail::width_of_part;
+  if constexpr (W <= 4)
+    return SixteenLanes(four + W * part % 4, stdx::element_aligned);
+  else
+    return SixteenLanes([&](auto lane) { return four[lane % 4]; });
+}
+
+[[gnu::always_inline]] inline SixteenLanes of_sixteen(const float* lanes, std::size_t part) {
+  return SixteenLanes(lanes + detail::width_of_part * part, stdx::vector_aligned);
+}
+
+[[gnu::always_inline]] inline NodesOfLanes each_of_four(const std::uint32_t* four) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+  const __m512i index = _mm512_set_epi32(3, 3, 3, 3, 2, 2, 2, 2, 1, 1, 1, 1, 0, 0, 0, 0);
+  return (NodesOfLanes)_mm512_permutexvar_epi32(
+      index, _mm512_castsi128_si512(_mm_load_si128(reinterpret_cast<const __m128i*>(four))));
+#else
+  NodesOfLanes all;
+  for (std::size_t lane = 0; lane < 16; ++lane) all[lane] = four[lane / 4];
+  return all;
+#endif
+}
+
+[[gnu::always_inline]] inline NodesOfLanes four_repeated(const std::uint32_t* four) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+  return (NodesOfLanes)_mm512_broadcast_i32x4(
+      _mm_load_si128(reinterpret_cast<const __m128i*>(four)));
+#else
+  NodesOfLanes all;
+  for (std::size_t lane = 0; lane < 16; ++lane) all[lane] = four[lane % 4];
+  return all;
+#endif
+}
+
+[[gnu::always_inline]] inline NodesOfLanes of_sixteen(const std::uint32_t* lanes) {
+  NodesOfLanes all;
+  __builtin_memcpy(&all, lanes, sizeof all);
+  return all;
+}
+
+/// Bit k is the highest bit of lane k.
+[[gnu::always_inline]] inline std::uint64_t highest_bits(const NodesOfLanes& lanes) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+  return _mm512_movepi32_mask((__m512i)lanes);
+#else
+  std::uint64_t bits = 0;
+  for (std::size_t lane = 0; lane < 16; ++lane) bits |= std::uint64_t{lanes[lane] >> 31} << lane;
+  return bits;
+#endif
+}
+
+/// Bits 0 to 3 as bits 0, 4, 8 and 12.
+[[gnu::always_inline]] inline std::uint64_t every_fourth(std::uint64_t four) {
+  return (four & 1) | (four & 2) << 3 | (four & 4) << 6 | (four & 8) << 9;
+}
+
+}  // namespace bvlab
