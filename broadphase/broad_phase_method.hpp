@@ -20,17 +20,26 @@ namespace bvlab {
 /// with `Coherence::off`, a method forgets every frame, and keeps its memory.
 template <class M>
 concept BroadPhaseMethod = std::constructible_from<M, const MethodSettings&> &&
-    requires(M method, Boxes<typename M::Scalar> boxes) {
-  { M::name } -> std::convertible_to<std::string_view>;
-  { M::description } -> std::convertible_to<std::string_view>;
-  { method.overlapping(boxes) } -> std::same_as<std::span<const Pair>>;
-};
+                           requires(M method, Boxes<typename M::Scalar> boxes) {
+                             { M::name } -> std::convertible_to<std::string_view>;
+                             { M::description } -> std::convertible_to<std::string_view>;
+                             { method.overlapping(boxes) } -> std::same_as<std::span<const Pair>>;
+                           };
 
 /// A method that knows, made with `Changes::reported`, which pairs began and ended since the last
 /// frame.
 template <class M>
 concept ReportsChanges = BroadPhaseMethod<M> && requires(const M method) {
   { method.changes() } -> std::same_as<PairChanges>;
+};
+
+/// A method that can be told which boxes moved: `update` gives what `overlapping` does, where no
+/// box but those told, and new ones, differs from the last frame. An index may stand there twice,
+/// or though its box did not move.
+template <class M>
+concept TakesMoved = BroadPhaseMethod<M> && requires(M method, Boxes<typename M::Scalar> boxes,
+                                                     std::span<const std::uint32_t> moved) {
+  { method.update(boxes, moved) } -> std::same_as<std::span<const Pair>>;
 };
 
 }  // namespace bvlab

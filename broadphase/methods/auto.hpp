@@ -2,7 +2,7 @@
 /// Picks a method from what it sees. Few boxes are swept along one axis, where putting them into
 /// spatial order would cost more than comparing. All others go to `blocks`, which itself chooses:
 /// from the spread of sizes, into how many classes it sorts; from overlap and motion, whether it
-/// keeps the list, follows the boxes and for how many frames, refits or starts over.
+/// keeps the list, changes it in place, follows the boxes and for how many frames, or starts over.
 #pragma once
 
 #include <string>
@@ -24,11 +24,14 @@ class Auto {
       : settings_(settings), blocks_(settings), sweep_(settings) {}
 
   std::span<const Pair> overlapping(Boxes<T> boxes) {
-    small_ = boxes.size() <= few && settings_.changes == Changes::unreported;
-    count_ = boxes.size();
-    const auto pairs = small_ ? sweep_.overlapping(boxes) : blocks_.overlapping(boxes);
-    found_ = pairs.size();
-    return pairs;
+    return note(boxes, choose(boxes) ? sweep_.overlapping(boxes) : blocks_.overlapping(boxes));
+  }
+  /// The same where no box moved but these (Blocks::update).
+  std::span<const Pair> update(Boxes<T> boxes, std::span<const std::uint32_t> moved) {
+    // What was swept meanwhile, `blocks` did not see.
+    const bool seen = !small_;
+    if (choose(boxes)) return note(boxes, sweep_.overlapping(boxes));
+    return note(boxes, seen ? blocks_.update(boxes, moved) : blocks_.overlapping(boxes));
   }
   PairChanges changes() const { return blocks_.changes(); }
   /// What the last frame was answered by, and what was seen.
@@ -42,6 +45,15 @@ class Auto {
   }
 
  private:
+  /// Whether they are few enough for the sweep.
+  bool choose(Boxes<T> boxes) {
+    return small_ = boxes.size() <= few && settings_.changes == Changes::unreported;
+  }
+  std::span<const Pair> note(Boxes<T> boxes, std::span<const Pair> pairs) {
+    count_ = boxes.size(), found_ = pairs.size();
+    return pairs;
+  }
+
   /// Measured: where the two cost the same, from scratch and coherent.
   static constexpr std::size_t few = 64;
 

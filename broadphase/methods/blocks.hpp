@@ -6,13 +6,13 @@
 /// With coherence, what is done follows what moved:
 ///
 /// - nothing moved: the boxes are compared with the last frame's, and the list stands.
+/// - a few moved: the tree is asked for the pairs that *change*, and the list is changed in place
+///   (ChangedBlocks). Who knows which boxes moved says so (`update`), and the others are not even
+///   looked at.
 /// - moved steadily: *followed* within fat boxes (FollowedBlocks). A frame costs one look at every
 ///   box and under two nanoseconds a candidate, in the cache. For how many frames fat boxes are
 ///   made is chosen so that those frames and making the next candidates cost least together.
-/// - a few moved: the same, but only their candidates are compared, and the list is changed in
-///   place: the cost follows the number of boxes that moved, and of changes.
-/// - moved far: *refitted*. The tree's bounds are computed again and joined as from scratch.
-/// - jumped: from scratch.
+/// - jumped, moved far, or so many overlap that starting over costs less: from scratch.
 ///
 /// Every choice is made from counts, never from clocks, so the same frames give the same list.
 #pragma once
@@ -22,8 +22,10 @@
 #include <span>
 #include <string_view>
 
+#include "broadphase/methods/blocks/changed_blocks.hpp"
 #include "broadphase/methods/blocks/followed_blocks.hpp"
 #include "broadphase/methods/blocks/joined_blocks.hpp"
+#include "broadphase/structures/last_frame.hpp"
 
 namespace bvlab {
 
@@ -37,19 +39,26 @@ class Blocks {
       "move";
 
   explicit Blocks(const MethodSettings& settings)
-      : settings_(settings), joined_(settings), followed_(settings, joined_, pairs_, last_frame_) {}
+      : settings_(settings),
+        joined_(settings),
+        changed_(joined_, pairs_),
+        followed_(settings, joined_, pairs_) {}
   // Its parts refer to each other.
   Blocks(const Blocks&) = delete;
   Blocks& operator=(const Blocks&) = delete;
 
-  std::span<const Pair> overlapping(Boxes<T> boxes) {
-    pairs_.begin_frame();
-    if (settings_.coherence == Coherence::off || !advance(boxes)) from_scratch(boxes);
-    count_ = boxes.size();
-    return pairs_.all.view();
+  std::span<const Pair> overlapping(Boxes<T> boxes) { return next_frame(boxes, nullptr); }
+
+  /// The same where no box moved but those of `moved`, and those that are new: no other is looked
+  /// at while few are told. An index may stand there twice, or though its box did not move.
+  std::span<const Pair> update(Boxes<T> boxes, std::span<const std::uint32_t> moved) {
+    return next_frame(boxes, &moved);
   }
 
-  PairChanges changes() const { return {pairs_.began.view(), pairs_.ended.view()}; }
+  PairChanges changes() const {
+    if (settings_.changes == Changes::unreported) return {};
+    return {pairs_.began.view(), pairs_.ended.view()};
+  }
 
   /// What the last frame was answered by.
   std::string_view reason() const { return reason_; }
@@ -57,74 +66,12 @@ class Blocks {
   std::uint32_t classes() const { return joined_.order().classes(); }
 
   std::size_t bytes() const {
-    return joined_.bytes() + followed_.bytes() + pairs_.bytes() + last_frame_.bytes();
+    return joined_.bytes() + changed_.bytes() + followed_.bytes() + pairs_.bytes() +
+           last_frame_.bytes() + 4 * moved_.capacity();
   }
 
  private:
-  void from_scratch(Boxes<T> boxes) {
-    joined_.from_scratch(boxes, pairs_);
-    followed_.stop();
-    last_frame_.forget();
-    reason_ = "from scratch: no earlier frame to use, or boxes jumped";
-  }
-
-  /// Brings the answer of the last frame up to this one; false where from scratch is better.
-  bool advance(Boxes<T> boxes) {
-    if (count_ == 0 || boxes.empty()) return false;
-    const bool followed = followed_.active(), resized = boxes.size() != count_;
-    if (resized && (!followed || 8 * distance(boxes.size(), count_) > boxes.size() + 64))
-      return false;
-    if (!resized && last_frame_.same(boxes)) return kept();
-    if (followed && (resized || followed_.goes_on())) {
-      if (!followed_.follow(boxes)) return false;
-      return compared();
-    }
-    if (!followed && waiting_ > 0) {
-      --waiting_;
-      return false;
-    }
-    const Motion motion = sample(boxes);
-    if (2 * motion.jumped > motion.seen) return in_vain();
-    if (motion.moved == 0 && !followed && unmoved(boxes)) {
-      last_frame_.remember(boxes);
-      return kept();
-    }
-    const int horizon = best_horizon(motion);
-    if (horizon == 0) return refit(boxes) || in_vain();
-    wait_ = 0;
-    if (followed) {
-      if (!followed_.begin_again(boxes, horizon)) return false;
-    } else {
-      followed_.begin(boxes, horizon);
-    }
-    reason_ = "followed: new candidates for the frames to come";
-    return true;
-  }
-  static std::size_t distance(std::size_t a, std::size_t b) { return a < b ? b - a : a - b; }
-
-  bool kept() {
-    reason_ = "kept: nothing moved";
-    return true;
-  }
-  bool compared() {
-    reason_ = followed_.compared_few() ? "followed: few moved, only theirs are compared"
-                                       : "followed: candidates are compared";
-    return true;
-  }
-  bool refit(Boxes<T> boxes) {
-    if (!joined_.refit(boxes, pairs_)) return false;
-    followed_.stop();
-    last_frame_.forget();
-    reason_ = "refitted: boxes move too far to be followed";
-    return true;
-  }
-
-  /// Looking at how boxes moved costs something, too: the more often it led to nothing, the longer
-  /// it is left alone, up to seven frames.
-  bool in_vain() {
-    waiting_ = wait_ = std::min(7, 2 * wait_ + 1);
-    return false;
-  }
+  using Moved = std::span<const std::uint32_t>;
 
   /// How a sample of the boxes moved since the last frame, beside how large they are.
   struct Motion {
@@ -132,10 +79,142 @@ class Blocks {
     std::size_t seen = 0, jumped = 0, moved = 0;
   };
 
+  /// `told`: which boxes moved, where that is known.
+  std::span<const Pair> next_frame(Boxes<T> boxes, const Moved* told) {
+    pairs_.begin_frame();
+    if (settings_.coherence == Coherence::off || !advance(boxes, told)) from_scratch(boxes);
+    count_ = boxes.size();
+    return pairs_.all.view();
+  }
+
+  void from_scratch(Boxes<T> boxes) {
+    stop();
+    joined_.from_scratch(boxes, pairs_);
+    reason_ = "from scratch: no earlier frame to use, boxes jumped, or too many pairs change";
+  }
+  /// What is kept besides the tree and the list.
+  void stop() {
+    changed_.stop(), followed_.stop();
+    last_frame_.forget();
+  }
+
+  /// Brings the answer of the last frame up to this one; false where from scratch is better.
+  bool advance(Boxes<T> boxes, const Moved* told) {
+    if (count_ == 0 || boxes.empty()) return false;
+    if (8 * distance(boxes.size(), count_) > boxes.size() + 64) return false;
+    if (followed_.active()) return follow(boxes);
+    if (changed_.active()) return change(boxes, told);
+    if (waiting_ > 0) {
+      --waiting_;
+      return false;
+    }
+    // The tree holds the last frame's boxes.
+    const Motion motion = sample(boxes);
+    if (many_jumped(motion)) return in_vain();
+    if (BlockCosts::few_times * motion.moved > motion.seen)
+      return boxes.size() == count_ && follow_anew(boxes, motion);
+    return begin_to_change(boxes, motion);
+  }
+  static std::size_t distance(std::size_t a, std::size_t b) { return a < b ? b - a : a - b; }
+
+  // ---- a few move ---------------------------------------------------------------------------
+
+  bool begin_to_change(Boxes<T> boxes, const Motion& motion) {
+    const double moved = static_cast<double>(motion.moved * boxes.size()) /
+                         static_cast<double>(std::max<std::size_t>(motion.seen, 1));
+    if (changed_.expected() * moved > affordable()) return changed_.doubt(), in_vain();
+    changed_.begin(count_);
+    return change(boxes, nullptr);
+  }
+  bool change(Boxes<T> boxes, const Moved* told) {
+    if (told) {
+      if (last_frame_.known()) last_frame_.take_over(boxes, *told);
+      return change_moved(boxes, *told);
+    }
+    moved_.clear();
+    if (last_frame_.known()) {
+      last_frame_.find_moved(boxes, boxes.size() / BlockCosts::few_times, moved_);
+    } else {
+      for (std::uint32_t id = 0; id < std::min(boxes.size(), count_); ++id)
+        if (!(boxes[id] == changed_.last(id))) moved_.push_back(id);
+      last_frame_.remember(boxes);
+    }
+    return change_moved(boxes, moved_);
+  }
+  bool change_moved(Boxes<T> boxes, Moved moved) {
+    if (moved.empty() && boxes.size() == count_) {
+      reason_ = "kept: nothing moved";
+      return true;
+    }
+    if (BlockCosts::few_times * moved.size() > boxes.size()) {
+      changed_.stop(), last_frame_.forget();
+      return boxes.size() == count_ && follow_anew(boxes, sample(boxes));
+    }
+    if (!changed_.update(boxes, moved, affordable())) return in_vain();
+    wait_ = 0;
+    reason_ = "changed: few moved, only their pairs are asked for";
+    return true;
+  }
+
+  /// What the others may cost for starting over to cost no less.
+  double affordable() const { return 0.7 * cost_of_starting_over(); }
+  double cost_of_starting_over() const {
+    using Cost = BlockCosts;
+    const double pair = Cost::pair + (settings_.changes == Changes::reported ? Cost::report : 0);
+    return Cost::sort * static_cast<double>(count_) +
+           Cost::visit * static_cast<double>(joined_.visits()) +
+           pair * static_cast<double>(pairs_.all.size());
+  }
+
+  // ---- most move ----------------------------------------------------------------------------
+
+  bool follow(Boxes<T> boxes) {
+    if (boxes.size() != count_ || followed_.goes_on()) {
+      if (boxes.size() == count_ && followed_.time_to_prepare())
+        followed_.prepare(best_horizon(sample(boxes)));
+      if (!followed_.follow(boxes)) return false;
+      reason_ = followed_.took_over() ? "followed: candidates are compared, the next took over"
+                                      : "followed: candidates are compared";
+      if (followed_.few_moved() > 1) {
+        followed_.stop_with_boxes();
+        changed_.begin(boxes.size());
+      }
+      return true;
+    }
+    const Motion motion = sample(boxes);
+    return many_jumped(motion) ? in_vain() : follow_anew(boxes, motion);
+  }
+  bool follow_anew(Boxes<T> boxes, const Motion& motion) {
+    if (many_jumped(motion)) return in_vain();
+    const int horizon = best_horizon(motion);
+    if (horizon == 0) return in_vain();
+    wait_ = 0;
+    if (followed_.active()) {
+      if (!followed_.begin_again(boxes, horizon)) return false;
+    } else {
+      followed_.begin(boxes, horizon);
+    }
+    reason_ = "followed: new candidates for the frames to come";
+    return true;
+  }
+  /// Looking at how boxes moved costs something, too: the more often it led to nothing, the longer
+  /// it is left alone, up to seven frames.
+  bool in_vain() {
+    waiting_ = wait_ = std::min(7, 2 * wait_ + 1);
+    return false;
+  }
+
+  /// Boxes that jump stand in the wrong leaves: these few leave the others as they are.
+  bool many_jumped(const Motion& motion) const {
+    const double share = static_cast<double>(motion.jumped) /
+                         static_cast<double>(std::max<std::size_t>(motion.seen, 1));
+    return share * static_cast<double>(count_) > static_cast<double>(count_) / 100 + 32;
+  }
+
   Motion sample(Boxes<T> boxes) const {
     Motion motion;
     const BlockTree<T>& tree = joined_.tree();
-    const std::uint32_t stride = std::max<std::uint32_t>(1, tree.leaves() / 32);
+    const std::uint32_t stride = std::max<std::uint32_t>(1, tree.leaves() / 16);
     for (std::uint32_t k = 0; k < tree.leaves(); k += stride)
       for (std::uint32_t slot = k * block_width; slot < (k + 1) * block_width; ++slot) {
         const std::uint32_t id = tree.ids(0)[slot];
@@ -157,21 +236,12 @@ class Blocks {
       }
     return motion;
   }
-  bool unmoved(Boxes<T> boxes) const {
-    const BlockTree<T>& tree = joined_.tree();
-    for (std::uint32_t slot = 0; slot < tree.slots(); ++slot)
-      if (const std::uint32_t id = tree.ids(0)[slot];
-          id != no_box && !same(row_of(boxes[id]), followed_.last_row(slot)))
-        return false;
-    return true;
-  }
-
   /// For how many frames fat boxes are best made; 0 where starting over costs less.
   int best_horizon(const Motion& motion) const {
     using Cost = BlockCosts;
     const double n = static_cast<double>(count_), k = static_cast<double>(pairs_.all.size());
-    const double join = Cost::visit * static_cast<double>(joined_.fresh_visits());
-    double best = 0.9 * (Cost::sort * n + join + Cost::pair * k);
+    const double join = Cost::visit * static_cast<double>(joined_.visits());
+    double best = 0.8 * cost_of_starting_over();
     int horizon = 0;
     for (int frames = 1; frames <= followed_.longest(); frames *= 2) {
       double growth = 1;
@@ -180,7 +250,7 @@ class Blocks {
           growth *= 1 + (frames + 0.5) * motion.step[axis] / motion.extent[axis];
       const double candidates = growth * k;
       const double cost =
-          Cost::look * n + Cost::test * candidates +
+          Cost::look * n + Cost::test(candidates) * candidates +
           (Cost::fat_box * n + (1 + growth) / 2 * join + Cost::candidate * candidates) / frames;
       if (cost < best) best = cost, horizon = frames;
     }
@@ -193,7 +263,9 @@ class Blocks {
   ReportedPairs pairs_;
   LastFrame<T> last_frame_;
   JoinedBlocks<T, Contact> joined_;
+  ChangedBlocks<T, Contact> changed_;
   FollowedBlocks<T, Contact> followed_;
+  std::vector<std::uint32_t> moved_;
   int wait_ = 0, waiting_ = 0;  ///< frames to start over without asking
 };
 

@@ -48,6 +48,11 @@ class BlockTree {
   }
   Block<T>& leaf(std::uint32_t k) { return levels_[0][k]; }
   const Block<T>& leaf(std::uint32_t k) const { return levels_[0][k]; }
+  void fetch(std::uint32_t k) const {
+    const char* const block = reinterpret_cast<const char*>(&levels_[0][k]);
+    for (std::size_t byte = 0; byte < sizeof(Block<T>); byte += 64)
+      __builtin_prefetch(block + byte);
+  }
   std::uint32_t* ids(std::uint32_t leaf) { return ids_.data() + std::size_t{leaf} * block_width; }
   const std::uint32_t* ids(std::uint32_t leaf) const {
     return ids_.data() + std::size_t{leaf} * block_width;
@@ -82,6 +87,34 @@ class BlockTree {
       const int lane = static_cast<int>(node % block_width);
       block.put(lane, enclosing(block.box(lane), box));
     }
+  }
+
+  /// Makes the bounds of this leaf, and every level above, as wide as `box`.
+  void widen_above(std::uint32_t leaf, const Box<T>& box) {
+    std::size_t node = leaf;
+    for (std::size_t level = 1; level < depth_; ++level, node /= block_width) {
+      Block<T>& block = levels_[level][node / block_width];
+      const int lane = static_cast<int>(node % block_width);
+      const Box<T> before = block.box(lane), after = enclosing(before, box);
+      if (after == before) return;
+      block.put(lane, after);
+    }
+  }
+
+  /// Recomputes the bounds of these leaves, which are in ascending order, and of what is above
+  /// them. Leaves nothing of the list.
+  void refit(std::vector<std::uint32_t>& nodes) {
+    for (std::size_t level = 1; level < depth_; ++level) {
+      std::size_t parents = 0;
+      for (const std::uint32_t node : nodes) {
+        const std::uint32_t parent = node / block_width;
+        levels_[level][parent].put(static_cast<int>(node % block_width),
+                                   bounds(levels_[level - 1][node]));
+        if (parents == 0 || nodes[parents - 1] != parent) nodes[parents++] = parent;
+      }
+      nodes.resize(parents);
+    }
+    nodes.clear();
   }
 
   /// Fills the leaves with the boxes in this order; then the levels above.
@@ -122,6 +155,12 @@ class BlockTree {
                                             bounds(levels_[level - 1][k]));
   }
 
+  /// Recomputes all bounds.
+  void refit_all() {
+    for (std::uint32_t k = 0; k < leaves(); ++k) set_leaf_bounds(k, bounds(leaf(k)));
+    refit_above();
+  }
+
   /// Calls visit(a, first, lanes) for leaves a whose bounds overlap those of the leaves `first` +
   /// lane for every lane of `lanes`: a itself, and later ones. Each such pair is visited once.
   template <class Visit>
@@ -153,6 +192,36 @@ class BlockTree {
   template <class Visit>
   void find(const Box<T>& box, Visit&& visit) const {
     if (leaves() > 0) find_below(depth_ - 1, 0, box, visit);
+  }
+
+  /// Which leaves overlap which of some boxes.
+  struct Finds {
+    std::vector<std::uint32_t> leaves, boxes;  ///< side by side, by box; `count` of them
+    std::size_t count = 0;
+    std::vector<std::uint32_t> spare_leaves, spare_boxes;
+  };
+  /// The leaves whose bounds overlap each of these boxes. All boxes go down a level before the
+  /// next: loops are long, and none ends with a single box, which no processor foresees.
+  void find(std::span<const Box<T>> boxes, Finds& finds) const {
+    finds.count = leaves() > 0 ? boxes.size() : 0;
+    finds.leaves.resize(std::max(finds.leaves.size(), finds.count));
+    finds.boxes.resize(finds.leaves.size());
+    for (std::uint32_t k = 0; k < finds.count; ++k) finds.leaves[k] = 0, finds.boxes[k] = k;
+    for (std::size_t level = depth_ - 1; level > 0 && finds.count > 0; --level) {
+      std::size_t count = 0;
+      for (std::size_t k = 0; k < finds.count; ++k) {
+        if (count + block_width > finds.spare_leaves.size()) {
+          finds.spare_leaves.resize(2 * count + 16 * block_width);
+          finds.spare_boxes.resize(finds.spare_leaves.size());
+        }
+        const std::uint32_t node = finds.leaves[k], box = finds.boxes[k];
+        count += write_lanes(finds.spare_leaves.data() + count, finds.spare_boxes.data() + count,
+                             node * block_width, box,
+                             overlapping_lanes<Closed>(levels_[level][node], boxes[box]));
+      }
+      std::swap(finds.leaves, finds.spare_leaves), std::swap(finds.boxes, finds.spare_boxes);
+      finds.count = count;
+    }
   }
 
   std::size_t bytes() const {

@@ -6,8 +6,7 @@
 /// box leaves its fat box, no pair but a candidate can overlap. A box that leaves it gets a wider
 /// one, one that jumps or is new another slot.
 ///
-/// A frame looks at every box, and compares all candidates, or those alone whose boxes moved where
-/// these are few.
+/// A frame looks at every box, and compares all candidates.
 #pragma once
 
 #include <cmath>
@@ -15,8 +14,8 @@
 #include <vector>
 
 #include "broadphase/methods/blocks/joined_blocks.hpp"
+#include "broadphase/methods/blocks/next_candidates.hpp"
 #include "broadphase/structures/candidate_pairs.hpp"
-#include "broadphase/structures/last_frame.hpp"
 #include "hierarchies/geometry/large_vector.hpp"
 
 namespace bvlab {
@@ -24,25 +23,36 @@ namespace bvlab {
 template <class T, class Contact>
 class FollowedBlocks {
  public:
-  /// `joined`: whose tree then holds fat boxes; `pairs`: the list that is written; `last_frame`: is
-  /// kept up to date while few boxes move. All must outlive this.
+  /// `joined`: whose tree then holds fat boxes; `pairs`: the list that is written. Both must
+  /// outlive this.
   FollowedBlocks(const MethodSettings& settings, JoinedBlocks<T, Contact>& joined,
-                 ReportedPairs& pairs, LastFrame<T>& last_frame)
-      : settings_(settings),
-        joined_(joined),
-        tree_(joined.tree()),
-        pairs_(pairs),
-        last_frame_(last_frame) {}
+                 ReportedPairs& pairs)
+      : settings_(settings), joined_(joined), tree_(joined.tree()), pairs_(pairs) {}
 
   bool active() const { return active_; }
-  void stop() { active_ = false; }
+  void stop() {
+    active_ = false;
+    next_.abandon();
+  }
 
   /// Whether the candidates are good for another frame.
-  bool goes_on() const { return few_moved_ || age_ < horizon_; }
+  bool goes_on() const { return age_ < horizon_; }
+  /// In how many frames, up to the last, no more than one box in eight moved.
+  int few_moved() const { return few_moved_; }
   /// Whether boxes have gone on as they did.
   bool steady() const { return steady_; }
   /// The most frames that fat boxes may be made for.
   int longest() const { return longest_; }
+
+  /// Whether it is time to choose for how many frames the next candidates are to be good.
+  bool time_to_prepare() const {
+    return !next_.begun() && horizon_ >= shortest_prepared &&
+           age_ == horizon_ - NextCandidates<T, Contact>::frames;
+  }
+  /// Finds them from now on, a part in each frame.
+  void prepare(int horizon) {
+    if (horizon >= shortest_prepared) next_.begin(horizon);
+  }
 
   /// The last frame's box in this slot.
   Row<T> last_row(std::uint32_t slot) const {
@@ -60,23 +70,22 @@ class FollowedBlocks {
     if (settings_.changes != Changes::reported) return begin(boxes, horizon), true;
     auto& rows = candidates_.rows();
     last_rows_ = rows;
-    if (!follow(boxes)) return false;
-    if (!newcomers_.empty() || !emptied_.empty()) return true;  // slots changed: next time
+    const bool followed = follow(boxes);
+    if (!newcomers_.empty() || !emptied_.empty()) return followed;  // slots changed: next time
     std::swap(rows, last_rows_);
-    begin(boxes, horizon, Changes::unreported);
+    // Where too many left their fat boxes the list is still the last frame's.
+    begin(boxes, horizon, followed ? Changes::unreported : Changes::reported);
     return true;
   }
 
   /// One frame in which boxes mostly stayed within their fat boxes; false where too many did not.
   bool follow(Boxes<T> boxes) {
-    moved_.clear(), escaped_.clear(), newcomers_.clear(), emptied_.clear();
+    if (next_.begun() && !next_.ready()) prepare_a_part(boxes);
+    escaped_.clear(), newcomers_.clear(), emptied_.clear();
     moved_count_ = 0;
     for (std::size_t id = boxes.size(); id < count_; ++id) vacate(slots_[id]);
     const std::size_t staying = std::min(boxes.size(), count_);
-    if (last_frame_.known())
-      look_by_index(boxes, staying);
-    else
-      look_by_slot(boxes, staying);
+    look(boxes, staying);
     for (std::size_t id = count_; id < boxes.size(); ++id)
       newcomers_.push_back(static_cast<std::uint32_t>(id));
     // Each of these costs about as much as starting over does for thirty boxes, or a hundred.
@@ -86,33 +95,40 @@ class FollowedBlocks {
     }
     widen_escaped();
     if (!newcomers_.empty()) seat_newcomers(boxes);
-    few_moved_ = 4 * moved_count_ < tree_.slots();
-    moved_.insert(moved_.end(), emptied_.begin(), emptied_.end());
-    compare();
+    few_moved_ = few_of(boxes.size()) ? few_moved_ + 1 : 0;
+    write_candidates();
     for (const std::uint32_t slot : emptied_) tree_.ids(0)[slot] = no_box;
     // A pair that ended in one slot and began in another, where its box went, did neither.
     if (settings_.changes == Changes::reported && !emptied_.empty()) pairs_.cancel_out();
-    if (few_moved_ != last_frame_.known() || boxes.size() != count_) {
-      last_frame_.forget();
-      if (few_moved_) last_frame_.remember(boxes);
-    }
+    // What is prepared is not of these slots.
+    if (!newcomers_.empty() || !emptied_.empty() || boxes.size() != count_) next_.abandon();
     count_ = boxes.size();
     ++age_;
-    told_few_moved_ = few_moved_;
-    if (too_many_candidates(boxes)) age_ = horizon_, few_moved_ = false;
+    if (too_many_candidates(boxes)) age_ = horizon_;
+    took_over_ = age_ >= horizon_ && next_.ready();
+    if (took_over_) take_over_next();
     return true;
   }
-  /// Whether the last frame compared only the candidates of boxes that moved.
-  bool compared_few() const { return told_few_moved_; }
+
+  /// Whether the last frame was the last one of its candidates.
+  bool took_over() const { return took_over_; }
+
+  /// Ends it, with the tree of the last frame's boxes.
+  void stop_with_boxes() {
+    for (std::uint32_t slot = 0; slot < tree_.slots(); ++slot)
+      tree_.leaf(slot / block_width)
+          .put(static_cast<int>(slot % block_width), box_of(candidates_.rows()[slot]));
+    tree_.refit_all();
+    stop();
+  }
 
   std::size_t bytes() const {
-    return candidates_.bytes() +
+    return candidates_.bytes() + next_.bytes() +
            (fat_boxes_.capacity() + spare_.capacity() + last_rows_.capacity()) * sizeof(Row<T>) +
            4 * slots_.capacity();
   }
 
  private:
-  using Keep = typename CandidatePairs<T, Contact>::Keep;
   /// What a thread takes at once: whole blocks of leaves.
   static constexpr std::uint32_t slots_a_stretch = 4 * block_width * block_width;
 
@@ -121,6 +137,7 @@ class FollowedBlocks {
   void begin(Boxes<T> boxes, int horizon, Changes changes) {
     const bool compare = changes == Changes::reported;
     if (compare) pairs_.keep_before();
+    next_.abandon();
     sort_if_due(boxes);
     auto& rows = candidates_.rows();
     const std::uint32_t slots = tree_.slots();
@@ -147,12 +164,15 @@ class FollowedBlocks {
         });
     if (sorted_) visits_when_sorted_ = visits_, sorted_ = false;
     candidates_at_first_ = candidates_.size();
+    if (horizon >= shortest_prepared) {
+      next_.reserve(tree_.leaves(), candidates_.size());
+      spare_.resize(tree_.slots());
+    }
     count_ = boxes.size();
     active_ = true;
     horizon_ = horizon, age_ = 0;
-    few_moved_ = false;
-    last_frame_.forget();
-    write_candidates(settings_.changes == Changes::reported ? Keep::places : Keep::nothing);
+    few_moved_ = 0;
+    write_candidates();
     if (compare) pairs_.compare_with_kept();
   }
 
@@ -178,13 +198,16 @@ class FollowedBlocks {
       tree_.set_leaf_bounds(k, bounds(tree_.leaf(k)));
   }
 
+  bool sort_due(std::size_t boxes) const {
+    return joined_.holey(boxes) || 3 * visits_ >= 4 * visits_when_sorted_;
+  }
   /// A new order, once the old one costs a third more or holds slots that are empty.
   void sort_if_due(Boxes<T> boxes) {
     if (!active_) {
       sorted_ = true;
       return;
     }
-    if (!joined_.holey(boxes.size()) && 3 * visits_ < 4 * visits_when_sorted_) return;
+    if (!sort_due(boxes.size())) return;
     const auto order = joined_.order()(boxes, joined_.shares().threads());
     auto& rows = candidates_.rows();
     spare_.resize((order.size() + block_width - 1) / block_width * block_width);
@@ -192,6 +215,66 @@ class FollowedBlocks {
     std::swap(rows, spare_);
     joined_.build(order, boxes);
     sorted_ = true;
+  }
+
+  /// A part of the work for the next candidates.
+  void prepare_a_part(Boxes<T> boxes) {
+    const int ahead = horizon_ - age_ + next_.horizon();
+    next_.advance(
+        joined_,
+        [&](BlockTree<T>& tree) {
+          sorted_next_ = sort_due(boxes.size());
+          if (!sorted_next_) {
+            tree.resize_leaves(tree_.leaves());
+            std::copy_n(tree_.ids(0), tree_.slots(), tree.ids(0));
+            return;
+          }
+          const auto order = joined_.order()(boxes, joined_.shares().threads());
+          tree.resize_leaves(0);
+          tree.resize_leaves(
+              static_cast<std::uint32_t>((order.size() + block_width - 1) / block_width));
+          for (std::size_t k = 0; k < order.size(); ++k) tree.ids(0)[k] = order[k].id;
+        },
+        [&](std::uint32_t id) {
+          return fat_box_of(row_of(boxes[id]), candidates_.rows()[slots_[id]], ahead);
+        });
+  }
+  /// From now on the next candidates are those in use.
+  void take_over_next() {
+    auto& rows = candidates_.rows();
+    std::swap(tree_, next_.tree());
+    const std::uint32_t slots = tree_.slots();
+    spare_.resize(slots);
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+      const std::uint32_t id = tree_.ids(0)[slot];
+      if (id == no_box) {
+        spare_[slot] = nowhere_row<T>();
+        continue;
+      }
+      spare_[slot] = rows[slots_[id]];
+      slots_[id] = slot;
+    }
+    std::swap(rows, spare_);
+    std::swap(fat_boxes_, next_.fat_boxes());
+    candidates_.clear();
+    std::swap(candidates_.list(), next_.candidates());
+    visits_ = next_.visits();
+    if (sorted_next_) visits_when_sorted_ = visits_;
+    candidates_at_first_ = candidates_.size();
+    horizon_ = next_.horizon(), age_ = 0;
+    next_.abandon();
+    if (settings_.changes == Changes::reported) know_which_overlap();
+  }
+  /// Of the candidates that took over. Boxes that are out of their new fat boxes already, which
+  /// else the next frame would see, get wider ones before.
+  void know_which_overlap() {
+    escaped_.clear();
+    const auto& rows = candidates_.rows();
+    for (std::uint32_t slot = 0; slot < tree_.slots(); ++slot)
+      if (tree_.ids(0)[slot] != no_box && !inside(rows[slot], fat_boxes_[slot]))
+        escaped_.push_back({slot, rows[slot]});
+    widen_escaped();
+    write_candidates();
   }
 
   /// Where a box will be for `frames` more frames, moving as it just did; where boxes have turned
@@ -216,30 +299,9 @@ class FollowedBlocks {
 
   // ---- one frame ----------------------------------------------------------------------------
 
-  /// In the order of the frame, beside a copy of the last one: best where few moved.
-  void look_by_index(Boxes<T> boxes, std::size_t staying) {
-    constexpr std::size_t stretch = LastFrame<T>::stretch;
-    for (std::size_t first = 0; first < staying; first += stretch) {
-      const std::size_t last = std::min(first + stretch, staying);
-      if (last_frame_.same(boxes, first, last - first)) continue;
-      for (std::size_t id = first; id < last; ++id) {
-        if (boxes[id] == last_frame_[id]) continue;
-        last_frame_[id] = boxes[id];
-        const std::uint32_t slot = slots_[id];
-        Row<T>& row = candidates_.rows()[slot];
-        const Row<T> was = row;
-        row = row_of(boxes[id]);
-        moved_.push_back(slot);
-        if (!inside(row, fat_boxes_[slot])) leave_fat_box(slot, was);
-      }
-    }
-    moved_count_ = moved_.size();
-  }
-  /// In the order of slots: best where most moved.
-  void look_by_slot(Boxes<T> boxes, std::size_t staying) {
+  /// In the order of slots.
+  void look(Boxes<T> boxes, std::size_t staying) {
     const std::uint32_t slots = tree_.slots();
-    const std::size_t had = moved_.size();  // boxes that are gone
-    moved_.resize(had + slots);
     Threads& threads = joined_.shares().threads();
     const bool shared = threads.count() > 1 && slots >= 2 * slots_a_stretch;
     // A frame that the cache holds is fetched in order, a longer one as it is needed.
@@ -252,16 +314,12 @@ class FollowedBlocks {
     threads.share(looks_.size(), [&](std::size_t k, std::size_t) {
       const auto first = static_cast<std::uint32_t>(k) * stretch;
       look_at_slots(boxes, staying, first, std::min(slots - first, stretch) + first, as_needed,
-                    moved_.data() + had + first, looks_[k]);
+                    looks_[k]);
     });
-    moved_count_ = had;
-    for (std::size_t k = 0; k < looks_.size(); ++k) {
-      const std::uint32_t* const from = moved_.data() + had + k * stretch;
-      std::copy(from, from + looks_[k].moved, moved_.data() + moved_count_);
-      moved_count_ += looks_[k].moved;
-      for (const auto& [slot, was] : looks_[k].left) leave_fat_box(slot, was);
+    for (const Look& look : looks_) {
+      moved_count_ += look.moved;
+      for (const auto& [slot, was] : look.left) leave_fat_box(slot, was);
     }
-    moved_.resize(moved_count_);
   }
   struct Escaped {
     std::uint32_t slot;
@@ -273,11 +331,12 @@ class FollowedBlocks {
     std::vector<Escaped> left;  ///< whose boxes left their fat boxes
   };
   void look_at_slots(Boxes<T> boxes, std::size_t staying, std::uint32_t first, std::uint32_t last,
-                     bool as_needed, std::uint32_t* const moved_slots, Look& look) {
+                     bool as_needed, Look& look) {
     const std::uint32_t* ids = tree_.ids(0);
     Row<T>* const rows = candidates_.rows().data();
     const Row<T>* const fat_boxes = fat_boxes_.data();
-    std::uint32_t* moved = moved_slots;
+    std::size_t moved = 0;
+    const std::size_t too_many = boxes.size() + 3200;
     look.left.clear();
     for (std::uint32_t slot = first; slot < last; ++slot) {
       if (as_needed && slot + ahead < last && ids[slot + ahead] < staying)
@@ -286,12 +345,13 @@ class FollowedBlocks {
       const Row<T> was = rows[slot], now = row_of(boxes[ids[slot]]);
       // Both halves by themselves: copied whole, they would go through memory.
       rows[slot].lo = now.lo, rows[slot].hi = now.hi;
-      *moved = slot;
-      moved += !bvlab::same(now, was);
-      if (!inside(now, fat_boxes[slot])) [[unlikely]]
+      moved += !same(now, was);
+      if (!inside(now, fat_boxes[slot])) [[unlikely]] {
         look.left.push_back({slot, was});
+        if (32 * look.left.size() > too_many) break;
+      }
     }
-    look.moved = static_cast<std::size_t>(moved - moved_slots);
+    look.moved = moved;
   }
   static constexpr std::uint32_t ahead = 16;  ///< slots between a prefetch and its use
 
@@ -310,9 +370,17 @@ class FollowedBlocks {
     emptied_.push_back(slot);
   }
 
+  /// Whether few of so many boxes moved in this frame.
+  bool few_of(std::size_t boxes) const { return BlockCosts::few_times * moved_count_ < boxes; }
+
+  /// Where few boxes move, one that leaves its fat box may have begun just now and be at rest again
+  /// in the next frame. Where most move, it goes on for as long as the candidates are good.
+  static constexpr int after_an_escape = 2;
   void widen_escaped() {
+    const int frames =
+        few_of(count_) ? std::min(horizon_, after_an_escape) : std::max(1, horizon_ - age_);
     for (const auto& [slot, was] : escaped_) {
-      const Row<T> now = candidates_.rows()[slot], next = fat_box_of(now, was, horizon_);
+      const Row<T> now = candidates_.rows()[slot], next = fat_box_of(now, was, frames);
       Row<T>& fat = fat_boxes_[slot];
       const Box<T> old = box_of(fat);
       fat = {least<T>(least<T>(fat.lo, next.lo), now.lo),
@@ -358,7 +426,6 @@ class FollowedBlocks {
       slots_[id] = slot;
       rows[slot] = fat_boxes_[slot] = row_of(boxes[id]);
       enter(slot, nowhere<T>());
-      moved_.push_back(slot);
     }
     moved_count_ += order.size();
   }
@@ -375,26 +442,20 @@ class FollowedBlocks {
            tree_.slots() > boxes.size() + boxes.size() / 8 + 64;
   }
 
-  void compare() {
-    if (few_moved_ && candidates_.places_known())
-      return candidates_.compare_some(moved_, tree_.ids(0), pairs_.all, pairs_.began, pairs_.ended);
-    write_candidates(settings_.changes == Changes::reported ? Keep::changes
-                     : few_moved_                           ? Keep::places
-                                                            : Keep::nothing);
-  }
-  void write_candidates(Keep keep) {
+  void write_candidates() {
     pairs_.all.clear();
     const std::size_t count = candidates_.size();
     Threads& threads = joined_.shares().threads();
-    if (threads.count() == 1 || count < candidates_worth_sharing)
-      return candidates_.compare_all(tree_.ids(0), pairs_.all, keep, pairs_.began, pairs_.ended);
-    if (keep != Keep::nothing)
-      return candidates_.compare_all_shared(tree_.ids(0), pairs_.all, keep, pairs_.began,
-                                            pairs_.ended, threads);
-    candidates_.forget_places();
+    const bool shared = threads.count() > 1 && count >= candidates_worth_sharing;
+    const std::uint32_t* const ids = tree_.ids(0);
+    if (settings_.changes == Changes::reported) {
+      if (!shared) return candidates_.compare_all(ids, pairs_.all, pairs_.began, pairs_.ended);
+      return candidates_.compare_all_shared(ids, pairs_.all, pairs_.began, pairs_.ended, threads);
+    }
+    if (!shared) return candidates_.compare_range(ids, pairs_.all, 0, count);
     const std::size_t shares = 8 * threads.count();
     joined_.shares()(pairs_.all, shares, [&](std::size_t share, std::size_t of, PairList& to) {
-      candidates_.compare_range(tree_.ids(0), to, count * share / of, count * (share + 1) / of);
+      candidates_.compare_range(ids, to, count * share / of, count * (share + 1) / of);
     });
   }
   /// Below this a thread takes longer to wake than the comparisons do.
@@ -404,7 +465,6 @@ class FollowedBlocks {
   JoinedBlocks<T, Contact>& joined_;
   BlockTree<T>& tree_;  ///< while active: of the fat boxes
   ReportedPairs& pairs_;
-  LastFrame<T>& last_frame_;
 
   CandidatePairs<T, Contact> candidates_;
   LargeVector<Row<T>> fat_boxes_, spare_, last_rows_;
@@ -412,14 +472,17 @@ class FollowedBlocks {
   std::size_t count_ = 0;             ///< boxes of the last frame
   std::size_t candidates_at_first_ = 0, visits_ = 0, visits_when_sorted_ = 0;
   bool active_ = false, sorted_ = false, steady_ = true;
+  /// Where fat boxes are made for fewer frames, there is no time to prepare the next.
+  static constexpr int shortest_prepared = 16;
+  NextCandidates<T, Contact> next_;
+  bool sorted_next_ = false, took_over_ = false;
   int longest_ = 64, horizon_ = 0, age_ = 0;
 
   std::vector<Escaped> escaped_;
   std::vector<Look> looks_;
-  LargeVector<std::uint32_t> moved_;
   std::vector<std::uint32_t> newcomers_, emptied_;
   std::size_t moved_count_ = 0;
-  bool few_moved_ = false, told_few_moved_ = false;
+  int few_moved_ = 0;  ///< frames in a row
   std::vector<Box<T>> new_boxes_;
   SpatialOrder<T> newcomers_order_;
 };

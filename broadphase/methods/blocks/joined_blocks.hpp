@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What `blocks` does without coherence, and with the order alone: boxes sorted into blocks of
-/// sixteen neighbours, the tree of blocks joined with itself into all pairs; or the tree refitted
-/// in the order of an earlier frame and joined again.
+/// What `blocks` does without coherence: boxes sorted into blocks of sixteen neighbours, the tree
+/// of blocks joined with itself into all pairs.
 #pragma once
 
 #include <algorithm>
@@ -17,15 +16,30 @@
 namespace bvlab {
 
 /// What the parts of a frame cost, in units of a nanosecond or so, as measured once; what counts is
-/// their ratios.
+/// their ratios. Where what is read does not stay in the cache, some cost more.
 struct BlockCosts {
+  /// Where one box in so many moves, they are few.
+  static constexpr std::size_t few_times = 8;
+
   static constexpr double sort = 12;      ///< a box into spatial order
   static constexpr double visit = 36;     ///< a pair of leaves in the join
   static constexpr double pair = 1.3;     ///< an overlapping pair, written
-  static constexpr double look = 4.5;     ///< a box, followed
-  static constexpr double test = 1.8;     ///< a candidate, compared
+  static constexpr double report = 12;    ///< the same, compared with the last frame's
+  static constexpr double look = 8;       ///< a box, followed
   static constexpr double fat_box = 10;   ///< a fat box, made
   static constexpr double candidate = 3;  ///< a candidate, written
+  static constexpr double moved = 120;    ///< a box that moved, put into its place
+  static constexpr double leaf = 20;      ///< a leaf that it is compared with
+
+  /// A candidate, compared.
+  static double test(double candidates) { return 16 * candidates < 3 * near ? 2.2 : 3.7; }
+  /// A pair that began or ended, in a list of so many.
+  static double change(double pairs) {
+    return 16 * pairs < 2 * near ? 60 : 16 * pairs < 32 * near ? 200 : 700;
+  }
+
+ private:
+  static constexpr double near = 1 << 20;  ///< bytes in the cache of a processor
 };
 
 template <class T, class Contact>
@@ -40,8 +54,8 @@ class JoinedBlocks {
   SpatialOrder<T>& order() { return order_; }
   PairShares& shares() { return shares_; }
 
-  /// Pairs of leaves that the join right after the last sort visited.
-  std::size_t fresh_visits() const { return fresh_visits_; }
+  /// Pairs of leaves that the join from scratch visited.
+  std::size_t visits() const { return visits_; }
 
   /// Whether a box went farther in a frame than half a leaf: its neighbours are others now.
   bool jumped(const Row<T>& now, const Row<T>& was) const {
@@ -57,27 +71,6 @@ class JoinedBlocks {
   void from_scratch(Boxes<T> boxes, ReportedPairs& pairs) {
     build(order_(boxes, shares_.threads()), boxes);
     write_all_pairs(pairs);
-    fresh_visits_ = visits_;
-  }
-
-  /// Joins the tree again with the leaves' bounds as they are; false where a new order costs less
-  /// than what boxes, spread since the last one, are going to add to the join.
-  bool refit(Boxes<T> boxes, ReportedPairs& pairs) {
-    const double spread = static_cast<double>(visits_) - static_cast<double>(fresh_visits_);
-    if (holey(boxes.size()) || BlockCosts::visit * (spread + spreading_) >
-                                   BlockCosts::sort * static_cast<double>(boxes.size())) {
-      spreading_ *= 0.9;  // to be tried again some time
-      return false;
-    }
-    for (std::uint32_t k = 0; k < tree_.leaves(); ++k) {
-      gather(tree_.leaf(k), tree_.ids(k), boxes);
-      tree_.set_leaf_bounds(k, bounds(tree_.leaf(k)));
-    }
-    tree_.refit_above();
-    const std::size_t before = visits_;
-    write_all_pairs(pairs);
-    spreading_ = std::max(0.0, static_cast<double>(visits_) - static_cast<double>(before));
-    return true;
   }
 
   /// Writes the pairs of boxes that overlap in the sense of `Sense` to the list by `write`, as
@@ -96,18 +89,31 @@ class JoinedBlocks {
       return visits;
     }
     tree_.join_parts(parts_);
-    std::vector<std::size_t> visited(shares_.threads().count() * 64);
-    shares_(list, visited.size(), [&](std::size_t share, std::size_t of, PairList& to) {
-      LeafJoin<T, Sense, Write> join(tree_, to, write);
+    return join_parts_into<Sense>(tree_, parts_, list, write);
+  }
+  using Part = typename BlockTree<T>::Part;
+  /// The same for some parts of a tree's join; what is found is added to the list.
+  template <class Sense, class Write>
+  std::size_t join_parts_into(const BlockTree<T>& tree, std::span<const Part> parts, PairList& list,
+                              const Write& write) {
+    const auto join_some = [&](std::span<const Part> some, PairList& to) {
+      LeafJoin<T, Sense, Write> join(tree, to, write);
       std::size_t count = 0;
-      for (std::size_t k = parts_.size() * share / of; k < parts_.size() * (share + 1) / of; ++k)
-        tree_.join(parts_[k], [&](std::uint32_t a, std::uint32_t first, LaneMask lanes) {
+      for (const Part& part : some)
+        tree.join(part, [&](std::uint32_t a, std::uint32_t first, LaneMask lanes) {
           count += static_cast<std::size_t>(std::popcount(lanes));
           join.add(a, first, lanes);
         });
       join.flush();
-      visited[share] = count;
+      return count;
+    };
+    if (shares_.threads().count() == 1) return join_some(parts, list);
+    std::vector<std::size_t> visited(shares_.threads().count() * 64);
+    shares_(list, visited.size(), [&](std::size_t share, std::size_t of, PairList& to) {
+      const std::size_t first = parts.size() * share / of;
+      visited[share] = join_some(parts.subspan(first, parts.size() * (share + 1) / of - first), to);
     });
+    std::size_t visits = 0;
     for (const std::size_t count : visited) visits += count;
     return visits;
   }
@@ -138,10 +144,9 @@ class JoinedBlocks {
   SpatialOrder<T> order_;
   BlockTree<T> tree_;
   PairShares shares_;
-  std::vector<typename BlockTree<T>::Part> parts_;
+  std::vector<Part> parts_;
   double leaf_extent_ = 0;  ///< mean, after sorting
-  std::size_t visits_ = 0, fresh_visits_ = 0;
-  double spreading_ = 0;  ///< visits that the last refit added
+  std::size_t visits_ = 0;
 };
 
 }  // namespace bvlab

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What `blocks` does while few boxes move, in proportion to what changes. The tree holds the boxes
+/// as they are. A box that moved asks it once, with what encloses where it was and where it is, and
+/// is compared with each leaf found in both places: lanes in which the two answers differ are pairs
+/// that began or ended. The list is changed in place, and the bounds above what moved are
+/// recomputed. A box that jumped or is new gets another slot, where it was nowhere before.
+///
+/// O(log n + k) a box that moved, where the leaves are as tight as after sorting; 1 ns a box more
+/// to find out which moved, where that is not told.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "broadphase/methods/blocks/joined_blocks.hpp"
+#include "broadphase/structures/pair_places.hpp"
+
+namespace bvlab {
+
+template <class T, class Contact>
+class ChangedBlocks {
+ public:
+  /// `joined`: whose tree holds the boxes; `pairs`: the list that is changed. Both must outlive
+  /// this.
+  ChangedBlocks(JoinedBlocks<T, Contact>& joined, ReportedPairs& pairs)
+      : joined_(joined), tree_(joined.tree()), pairs_(pairs) {}
+
+  bool active() const { return active_; }
+  void stop() { active_ = placed_ = false; }
+
+  /// From the tree and the list of the last frame, which had this many boxes.
+  void begin(std::size_t boxes) {
+    count_ = boxes;
+    index_slots();
+    placed_ = false, active_ = true;
+    looks_when_sorted_ = 0, looks_ = asked_for_ = 0;
+  }
+
+  /// The last frame's box.
+  Box<T> last(std::uint32_t id) const {
+    return tree_.leaf(slots_[id] / block_width).box(static_cast<int>(slots_[id] % block_width));
+  }
+
+  /// What a box that moves is expected to cost, in units of BlockCosts; 0 where nothing is known.
+  double expected() const { return expected_; }
+  /// It may have become less.
+  void doubt() { expected_ *= 0.9; }
+
+  /// Brings the list from the last frame's boxes to these, where those of `moved`, new ones and
+  /// those that are gone differ at most. False, and no longer active, where that is going to cost
+  /// more than `affordable`; the tree is then to be built anew.
+  bool update(Boxes<T> boxes, std::span<const std::uint32_t> moved, double affordable) {
+    newcomers_.clear(), emptied_.clear(), was_.clear(), touched_.clear();
+    moved_count_ = 0;
+    for (std::size_t id = boxes.size(); id < count_; ++id) vacate(static_cast<std::uint32_t>(id));
+    const std::size_t staying = std::min(boxes.size(), count_);
+    for (const std::uint32_t id : moved)
+      if (id < staying && slots_[id] != no_slot) move(id, boxes[id]);
+    for (std::size_t id = count_; id < boxes.size(); ++id)
+      newcomers_.push_back(static_cast<std::uint32_t>(id));
+    if (100 * newcomers_.size() > boxes.size() + 3200) return stop(), false;
+    if (!newcomers_.empty()) seat_newcomers(boxes);
+    order_touched();
+    if (!find_changes(affordable)) return stop(), false;
+    if (!emptied_.empty()) pairs_.cancel_out();
+    apply(boxes.size());
+    settle();
+    count_ = boxes.size();
+    if (worn()) sort(boxes);
+    return true;
+  }
+
+  std::size_t bytes() const {
+    return places_.bytes() + 4 * (slots_.capacity() + was_at_.capacity() + touched_.capacity()) +
+           2 * changed_.capacity() + was_.capacity() * sizeof(Block<T>);
+  }
+
+ private:
+  static constexpr std::uint32_t no_slot = 0xffffffffu;
+
+  void index_slots() {
+    slots_.resize(count_);
+    const std::uint32_t* ids = tree_.ids(0);
+    for (std::uint32_t slot = 0; slot < tree_.slots(); ++slot)
+      if (ids[slot] != no_box) slots_[ids[slot]] = slot;
+    changed_.assign(tree_.leaves(), 0);
+    was_at_.resize(tree_.leaves());
+  }
+
+  // ---- what moved ---------------------------------------------------------------------------
+
+  void move(std::uint32_t id, const Box<T>& now) {
+    const Box<T> was = last(id);
+    if (was == now) return;
+    if (joined_.jumped(row_of(now), row_of(was))) {
+      vacate(id);
+      newcomers_.push_back(id);
+      return;
+    }
+    change(slots_[id], now);
+  }
+  void vacate(std::uint32_t id) {
+    change(slots_[id], nowhere<T>());
+    emptied_.push_back(slots_[id]);
+    slots_[id] = no_slot;
+  }
+  /// The tree holds the new box from now on; bounds enclose both. What stood in its leaf before
+  /// this frame is kept.
+  void change(std::uint32_t slot, const Box<T>& now) {
+    const std::uint32_t leaf = slot / block_width;
+    if (changed_[leaf] == 0) {
+      was_at_[leaf] = static_cast<std::uint32_t>(was_.size());
+      was_.push_back(tree_.leaf(leaf));
+      touched_.push_back(leaf);
+    }
+    ++moved_count_;
+    const int lane = static_cast<int>(slot % block_width);
+    changed_[leaf] |= static_cast<std::uint16_t>(1u << lane);
+    tree_.leaf(leaf).put(lane, now);
+    if (now.lo[0] <= now.hi[0]) tree_.widen_above(leaf, now);
+  }
+
+  /// Boxes that jumped or are new get leaves of their own, among themselves in spatial order.
+  void seat_newcomers(Boxes<T> boxes) {
+    new_boxes_.clear();
+    for (const std::uint32_t id : newcomers_) new_boxes_.push_back(boxes[id]);
+    const auto order = newcomers_order_(new_boxes_, joined_.shares().threads());
+    const std::uint32_t first = tree_.slots();
+    tree_.resize_leaves(tree_.leaves() +
+                        static_cast<std::uint32_t>((order.size() + block_width - 1) / block_width));
+    tree_.refit_above();
+    changed_.resize(tree_.leaves(), 0);
+    was_at_.resize(tree_.leaves());
+    slots_.resize(std::max(slots_.size(), boxes.size()));
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const std::uint32_t id = newcomers_[order[k].id];
+      const std::uint32_t slot = first + static_cast<std::uint32_t>(k);
+      tree_.ids(0)[slot] = id;
+      slots_[id] = slot;
+      change(slot, boxes[id]);
+    }
+  }
+
+  /// In ascending order, so that neighbours follow each other.
+  void order_touched() {
+    if (64 * touched_.size() < changed_.size()) return std::sort(touched_.begin(), touched_.end());
+    touched_.clear();
+    for (std::uint32_t leaf = 0; leaf < changed_.size(); ++leaf)
+      if (changed_[leaf] != 0) touched_.push_back(leaf);
+  }
+
+  // ---- which pairs change -------------------------------------------------------------------
+
+  /// Boxes that moved, some at a time, and the leaves that they reach.
+  struct Asked {
+    std::vector<std::uint32_t> slots;
+    std::vector<Box<T>> both;  ///< encloses where each was and where it is
+    typename BlockTree<T>::Finds finds;
+    PairList began, ended;
+    std::size_t looks;
+  };
+
+  /// Fills `began` and `ended`. False where a part of the work, or what it found, shows that all of
+  /// it costs more than `affordable`.
+  bool find_changes(double affordable) {
+    constexpr std::size_t some = 32;  // leaves
+    const std::size_t all = touched_.size(), parts = (all + some - 1) / some;
+    Threads& threads = joined_.shares().threads();
+    asked_.resize(threads.count() == 1 ? std::min<std::size_t>(parts, 1) : parts);
+    std::size_t looks = 0;
+    const auto cost = [&](double share) {
+      return BlockCosts::moved * static_cast<double>(moved_count_) +
+             (BlockCosts::leaf * static_cast<double>(looks) +
+              BlockCosts::change(static_cast<double>(pairs_.all.size())) *
+                  static_cast<double>(pairs_.began.size() + pairs_.ended.size())) /
+                 share;
+    };
+    const auto ask = [&](std::size_t part, Asked& asked, PairList& began, PairList& ended) {
+      ask_for(part * some, std::min(part * some + some, all), asked, began, ended);
+    };
+    const auto ask_all = [&](std::size_t first, std::size_t last) {
+      if (threads.count() == 1 || last - first < 8) {
+        for (std::size_t part = first; part < last; ++part) {
+          ask(part, asked_[0], pairs_.began, pairs_.ended);
+          looks += asked_[0].looks;
+        }
+        return;
+      }
+      // Each part's pairs by themselves: the same in the same order.
+      threads.share(last - first, [&](std::size_t k, std::size_t) {
+        Asked& asked = asked_[first + k];
+        asked.began.clear(), asked.ended.clear();
+        ask(first + k, asked, asked.began, asked.ended);
+      });
+      for (std::size_t part = first; part < last; ++part) {
+        looks += asked_[part].looks;
+        pairs_.began.append(asked_[part].began.view());
+        pairs_.ended.append(asked_[part].ended.view());
+      }
+    };
+    const std::size_t few = std::min(parts, parts / 16 + 1);
+    ask_all(0, few);
+    const double done = static_cast<double>(std::min(few * some, all));
+    // Where places are known, which would be lost, more than what a part of the work suggests.
+    if (all > 0 && cost(done / static_cast<double>(all)) > (placed_ ? 2 : 1) * affordable)
+      return refused(cost(done / static_cast<double>(all)));
+    ask_all(few, parts);
+    if (cost(1) > affordable) return refused(cost(1));
+    looks_ =
+        static_cast<double>(looks) / static_cast<double>(std::max<std::size_t>(moved_count_, 1));
+    return true;
+  }
+  bool refused(double cost) {
+    expected_ = cost / static_cast<double>(std::max<std::size_t>(moved_count_, 1));
+    return false;
+  }
+  /// What boxes that moved in the touched leaves from `first` to `last` have to do with all.
+  void ask_for(std::size_t first, std::size_t last, Asked& asked, PairList& began,
+               PairList& ended) const {
+    asked.slots.clear(), asked.both.clear();
+    for (std::size_t k = first; k < last; ++k)
+      for (LaneMask moved = changed_[touched_[k]]; moved; moved &= moved - 1) {
+        const std::uint32_t slot = touched_[k] * block_width + std::countr_zero(moved);
+        asked.slots.push_back(slot);
+        asked.both.push_back(enclosing(now(slot), was(slot)));
+      }
+    tree_.find(asked.both, asked.finds);
+    asked.looks = asked.finds.count;
+    // First those leaves alone that hold anything near, or anything that moved.
+    std::uint32_t* const leaves = asked.finds.leaves.data();
+    std::uint32_t* const boxes = asked.finds.boxes.data();
+    std::size_t near = 0;
+    for (std::size_t k = 0; k < asked.looks; ++k) {
+      const std::uint32_t leaf = leaves[k], box = boxes[k];
+      if (k + ahead < asked.looks) tree_.fetch(leaves[k + ahead]);
+      leaves[near] = leaf, boxes[near] = box;
+      near += (overlapping_lanes<Closed>(tree_.leaf(leaf), asked.both[box]) | changed_[leaf]) != 0;
+    }
+    for (std::size_t k = 0; k < near; ++k) compare(asked.slots[boxes[k]], leaves[k], began, ended);
+  }
+  static constexpr std::size_t ahead = 6;  ///< leaves between a prefetch and its use
+  Box<T> now(std::uint32_t slot) const {
+    return tree_.leaf(slot / block_width).box(static_cast<int>(slot % block_width));
+  }
+  Box<T> was(std::uint32_t slot) const {
+    return was_[was_at_[slot / block_width]].box(static_cast<int>(slot % block_width));
+  }
+  /// A box that moved with a leaf.
+  void compare(std::uint32_t slot, std::uint32_t leaf, PairList& began, PairList& ended) const {
+    const LaneMask also = changed_[leaf];
+    const Block<T>& block = tree_.leaf(leaf);
+    const Block<T>& before = also ? was_[was_at_[leaf]] : block;
+    const LaneMask on = overlapping_lanes<Contact>(block, now(slot)),
+                   off = overlapping_lanes<Contact>(before, was(slot));
+    // Of two that moved, the one in the earlier slot says it.
+    const LaneMask told = leaf < slot / block_width ? also
+                          : leaf == slot / block_width
+                              ? also & ((LaneMask{2} << slot % block_width) - 1)
+                              : 0;
+    const std::uint32_t id = tree_.ids(0)[slot];
+    for (LaneMask lanes = (on ^ off) & ~told; lanes; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      (on >> lane & 1 ? began : ended).push(ordered(id, tree_.ids(leaf)[lane]));
+    }
+  }
+
+  /// The list, changed in place.
+  void apply(std::size_t boxes) {
+    // Places are found in the first frame, whether it needs them or not: no later one is slow.
+    if (placed_ && pairs_.began.empty() && pairs_.ended.empty()) return;
+    const std::span<const std::uint32_t> order(tree_.ids(0), tree_.slots());
+    if (!placed_ || places_.sparse(pairs_.all))
+      places_.build(pairs_.all, std::max(boxes, count_), order);
+    placed_ = true;
+    places_.resize(std::max(boxes, count_));
+    places_.erase(pairs_.ended.view(), pairs_.all);
+    places_.insert(pairs_.began.view(), pairs_.all);
+  }
+
+  /// Bounds as tight as before, and nothing marked.
+  void settle() {
+    for (const std::uint32_t slot : emptied_) tree_.ids(0)[slot] = no_box;
+    for (const std::uint32_t leaf : touched_) changed_[leaf] = 0;
+    tree_.refit(touched_);
+  }
+
+  // ---- order --------------------------------------------------------------------------------
+
+  /// Whether slots are empty, or boxes went so far from their neighbours, that each asks for more
+  /// leaves than right after sorting.
+  bool worn() {
+    if (tree_.slots() > count_ + count_ / 8 + 64) return true;
+    if (asked_for_ < 512) return false;
+    const double looks = static_cast<double>(looks_) / static_cast<double>(asked_for_);
+    looks_ = asked_for_ = 0;
+    if (looks_when_sorted_ == 0) looks_when_sorted_ = looks;
+    return looks > 1.5 * looks_when_sorted_ + 4;
+  }
+  /// A new order; the list stays.
+  void sort(Boxes<T> boxes) {
+    joined_.build(joined_.order()(boxes, joined_.shares().threads()), boxes);
+    index_slots();
+    looks_when_sorted_ = 0, looks_ = asked_for_ = 0;
+  }
+
+  JoinedBlocks<T, Contact>& joined_;
+  BlockTree<T>& tree_;
+  ReportedPairs& pairs_;
+  PairPlaces places_;
+  bool active_ = false, placed_ = false;
+  std::size_t count_ = 0;             ///< boxes of the last frame
+  LargeVector<std::uint32_t> slots_;  ///< of each box
+
+  LargeVector<std::uint16_t> changed_;  ///< of each leaf: the lanes in which boxes moved
+  LargeVector<std::uint32_t> was_at_;   ///< of a leaf where some did: in `was_`
+  std::vector<Block<T>> was_;           ///< leaves as they were in the last frame
+  std::vector<std::uint32_t> touched_;  ///< leaves where boxes moved
+  std::size_t moved_count_ = 0;
+  std::vector<Asked> asked_;
+  std::size_t looks_ = 0, asked_for_ = 0;  ///< leaves that boxes asked for, and boxes, lately
+  double looks_when_sorted_ = 0;           ///< of a box
+  double expected_ = 0;
+
+  std::vector<std::uint32_t> newcomers_, emptied_;
+  std::vector<Box<T>> new_boxes_;
+  SpatialOrder<T> newcomers_order_;
+};
+
+}  // namespace bvlab

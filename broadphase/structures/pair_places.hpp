@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Where each pair stands in the list of all pairs, so that the list can be changed in place. Each
+/// box knows the pairs in which it has the smaller index, side by side, with room to grow: a pair
+/// is found by looking through those of one box. Built in O(pairs) by counting, without hashing; a
+/// pair is put in or taken out in O(1) and what its box has.
+///
+/// 8 bytes a pair and up to three quarters more, and 16 a box.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "broadphase/structures/pair_list.hpp"
+#include "hierarchies/geometry/large_vector.hpp"
+
+namespace bvlab {
+
+class PairPlaces {
+ public:
+  /// Takes over the list as it stands. `order`: each of these boxes is below `boxes` or stands for
+  /// none; pairs of boxes that follow each other lie side by side in memory.
+  void build(const PairList& list, std::size_t boxes, std::span<const std::uint32_t> order) {
+    own_.assign(boxes, {});
+    for (const Pair& pair : list.view()) ++own_[pair.i].room;
+    std::size_t begin = 0;
+    for (const std::uint32_t box : order) {
+      if (box >= boxes) continue;
+      Own& own = own_[box];
+      own.begin = begin, own.room += own.room / 8 + 2;
+      begin += own.room;
+    }
+    used_ = begin;
+    if (others_.size() < used_ + used_ / 8 + 16) resize_entries(used_ + used_ / 2 + 1024);
+    for (std::size_t place = 0; place < list.size(); ++place) {
+      Own& own = own_[list[place].i];
+      put(own.begin + own.count++, list[place].j, place);
+    }
+  }
+
+  /// Makes room for that many boxes; new ones have no pairs.
+  void resize(std::size_t boxes) { own_.resize(boxes); }
+
+  /// Adds pairs that are not in the list, after it was built.
+  void insert(std::span<const Pair> pairs, PairList& list) {
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      fetch(pairs, k);
+      insert(pairs[k], list);
+    }
+  }
+  void insert(Pair pair, PairList& list) {
+    Own& own = own_[pair.i];
+    if (own.count == own.room) move_to_the_end(own);
+    put(own.begin + own.count++, pair.j, list.size());
+    list.push(pair);
+  }
+  /// Takes out pairs that are in the list; the last ones take their places.
+  void erase(std::span<const Pair> pairs, PairList& list) {
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      fetch(pairs, k);
+      if (const std::size_t left = list.size() - 1; left >= ahead) fetch(list[left - ahead + 1]);
+      erase(pairs[k], list);
+    }
+  }
+  void erase(Pair pair, PairList& list) {
+    Own& own = own_[pair.i];
+    const std::size_t entry = entry_of(pair), end = own.begin + --own.count;
+    const std::uint32_t place = places_[entry];
+    others_[entry] = others_[end], places_[entry] = places_[end];
+    const std::size_t last = list.size() - 1;
+    if (place != last) {
+      list[place] = list[last];
+      places_[entry_of(list[last])] = place;
+    }
+    list.resize_down(last);
+  }
+
+  /// Whether so much room was left behind that building anew is worth it.
+  bool sparse(const PairList& list) const { return used_ > 2 * list.size() + 4 * own_.size(); }
+
+  std::size_t bytes() const {
+    return own_.capacity() * sizeof(Own) +
+           (others_.capacity() + places_.capacity()) * sizeof(std::uint32_t);
+  }
+
+ private:
+  struct Own {
+    std::size_t begin = 0;
+    std::uint32_t count = 0, room = 0;
+  };
+
+  static constexpr std::size_t ahead = 8;  ///< pairs between a prefetch and its use
+  /// Has the memory of later pairs come, first what is known of a box, then what it has.
+  void fetch(std::span<const Pair> pairs, std::size_t k) const {
+    if (k + 2 * ahead < pairs.size()) __builtin_prefetch(&own_[pairs[k + 2 * ahead].i]);
+    if (k + ahead < pairs.size()) fetch(pairs[k + ahead]);
+  }
+  void fetch(Pair pair) const {
+    const Own& own = own_[pair.i];
+    for (std::size_t entry = 0; entry < own.count && entry < 64; entry += 16)
+      __builtin_prefetch(others_.data() + own.begin + entry);
+    __builtin_prefetch(places_.data() + own.begin);
+  }
+
+  void put(std::size_t entry, std::uint32_t other, std::size_t place) {
+    others_[entry] = other, places_[entry] = static_cast<std::uint32_t>(place);
+  }
+  /// Sixteen at a time, without a branch between them.
+  std::size_t entry_of(Pair pair) const {
+    constexpr std::size_t some = 16;
+    std::size_t entry = own_[pair.i].begin;
+    for (;; entry += some) {
+      bool any = false;
+      for (std::size_t k = 0; k < some; ++k) any |= others_[entry + k] == pair.j;
+      if (any) break;
+    }
+    while (others_[entry] != pair.j) ++entry;
+    return entry;
+  }
+  void move_to_the_end(Own& own) {
+    const std::uint32_t room = 2 * own.room + 4;
+    if (used_ + room + 16 > others_.size()) resize_entries((used_ + room) * 5 / 4);
+    std::copy_n(others_.data() + own.begin, own.count, others_.data() + used_);
+    std::copy_n(places_.data() + own.begin, own.count, places_.data() + used_);
+    own.begin = used_, own.room = room;
+    used_ += room;
+  }
+  /// A search may look at sixteen past the last.
+  void resize_entries(std::size_t count) { others_.resize(count + 16), places_.resize(count + 16); }
+
+  LargeVector<Own> own_;
+  LargeVector<std::uint32_t> others_,
+      places_;  ///< of each pair: its other box, and where it stands
+  std::size_t used_ = 0;
+};
+
+}  // namespace bvlab
