@@ -1,48 +1,85 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sentences and tables whose numbers come from records: where they stand in a page, what they say, what should stand.
+"""The numbers of README.md, the pages of experiments/ and the paper: each computed in one place, from the records.
 
-    @quotes("boxes-precision", RESULTS, "`blocks` takes a median of {blocks:.2f} of its time in double")
+    @quotes("boxes-precision")
     def boxes_precision(record):
-        return {"blocks": ...}
+        return {"blocks": ..., "rows": [[cell, ...], ...]}
 
-A quote is a piece of a page with places for numbers, {name:format}; the function computes the values from the record
-of that name, or of several. Line breaks are as the page has them. A value may be a number, a name ({best}), a list of
-them, which is written "1, 2 and 3", or an Interval, which is written "1.5 to 1.6", and "1.6" where both ends are the
-same when rounded. What a page says in words is claimed: claim(raise_is_best, "raise is the fastest").
+A page is made from its template, plots/texts/<page>.in, in which a number stands as <<function.key:format>>:
 
-A table is a quote that begins with the line of its columns; the function gives {"rows": [[cell, ...], ...]}.
+    `blocks` takes a median of <<boxes_precision.blocks:.2f>> of its time in double.
 
-Numbers that no record gives (published ones, what a definition sets, units) are said to be such: stated(page, why, text).
+A value may be a number, a name, a list of them, which is written "1, 2 and 3", an Interval, which is written "1.5 to
+1.6", and "1.6" where both ends are the same when rounded, or the rows of a table. What a sentence says in words is
+claimed where its numbers are computed: claim(raise_is_best, "raise is the fastest"). A number that no record gives
+stands with the reason: <<500 polygons|what the definition sets>>.
 """
 
 import contextlib
 import io
 import re
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from refused import Refused
+from bvlab_plots.refused import Refused
 
 ROOT = Path(__file__).resolve().parent.parent
 RECORDS = ROOT / "experiments" / "record"
-README, RESULTS = "README.md", "experiments/results.md"
-PAGES = [README, RESULTS]
-NUMBER = r"[-+]?\d+(?:[ ,]\d{3})*(?:\.\d+)?"
+TEXTS = ROOT / "plots" / "texts"
+PAPER = ROOT / "paper" / "main.tex"  # a template, too: paper/generate.py fills it in
 # In a page: with k or M behind it, but not in a word (sweep1, float64, 26-DOP) nor a heading's.
 SHOWN = re.compile(r"(?<![\w.-])(?:\d+(?:[ ,]\d{3})*(?:\.\d+)?(?!\w|\.\d|-[A-Za-z])|\d+(?:\.\d+)?[kM]\b)")
-PLACE = re.compile(r"\{(\w+)(?::([^}]*))?\}")
-# Not read for numbers: code, the addresses of links, what a formula lowers or raises.
-UNREAD = re.compile(r"```.*?```|`[^`\n]*`|\]\([^)]*\)|<su[bp]>.*?</su[bp]>|https?://\S+", re.DOTALL)
-
-
-UNTRUE = []  # sentences that records do not bear out any more, while a function computes values
+PLACE = re.compile(r"<<(\w+)\.(\w+)(?::([^<>|]*))?>>")
+STATED = re.compile(r"<<([^<>|]+)\|[^<>|]+>>")
+# Not read for numbers: places, code, the addresses of links, what a formula lowers or raises, the numbers of a list and
+# the heads of tables.
+UNREAD = re.compile(
+    r"```.*?```|`[^`\n]*`|\]\([^)]*\)|<su[bp]>.*?</su[bp]>|https?://\S+|<!--.*?-->|<<[^<>]+>>"
+    r"|^\*\*\d\.|^\d\. |^\|[^\n]*\|$(?=\n\|---)", re.DOTALL | re.MULTILINE
+)
+ALL = "*"  # in place of a record's name: the folder of them all
+FUNCTIONS = {}
+UNTRUE = []  # sentences that the records do not bear out, while a function computes values
 
 
 def claim(holds, sentence):
     """What a page says in words: where it does not hold, numbers are still written, and the sentence is named."""
     if not holds:
         UNTRUE.append(sentence)
+
+
+def quotes(names):
+    """The function computes values from the records of these names, once."""
+    names = [names] if isinstance(names, str) else list(names)
+
+    def of(function):
+        @cache
+        def values(folder):
+            UNTRUE.clear()
+            with contextlib.redirect_stdout(io.StringIO()):  # what is left out is said where figures are drawn
+                of_records = [folder] if names == [ALL] else [record_of(name, folder) for name in names]
+                return function(*of_records), list(UNTRUE)
+
+        if function.__name__ in FUNCTIONS:
+            raise Refused(f"{function.__name__}: two functions of this name compute numbers")
+        FUNCTIONS[function.__name__] = values
+        return function
+
+    return of
+
+
+def numbers(name, records=RECORDS):
+    """What the function of this name computes, by key, and the claims that do not hold."""
+    if name not in FUNCTIONS:
+        raise Refused(f"no function {name} computes numbers")
+    return FUNCTIONS[name](records)
+
+
+def record_of(name, records=RECORDS):
+    folder = Path(records) / name
+    if not (folder / "definition.toml").is_file():
+        raise Refused(f"{name}: there is no record of it")
+    return folder
 
 
 class Interval:
@@ -57,8 +94,14 @@ class Interval:
         return least if least == most else f"{least} to {most}"
 
 
+def is_table(value):
+    return isinstance(value, (list, tuple)) and bool(value) and isinstance(value[0], (list, tuple))
+
+
 def written(value, spec):
     """".2g" rounds to two digits and writes no exponent; "d" has blanks between thousands, "s" is 289k."""
+    if is_table(value):
+        return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in value).replace("|  |", "| |")
     if isinstance(value, (list, tuple)):
         texts = [written(each, spec) for each in value]
         return ", ".join(texts[:-1]) + " and " * (len(texts) > 1) + texts[-1]
@@ -85,168 +128,42 @@ def short(count):
     return f"{count:.0f}"
 
 
-@dataclass
-class Quote:
-    page: str
-    text: str
-    values: object  # a function of no arguments: the values, and what does not hold of what is claimed
-
-    @property
-    def is_table(self):
-        return self.text.lstrip().startswith("|")
-
-    def name(self):
-        first = " ".join(self.text.split())
-        return f"{self.page}: \"{first[:90]}{'...' if len(first) > 90 else ''}\""
-
-
-@dataclass
-class Stated:
-    page: str
-    why: str
-    text: str
-
-
-QUOTES, STATED = [], []
-
-
-def quotes(names, page, *texts):
-    """Says that the texts stand in the page, with values from the records of these names."""
-    names = [names] if isinstance(names, str) else list(names)
-
-    def of(function):
-        @cache
-        def values():
-            UNTRUE.clear()
-            with contextlib.redirect_stdout(io.StringIO()):  # what is left out is said where figures are drawn
-                return function(*(record_of(name) for name in names)), list(UNTRUE)
-        for text in texts:
-            QUOTES.append(Quote(page, text, values))
-        # Another page may quote the same values: they are computed once.
-        function.also = lambda other, *more: QUOTES.extend(Quote(other, text, values) for text in more)
-        return function
-    return of
-
-
-def stated(page, why, *texts):
-    STATED.extend(Stated(page, why, text) for text in texts)
-
-
-def record_of(name):
-    folder = RECORDS / name
-    if not (folder / "definition.toml").is_file():
-        raise Refused(f"{name}: there is no record of it")
-    return folder
-
-
-def pattern(text):
-    """A text as an expression: blanks are any, places are numbers or names, in groups."""
-    parts, last = [], 0
-    text = text.strip()
-    for place in PLACE.finditer(text):
-        parts += [literal(text[last:place.start()]), place_pattern(place[2])]
-        last = place.end()
-    return re.compile("".join(parts + [literal(text[last:])]))
-
-
-def literal(text):
-    # Blanks are kept as the page has them: groups of their own.
-    return "".join(r"(\s+)" if part.isspace() else re.escape(part) for part in re.split(r"(\s+)", text) if part)
-
-
-def place_pattern(spec):
-    if not spec:
-        return r"(\S(?:[^\n]*?\S)??)"
-    return rf"({NUMBER}[kM]?(?:(?:\s+to\s+|\s+and\s+|,\s+){NUMBER}[kM]?)*)"
-
-
-def found(quote, text):
-    """Where a quote stands in the page; refused unless it is there once."""
-    if quote.is_table:
-        start = text.find(quote.text.strip() + "\n")
-        if start < 0:
-            raise Refused(f"{quote.name()} does not stand there")
-        end = re.compile(r"(?:\|.*(?:\n|\Z))+").match(text, start).end()
-        return start, end, None
-    matches = list(pattern(quote.text).finditer(text))
-    if len(matches) != 1:
-        raise Refused(f"{quote.name()} stands there {len(matches)} times, not once")
-    return matches[0].start(), matches[0].end(), matches[0]
-
-
-def said(quote, values, match):
-    """The text that should stand: with the record's values, and the page's line breaks."""
-    if quote.is_table:
-        head = quote.text.strip()
-        lines = [head, "|" + "---|" * (head.count("|") - 1)]
-        return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in values["rows"]]).replace("|  |", "| |") + "\n"
-    blanks = iter(group for group in match.groups() if group.isspace())
-    text, parts = quote.text.strip(), []
-    for piece in re.split(r"(\{\w+(?::[^}]*)?\})", text):
-        place = PLACE.fullmatch(piece)
-        if place:
-            parts.append(written(values[place[1]], place[2] or ""))
-        else:
-            parts.append(re.sub(r"\s+", lambda _: next(blanks), piece))
-    return "".join(parts)
-
-
-def covered(quote, start, match, end):
-    """The parts of a page in which numbers are computed: a table, or the places."""
-    if match is None:
-        return [(start, end)]
-    return [match.span(i) for i, group in enumerate(match.groups(), 1) if not group.isspace()]
-
-
 class Page:
-    """A page as it stands and as it should."""
+    """A page as its template and the records say it, and what is wrong with either."""
 
-    def __init__(self, name, text=None):
-        self.name, self.faults = name, []
-        self.text = (ROOT / name).read_text() if text is None else text
-        self.pieces = []  # (start, end, what should stand)
-        self.known = []
-        for quote in (quote for quote in QUOTES if quote.page == name):
-            try:
-                start, end, match = found(quote, self.text)
-                self.known += covered(quote, start, match, end)
-                values, untrue = quote.values()
-                self.faults += [fault for each in untrue if (fault := f"{name}: no longer so: {each}") not in self.faults]
-                stands, should = self.text[start:end], said(quote, values, match)
-                same = stands == should if quote.is_table else stands.split() == should.split()
-                self.pieces.append((start, end, stands if same else should, quote))
-            except Refused as fault:
-                text = str(fault)
-                self.faults.append(text if text.startswith(name) else f"{quote.name()}: {text}")
-            except Exception as fault:  # a record of another form: the other quotes are still looked at
-                self.faults.append(f"{quote.name()}: {type(fault).__name__}: {fault}")
-        self.pieces.sort(key=lambda piece: piece[:2])
-        for (_, end, _, before), (start, _, _, quote) in zip(self.pieces, self.pieces[1:]):
-            if start < end:
-                self.faults.append(f"{quote.name()} overlaps \"{before.text[:40]}\"")
+    def __init__(self, name, template, records=RECORDS):
+        self.name, self.template, self.records, self.faults = name, template, records, []
 
-    def differences(self):
-        return [(quote, self.text[start:end], said) for start, end, said, quote in self.pieces
-                if self.text[start:end] != said]
+    def written(self):
+        """The page. A place that cannot be filled in stays as it is and is a fault."""
+        text = PLACE.sub(self.filled, self.template)
+        return STATED.sub(r"\1", text)
 
-    def rewritten(self):
-        parts, last = [], 0
-        for start, end, said, _ in self.pieces:
-            if start >= last:
-                parts += [self.text[last:start], said]
-                last = end
-        return "".join(parts + [self.text[last:]])
+    def filled(self, place):
+        function, key, spec = place.groups()
+        try:
+            values, untrue = numbers(function, self.records)
+            for sentence in untrue:
+                self.fault(f"not so (any more): {sentence} [{function}]")
+            return written(values[key], spec or "")
+        except Exception as fault:  # a record of another form: the other places are still filled in
+            self.fault(f"{place[0]}: {fault if isinstance(fault, Refused) else f'{type(fault).__name__}: {fault}'}")
+            return place[0]
+
+    def fault(self, text):
+        if f"{self.name}: {text}" not in self.faults:
+            self.faults.append(f"{self.name}: {text}")
 
     def uncovered(self):
         """(line, number, words around it) of each number that neither a record gives nor is said to be no record's."""
-        known = list(self.known) + [match.span() for match in UNREAD.finditer(self.text)]
-        for each in STATED:
-            if each.page == self.name:
-                spans = [match.span() for match in pattern(each.text).finditer(self.text)]
-                if not spans:
-                    self.faults.append(f"{self.name}: \"{each.text}\" ({each.why}) does not stand there")
-                known += spans
-        for match in SHOWN.finditer(self.text):
-            if not any(start <= match.start() and match.end() <= end for start, end in known):
-                around = " ".join(self.text[max(0, match.start() - 50):match.end() + 40].split())
-                yield self.text.count("\n", 0, match.start()) + 1, match[0], around
+        unread = [match.span() for match in UNREAD.finditer(self.template)]
+        for match in SHOWN.finditer(self.template):
+            if not any(start < match.end() and match.start() < end for start, end in unread):
+                around = " ".join(self.template[max(0, match.start() - 50):match.end() + 40].split())
+                yield self.template.count("\n", 0, match.start()) + 1, match[0], around
+
+
+def pages():
+    """Every page that has a template, by the path of the page from the root."""
+    for path in sorted(TEXTS.rglob("*.in")):
+        yield Page(str(path.relative_to(TEXTS).with_suffix("")), path.read_text())

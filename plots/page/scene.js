@@ -4,6 +4,17 @@
 
 const scene = (() => {
   const canvas = document.getElementById('scene');
+  // Three.js writes an error to the console where it finds no WebGL: asked for beforehand, on a canvas of its own.
+  if (!document.createElement('canvas').getContext('webgl2')) {
+    const said = document.createElement('p');
+    said.id = 'no-webgl';
+    said.textContent = 'This browser shows no 3D here (WebGL 2 is off or missing): the scene is not drawn. '
+      + 'Curves, pairs and numbers are all there; --x3d writes the scene for other viewers.';
+    canvas.replaceWith(said);
+    const nothing = () => {};
+    return { put: nothing, paint: nothing, showVolumes: nothing, placeVolumes: nothing, lookAt: nothing,
+      onClick: nothing, draw: nothing };
+  }
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
   renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
   const world = new THREE.Scene(), camera = new THREE.PerspectiveCamera(40, 1, 0.01, 100);

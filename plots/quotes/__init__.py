@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What README.md and experiments/results.md say of the records, in the order of the results."""
+"""The numbers that README.md, the pages of experiments/ and the paper quote from the records."""
 
 import importlib
 from pathlib import Path

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Box intersection: ours beside peers, against displacement, and what the published figures say."""
 
+import numpy as np
 import pandas as pd
 
-import boxes_fast
-import records
+from bvlab_scripts import boxes_fast
+from bvlab_plots import records
 from quotes.names import PEERS, called
-from quoting import RESULTS, Interval, claim, quotes, short, stated
+from quoting import Interval, claim, quotes, short
 
 WORKS = [boxes_fast.SCRATCH, "drift", "still", "teleport"]
 SETS = {"triangles": "triangles of a bunny"}
@@ -15,9 +16,8 @@ SEEDS = ["hybrid", "hash", "sweep1", "sweep2", "sweep3", "sweep4"]  # what was p
 SWEEPS = [method for method in SEEDS if method.startswith("sweep")]
 
 
-@quotes(["boxes-fast", "boxes-triangles", "boxes-fast-large", "boxes-million"], RESULTS,
-        "| set | boxes | pairs | from scratch | all move 2% | nothing moves | teleports |")
-def beside_peers(*folders):
+@quotes(["boxes-fast", "boxes-triangles", "boxes-fast-large", "boxes-million"])
+def boxes_beside_peers(*folders):
     lines = boxes_fast.table(boxes_fast.read(folders))
     lines = lines[lines.method == "blocks"]
     rows = []
@@ -28,17 +28,19 @@ def beside_peers(*folders):
     return {"rows": rows}
 
 
-@quotes("boxes-fast", RESULTS, "Times as fast as the best of {peers}, on one thread",
-        "{adjacent:s} of the adjacent cubes touch while they stand still")
+def peers_of(rows):
+    """Those of a record that have a name in text, in the order of PEERS."""
+    return called([peer for peer in PEERS if peer in set(rows.peer)], PEERS)
+
+
+@quotes("boxes-fast")
 def peers(record):
     rows = boxes_fast.read([record])
     still = rows[(rows.set == "adjacent") & (rows.motion == "still")]
-    return {"adjacent": still.overlaps.median(), "peers": called([peer for peer in PEERS if peer in set(rows.peer)], PEERS)}
+    return {"adjacent": still.overlaps.median(), "peers": peers_of(rows)}
 
 
-@quotes("boxes-first-call", RESULTS,
-        "On [the first call](record/boxes-first-call), with one set of boxes and memory that was not touched before, `blocks` is "
-        "{ratio:.1f} times as fast as the best of {peers}, least with the {pairs:s} pairs of `{set}`")
+@quotes("boxes-first-call")
 def first_call(record):
     rows = records.read(record)
     records.wrong_answers(rows)
@@ -47,27 +49,26 @@ def first_call(record):
     ratio = time.drop(columns="").min(axis=1) / time[""]
     least = ratio.idxmin()
     pairs = rows.groupby(["set", "boxes"]).overlaps.median()[least]
-    return {"ratio": Interval(ratio), "pairs": short(pairs), "set": least[0], "peers": called([p for p in PEERS if p in set(rows.peer)], PEERS)}
+    return {"ratio": Interval(ratio), "pairs": short(pairs), "set": least[0], "peers": peers_of(rows)}
 
 
-@quotes("boxes-peers", RESULTS,
-        "Where nothing moves Bullet's `btDbvt` is the best peer in {best:d} of the {sets:d} sets of [every method and "
-        "peer](record/boxes-peers), of 1000 boxes, where ours is {times:.1f} times as fast as it.")
+@quotes("boxes-peers")
 def every_peer(record):
     rows = records.read(record)
     missing = set(rows[records.wrong_answers(rows)].peer)
-    claim(missing == {"fcl-sap", "fcl-interval", "ode-hash"}, "FCL's SaP and IntervalTree and ODE's hash space miss pairs")
+    claim(missing == {"fcl-sap", "fcl-interval", "ode-hash"}, "FCL's SaP and IntervalTree and ODE's hash space alone differ")
+    wrong = rows[rows.differing > 0].groupby("peer").set.unique()
+    claim(all(set(wrong[peer]) == {"adjacent"} for peer in ("fcl-sap", "fcl-interval")), "FCL's managers differ on adjacent cubes alone")
+    claim("adjacent" not in wrong["ode-hash"], "ODE's hash space differs elsewhere")
     still = rows[(rows.motion == "still") & (rows.threads == 1)]
     still = still.groupby(["set", "variant", "coherent", "peer"]).frame_ns.median()
     theirs = still.reset_index()[lambda part: part.peer != ""].pivot_table(index="set", columns="peer", values="frame_ns")
     ours = still.xs(("blocks", "on"), level=("variant", "coherent")).droplevel("peer")
-    return {"best": (theirs.idxmin(axis=1) == "bullet-dbvt").sum(), "sets": len(theirs),
+    return {"best": (theirs.idxmin(axis=1) == "bullet-dbvt").sum(), "sets": len(theirs), "ode": sorted(wrong["ode-hash"]),
             "times": Interval(theirs["bullet-dbvt"] / ours)}
 
 
-@quotes("boxes-displacement", RESULTS,
-        "then costs {over:.2f} of what never having looked costs (the most on `{worst}` at {at:.0f} % displacement). Where boxes "
-        "overlap thirty others and move a hundred-thousandth of their size incremental sweep and prune is faster, by {sap:.0f} %.")
+@quotes("boxes-displacement")
 def displacement(record):
     rows = records.read(record)
     records.wrong_answers(rows)
@@ -80,17 +81,7 @@ def displacement(record):
     return {"over": Interval(over), "worst": worst[0], "at": 100 * worst[1], "sap": 100 * (1 - sap)}
 
 
-stated(RESULTS, "numbers of figures, and what the definition sets", "Koziara and Bićanić's Figures [3](record/boxes-figure-3), "
-       "[4](record/boxes-figure-4) and [5](record/boxes-figure-5)", "of 1000 boxes", "**Boxes** (10 000 [beside the best peers]", "[200 000](record/boxes-fast-large)",
-       "(from 200 000 on CGAL and FCL's tree alone)", "not from 200 000 boxes on")
-
-
-@quotes(["boxes-figure-3", "boxes-figure-4", "boxes-figure-5"], RESULTS,
-        "HYBRID is best of their methods where boxes overlap much, from {dense_from:d} on, and on the sparse sphere from "
-        "{sparse_from:d} on, where no coherent sweep overtakes it; SWEEP1, then HASH2, is best on adjacent cubes, up to "
-        "{adjacent_to:d}, and HASH2 beyond.",
-        "SWEEP4 falls behind HYBRID on the packed sphere well before 50 000 ({sweep4:.0f} ms against {hybrid:.0f} there), and coherence "
-        "saves a sweep nothing like a third ({saved:.0f} % in the median)")
+@quotes(["boxes-figure-3", "boxes-figure-4", "boxes-figure-5"])
 def published(*folders):
     def read(folder):
         rows = records.read(folder)
@@ -124,12 +115,86 @@ def published(*folders):
             "saved": 100 * max(0, 1 - (both["on"] / both["off"]).median())}
 
 
-stated(RESULTS, "the size of which times follow", "well before 50 000")
-stated(RESULTS, "pairs of eight bytes in a page of 4096", "a page for every 512 pairs")
-
-
-@quotes("boxes-million", RESULTS, "Two threads take {threads:.1f} of the wall time of one")
+@quotes("boxes-million")
 def threads(record):
     rows = records.read(record)
     time = rows[rows.method == "blocks"].groupby(["threads", "set", "motion", "coherent"]).wall_ns.median()
     return {"threads": Interval(time[2] / time[1])}
+
+
+@quotes(["boxes-fast", "boxes-displacement", "boxes-peers"])
+def boxes_slowest(*folders):
+    """What following costs where it does not pay, and how its slowest frames compare."""
+    over, drift = [], None
+    for folder in folders:
+        rows = records.read(folder)
+        records.wrong_answers(rows)
+        rows = rows[(rows.peer == "") & (rows.frame_ns > 0) & (rows.method == "blocks") & (rows.threads <= 1)]
+        keys = [key for key in ("set", "boxes", "motion", "displacement") if key in rows]
+        time = rows.groupby([*keys, "coherent"])[["frame_ns", "p99_ns"]].median().unstack("coherent")
+        ratio = (time.frame_ns["on"] / time.frame_ns["off"]).dropna()
+        over.append((ratio.max(), folder.name, ratio.idxmax()))
+        if folder.name == "boxes-fast":
+            drift = time.xs("drift", level="motion")
+    (most, _, at) = max(over)
+    tail = drift.p99_ns["on"] / drift.frame_ns["on"]
+    beside = drift.p99_ns["on"] / drift.p99_ns["off"]
+    lead = drift.frame_ns["off"] / drift.frame_ns["on"]
+    all_rows = records.read(folders[0])
+    all_rows = all_rows[(all_rows.motion == "drift") & (all_rows.frame_ns > 0) & (all_rows.threads <= 1)]
+    tails = all_rows.groupby(["set", "peer"]).p99_ns.median().unstack()
+    ours = all_rows[(all_rows.method == "blocks") & (all_rows.coherent == "on")].groupby("set").p99_ns.median()
+    peers = tails.drop(columns="").min(axis=1) / ours
+    claim((beside >= 0.94).all(), "in drift the slowest frames of following are hardly ever faster than starting over's")
+    return {"most": most, "set": at[0], "tail": Interval(tail), "beside": Interval(beside), "lead": Interval(lead), "peers": Interval(peers)}
+
+
+@quotes(["boxes-figure-3", "boxes-figure-4", "boxes-figure-5"])
+def deviations(*folders):
+    """What the published figures say and these do not."""
+    def read(folder):
+        rows = records.read(folder)
+        rows = rows[(rows.frame_ns > 0) & rows.method.isin(SEEDS)]
+        return rows.groupby(["set", "coherent", "boxes", "method"]).frame_ns.median()
+    times = pd.concat([read(folder) for folder in folders]).sort_index()
+    scratch = times.xs("off", level="coherent").unstack("method")
+    spread = {name: scratch.loc[name][SWEEPS].max(axis=1) / scratch.loc[name][SWEEPS].min(axis=1) for name in ("random", "sphere-packed", "sphere-sparse")}
+    random, packed, adjacent, sparse = (scratch.loc[name] for name in ("random", "sphere-packed", "adjacent", "sphere-sparse"))
+    large = adjacent[adjacent.index >= 1e4]
+    claim((random.iloc[-3:].idxmax(axis=1) == "sweep3").all(), "SWEEP3 is the slowest on large random sets")
+    claim((spread["random"].iloc[-3:] > 1.9).all(), "the sweeps differ by a factor of two on large random sets")
+    claim(all((large.hybrid < large[method].fillna(np.inf)).all() for method in ("sweep2", "sweep3")),
+          "HYBRID beats SWEEP2 and SWEEP3 on many adjacent cubes")
+    behind = sparse.sweep1 / sparse.hybrid
+    claim((behind[behind.index > 50000] > 1.5).all() and (behind[behind.index <= 50000] < 1.1).all(),
+          "SWEEP1 keeps up with HYBRID to 50 000 boxes on the sparse sphere, and not beyond")
+    claim((large.hybrid < large.sweep4).all(), "HYBRID is faster than SWEEP4 on adjacent cubes from ten thousand on")
+    claim((packed.sweep4 > packed.hybrid).all(), "SWEEP4 is slower than HYBRID on the packed sphere at every size")
+    four = packed.sweep4 / packed.hybrid
+    hash_random = random.hash / random.min(axis=1)
+    return {"random_spread": Interval(spread["random"]), "packed_spread": Interval(spread["sphere-packed"]),
+            "sparse_spread": Interval(spread["sphere-sparse"]), "hash_random": Interval(hash_random), "four": Interval(four),
+            "adjacent_hybrid": Interval(adjacent.hybrid / adjacent.min(axis=1)), "adjacent_four": Interval(adjacent.sweep4 / adjacent.min(axis=1)),
+            "adjacent_one": Interval(adjacent.sweep1 / adjacent.min(axis=1)), "sparse_one": Interval(sparse.sweep1 / sparse.hybrid),
+            "most": int(adjacent.index.max()), "rank_four_large": Interval(large.sweep4 / large.hybrid)}
+
+
+@quotes(["boxes-figure-3", "boxes-figure-4", "boxes-figure-5"])
+def exponents(*folders):
+    """How times grow with the number of boxes: least squares of logarithms, from the largest three sizes."""
+    lines = []
+    for folder in folders:
+        rows = records.read(folder)
+        rows = rows[(rows.frame_ns > 0) & (rows.coherent != "on") & rows.method.isin([*SEEDS, "blocks"])]
+        for name, group in rows.groupby("set", sort=False):
+            time = group.groupby(["boxes", "method"]).frame_ns.median().unstack()[[*SEEDS, "blocks"]]
+            pairs = group.groupby("boxes").overlaps.median()
+            cells = []
+            for values in [pairs, *(time[method].dropna() for method in time)]:
+                last = values.iloc[-3:]
+                cells.append(f"{np.polyfit(np.log(last.index.to_numpy(float)), np.log(last.to_numpy(float)), 1)[0]:.2f}")
+            lines.append([name, *cells])
+    packed = ("random", "sphere-packed")
+    claim(all(abs(float(line[1]) - (2 if line[0] in packed else 1)) < 0.1 for line in lines),
+          "pairs grow as the square on over-packed sets")
+    return {"rows": lines}

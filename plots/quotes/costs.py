@@ -3,10 +3,10 @@
 
 import numpy as np
 
-import cost_model
-import records
+from bvlab_scripts import cost_model
+from bvlab_plots import records
 from quotes.names import called
-from quoting import RESULTS, Interval, claim, quotes, stated
+from quoting import Interval, claim, quotes
 
 COUNTS = ["n_u", "n_v", "n_p"]
 
@@ -20,13 +20,7 @@ def fitted_errors(rows):
     return [error(part) for _, part in rows.groupby("volume")]
 
 
-@quotes("cost-model", RESULTS,
-        "to pose a volume {pose_least:.1f} (sphere) to {pose_most:.0f} (26-DOP), to test a pair in a batch of sixteen "
-        "{test_least:.1f} (sphere) to {test_most:.0f} (shell), and {alone:.0f} for a pair alone; {triangle:.1f} for a pair of "
-        "triangles that are apart.",
-        "predicts {inner:.2f} of the time measured in nine of ten cells, {median:.2f} in the median and never more than "
-        "{most:.2f}: too little. Three constants fitted to each volume err by {fitted:.0f} % where bodies are near each other",
-        "What is left over is {left:.0f} ns a test of volumes, whatever the volume (quartiles {quartiles:.0f})")
+@quotes("cost-model")
 def cost(record):
     rows, costs, triangle = cost_model.read(record)
     share = rows.predicted_ns / rows.time_ns
@@ -47,11 +41,7 @@ def cost(record):
             "left": Interval(left.median()), "quartiles": Interval([left.quantile(0.25).min(), left.quantile(0.75).max()])}
 
 
-stated(RESULTS, "what the definition sets", "unit costs on 500 polygons, in ns")
-
-
-@quotes("distance-error", RESULTS, "a tenth allowed saves a factor of {saved:.1f}, and the error seen stays below the error "
-        "promised in every cell")
+@quotes("distance-error")
 def distance_error(record):
     rows = records.read(record)
     records.wrong_answers(rows)
@@ -68,12 +58,7 @@ def distance_error(record):
     return {"saved": Interval(saved)}
 
 
-stated(RESULTS, "where a claim is made by code", "from 0.3 on it is spheres")
-
-
-@quotes("budget", RESULTS,
-        "a mean bound on depth of a tenth of the radius takes {tenth:.1f} us a pair ({tenth_volumes}), a hundredth "
-        "{hundredth:.0f} ({hundredth_volumes}).")
+@quotes("budget")
 def budget(record):
     rows = records.read(record)
     records.wrong_answers(rows)
@@ -90,10 +75,7 @@ def budget(record):
     return values
 
 
-@quotes("boxes-precision", RESULTS,
-        "{thousand:.1f} % a thousand units from the origin, {ten_thousand:.0f} % ten thousand units away, and {adjacent:.0f} % or "
-        "more where cubes share faces. `blocks` takes a median of {blocks:.2f} of its time in double then, plain sort-and-sweep "
-        "{sort:.2f}; on the sparse sphere ten thousand units away `blocks` takes {slowest:.1f} of it.")
+@quotes("boxes-precision")
 def boxes_precision(record):
     rows = records.read(record)
     middle = rows.groupby(["set", "offset", "method", "numbers"])[["false_positives", "pairs", "ns_per_frame"]].median()

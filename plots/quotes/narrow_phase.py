@@ -5,9 +5,9 @@ from functools import cache
 
 import numpy as np
 
-import records
-import tournament
-from quoting import README, RESULTS, Interval, claim, quotes
+from bvlab_plots import records
+from bvlab_scripts import tournament
+from quoting import Interval, claim, quotes
 
 FRESH, COHERENT = ["OPCODE", "FCL, obb"], ["OPCODE, coherent"]
 
@@ -23,43 +23,43 @@ def cells(rows, ours, theirs):
     return tournament.tournament(rows, ours, theirs).set_index(tournament.PLACES)
 
 
-@quotes("narrow-phase", RESULTS,
-        "| motion | polygons | from the roots (us) | the fastest of FCL and OPCODE | times as long (95 %) | recommended (us) | "
-        "OPCODE's coherence: times as long (95 %) |")
-def table(record):
+@quotes("narrow-phase")
+def narrow_phase_table(record):
     rows, recommended, coherent = recommended_beside(record)
     fresh = cells(rows, "wide, from the roots", FRESH)
     lines, last = [], None
     for place, line in fresh.iterrows():
         beside = coherent.loc[place] if place in coherent.index else None
-        lines.append(["" if place[0] == last else place[0], str(place[1]), f"{line.ours_ns / 1e3:.2f}", line.fastest,
+        lines.append(["" if place[0] == last else place[0], str(place[1]), f"{line.ours_ns / 1e3:.2f}", tournament.named(line),
                       f"{line.ratio:.1f} ({line.low:.1f} to {line.high:.1f})", f"{recommended.loc[place].ours_ns / 1e3:.2f}",
                       "" if beside is None else f"{beside.ratio:.1f} ({beside.low:.1f} to {beside.high:.1f})"])
         last = place[0]
     claim((fresh.low > 1).all() and (recommended.low > 1).all(), "ours is faster than the fastest of FCL and OPCODE in every cell")
     claim((coherent.low > 1).all(), "recommended is faster than OPCODE with its coherence in every cell")
+    claim((fresh.fastest == "OPCODE").all(), "OPCODE is the fastest of them in every cell")
     return {"rows": lines}
 
 
-@quotes("narrow-phase", RESULTS,
-        "Whether two bunnies touch `recommended` says in {us:.2f} us, {fresh:.1f} times as fast as the fastest of FCL and OPCODE from the roots and "
-        "{coherent:.1f} times as fast as OPCODE with its coherence; all contacts it finds {contacts:.1f} times as fast as the fastest of them")
-def headline(record):
-    _, fresh, coherent = recommended_beside(record)
+@quotes("narrow-phase")
+def narrow_phase_headline(record):
+    rows, fresh, coherent = recommended_beside(record)
     contacts = fresh.index.get_level_values("work").str.startswith("contacts")
+    roots = cells(rows, "wide, from the roots", FRESH)
+    over = fresh.ours_ns / roots.ours_ns
+    slow = fresh.index.get_level_values("work").isin(["planner", "slow"])
+    claim((over[slow] < 0.5).all() and (over[~slow] > 0.75).all(), "keeping answers pays where little moves")
+    wrong = rows[(rows.peer != "") & (rows.differing > 0)]
+    claim(set(wrong.method) == {"OPCODE"} and wrong.work.str.startswith("contacts").all(), "only OPCODE's contacts differ")
+    claim((rows[rows.peer == ""].differing == 0).all(), "ours agree with the reference in every frame")
+    fcl = tournament.tournament(rows, "recommended", ["FCL, obb"]).set_index(tournament.PLACES).ratio
     return {"us": Interval(fresh[~contacts].ours_ns / 1e3), "fresh": Interval(fresh[~contacts].ratio),
-            "coherent": Interval(coherent.ratio), "contacts": Interval(fresh[contacts].ratio)}
+            "coherent": Interval(coherent.ratio), "contacts": Interval(fresh[contacts].ratio),
+            "contacts_fcl": Interval(fcl[contacts]), "over_most": over[~slow].max(), "over_slow": Interval(over[slow]),
+            "wrong_cells": (fresh[contacts].differing > 0).sum(), "cells": contacts.sum(), "roots": Interval(roots[~contacts].ratio),
+            "wrong_rows": len(wrong), "contact_rows": ((rows.method == "OPCODE") & rows.work.str.startswith("contacts")).sum()}
 
 
-headline.also(README,
-              "`--recommended` says in {us:.2f} us whether two bunnies touch, {fresh:.1f} times as fast as the fastest of OPCODE and FCL, and "
-              "{coherent:.1f} times as fast as OPCODE with its temporal coherence")
-
-
-@quotes("memory", RESULTS,
-        "{objects:d} bunnies, {near:d} pairs near each other, hold {wide:.0f} MB of the heap as wide trees in the bodies' own frames "
-        "({wide_body:.1f} KB a body and {wide_pair:.1f} a near pair), {margins:.0f} with margins ({margins_body:.1f} and {margins_pair:.1f}), and "
-        "{binary:.0f} as binary oriented boxes posed into the world, {binary_body:.0f} KB a body")
+@quotes("memory")
 def memory(record):
     rows = records.read(record)
     crowded = rows[rows.room == rows.room.min()].set_index(["tree", "strategy"])

@@ -3,17 +3,17 @@
 
 import numpy as np
 
-import predict
-from predict import HALF, KEEPING, LESS
-from quoting import RESULTS, claim, quotes, stated
+from bvlab_scripts import predict
+from bvlab_scripts.predict import HALF, KEEPING, LESS
+from quoting import claim, quotes
 
 
 def cells_of(record):
     return predict.read(record)
 
 
-@quotes("predict", RESULTS, "| strategy | half of the front survives: volume tests (95 %), triangle tests, time | less does: volume tests (95 %), triangle tests, time |")
-def table(record):
+@quotes("predict")
+def predict_table(record):
     cells = cells_of(record)
 
     def line(strategies, regime):
@@ -24,12 +24,7 @@ def table(record):
     return {"rows": [[name, *(line([name], regime) for regime in (HALF, LESS))] for name in names]}
 
 
-@quotes("predict", RESULTS,
-        "in {cells:d} cells ({settings:d} settings, contacts or yes and no), in {half_cells:d} of which half of the front survives",
-        "their volume tests are off by {half:.1f} % (median) where half of the front survives, and by {less:.1f} % where less does",
-        "in {named:.0f} % of the cells, and is at worst {worst:.2f} times as long; that of no strategy that is always taken is so in more than {always:.0f} % ({best})",
-        "It takes {taken:.0f} % of the time of playing all seven.",
-        "Of these eight hypotheses the numbers {held} held.")
+@quotes("predict")
 def predictions(record):
     cells = cells_of(record)
     rows = cells.rows
@@ -46,6 +41,3 @@ def predictions(record):
             "named": predict.near(cells.chosen.times), "worst": cells.chosen.times.max(), "always": share[best], "best": f"`{best}`",
             "taken": 100 * np.median(cells.taken),
             "held": [number for number, holds, _ in predict.hypotheses(cells) if holds]}
-
-
-stated(RESULTS, "what predictions look at", "windows of 48 frames, one in every 96", "at most 1.1 times the fastest's")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What wins where, strategies beside the best rebuilds, real workloads, and whole scenes."""
 
-import records
+from bvlab_plots import records
 from quotes.relation import measured
-from quoting import RESULTS, Interval, claim, quotes
+from quoting import Interval, claim, quotes
 
 MEETING = ["obb", "rss", "aabb"]
 TIE = 1.1  # times this near to each other are the same
@@ -25,10 +25,7 @@ def win(rows, cell, wins):
     return (rows[wins].groupby(cell).over.min().reindex(rows.groupby(cell).over.min().index) < TIE).all()
 
 
-@quotes("winners-motion", RESULTS,
-        "where bodies move at most {step} of their radius and {degrees} degrees a frame `margins` win {margins:d} of {little:d} cells and "
-        "`adaptive`, which tries them, {adaptive:d}, {gain:.2g} times as fast as recursive spheres; recursion over both nodes where "
-        "they move {much_step} or {much_degrees} degrees;")
+@quotes("winners-motion")
 def over_motion(record):
     cell = ["step", "degrees"]
     rows = variants_of(record, cell)
@@ -43,8 +40,7 @@ def over_motion(record):
             "little": len(best), "gain": Interval([*won["margins"].gain, *won["adaptive"].gain]), "much_step": f"{steps[-1]:g}", "much_degrees": f"{degrees[-1]:g}"}
 
 
-@quotes("winners-scene", RESULTS, "spheres, to a fifth, where bodies are far apart (a cube of {far:.0f} radii). Boxes and rectangle swept spheres "
-        "win wherever bodies meet.")
+@quotes("winners-scene")
 def over_scene(record):
     cell = ["polygons", "side"]
     rows = variants_of(record, cell)
@@ -54,12 +50,7 @@ def over_scene(record):
     return {"far": rows.side.max()}
 
 
-@quotes("best-rebuilds", RESULTS,
-        "makes {raise_contacts:.2f} times those tests where all contacts are asked and {raise_touching:.2f} where a yes or no is "
-        "enough, but takes up to {longer:.1f} times as long as `by-cost` ({cost_contacts:.2f} and {cost_touching:.2f}); the talk's rules "
-        "{rules:.2f}, recursion {recursion:.1f}; `margins`, which need not look at every entry, {margins:.2f} where little moves, but "
-        "each at {price:.1f} times the price of a list's.",
-        "takes {violent:.2f} times as long as the fastest strategy where motion is violent, and {elsewhere:.2f} elsewhere;")
+@quotes("best-rebuilds")
 def best_rebuilds(record):
     rows = records.read(record)
     records.wrong_answers(rows)
@@ -77,9 +68,8 @@ def best_rebuilds(record):
             "violent": Interval(adaptive[violent]), "elsewhere": Interval(adaptive[~violent])}
 
 
-@quotes("coherence", RESULTS, "in runs of a hundred frames {all:.2f} times where all bodies move and {one:.2f} times where one moves at a time "
-        "(medians over the record above)")
-def adaptive(record):
+@quotes("coherence")
+def strategies_adaptive(record):
     rows, _ = measured(record)
     cell = ["motion", "motion_model", "mesh", "volume", "query"]
     time = rows.set_index([*cell, "strategy"]).time_ns.unstack()
@@ -95,7 +85,7 @@ CELLS = {"best-rebuilds": ["motion", "query"], "workloads": ["workload", "volume
          "sweep": ["persistence", "step", "degrees", "mesh", "polygons", "side", "freedoms", "volume"]}
 
 
-@quotes(CELLS, RESULTS, "| record | cells | median | worst | within 1.1 |")
+@quotes(CELLS)
 def adaptive_beside(*found):
     """`adaptive` over the fastest of the other strategies, with the same volume: medians of seeds and repetitions."""
     lines = []
@@ -113,9 +103,7 @@ def adaptive_beside(*found):
     return {"rows": lines}
 
 
-@quotes("workloads", RESULTS,
-        "a path planner takes {planner_recursive:.0f} ns a pair recursively, {planner_cost:.0f} `by-cost`, {planner_margins:.0f} with "
-        "`margins` and {planner_adaptive:.0f} `adaptive`; a pile of bunnies that comes to rest {pile:.0f}.")
+@quotes("workloads")
 def workloads(record):
     rows = records.read(record)
     records.wrong_answers(rows)
@@ -134,8 +122,7 @@ MOVING = [(1, 5, "all move, 5 degrees"), (1, 0.1, "all move, a tenth of a degree
 PIPELINES = ["fcl-world", "fcl-world-moved", "bullet-world"]
 
 
-@quotes("worlds", RESULTS,
-        "| | 1000: ms | FCL | FCL, what moved | Bullet | 10 000: ms | FCL | FCL, what moved | Bullet |")
+@quotes("worlds")
 def worlds(record):
     rows = records.read(record)
     records.wrong_answers(rows)
@@ -150,8 +137,7 @@ def worlds(record):
                      for moving, degrees, name in MOVING]}
 
 
-@quotes("worlds", RESULTS, "takes at most {behind:.2f} times as long as the best of {variants:d} variants",
-        "Bullet's answers differ for up to {differing:d} of {near:d} pairs near each other in a frame, FCL's and ours for none.")
+@quotes("worlds")
 def worlds_answers(record):
     rows = records.read(record)
     wrong = rows[records.wrong_answers(rows)]
@@ -163,9 +149,7 @@ def worlds_answers(record):
     return {"behind": (ours.recommended / ours.min(axis=1)).max(), "variants": ours.shape[1], "differing": worst.differing / worst.frames, "near": near.max()}
 
 
-@quotes("worlds-threads", RESULTS,
-        "on two threads a frame in which all move takes `recommended` {small:.2f} times less time with a thousand bodies and {large:.2f} times with ten thousand, "
-        "oriented boxes in binary trees {binary_small:.2f} and {binary_large:.2f} times")
+@quotes("worlds-threads")
 def on_threads(record):
     rows = records.read(record)
     records.wrong_answers(rows)

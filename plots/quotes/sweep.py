@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The large sweep: which strategy and volume win where, and by how much."""
 
-import records
-from quoting import RESULTS, quotes
+from bvlab_plots import records
+from quoting import Interval, claim, quotes
 
 MOTION = ["step", "degrees", "persistence"]
 TIE = 1.1  # times this near to each other are the same
@@ -26,17 +26,21 @@ def most_often(values):
     return ", ".join(f"{name} {100 * share:.0f} %" for name, share in shares.items())
 
 
-@quotes("sweep", RESULTS,
-        "| step (radii), degrees a frame | motion | fastest strategy, share of settings | fastest volume | over recursive spheres | "
-        "`adaptive` over the fastest |")
-def table(record):
+@quotes("sweep")
+def sweep_table(record):
     best = fastest(record)
     return {"rows": [[f"{step:g}, {degrees:g}", "persisting" if persistence else "random", most_often(group.strategy),
                       most_often(group.volume), f"{group.gain.median():.1f}", f"{group.adaptive.median():.2f}"]
                      for (step, degrees, persistence), group in best.groupby(MOTION)]}
 
 
-@quotes("sweep", RESULTS, "In {settings:d} settings `adaptive` is within a tenth of the fastest in {near:.0f} %")
-def adaptive(record):
+@quotes("sweep")
+def sweep_adaptive(record):
     best = fastest(record)
-    return {"settings": len(best), "near": 100 * (best.adaptive < TIE).mean()}
+    wins = (best.strategy == "adaptive").groupby([best[name] for name in MOTION]).mean()
+    boxes = (best.volume == "obb").groupby(best.mesh).mean()
+    claim((boxes > 0.5).all(), "oriented boxes win most settings of every mesh")
+    claim(all(group.strategy.value_counts().idxmax() == "adaptive" for _, group in best.groupby(MOTION)),
+          "adaptive wins more settings than any other strategy, for every kind of motion")
+    return {"settings": len(best), "near": 100 * (best.adaptive < TIE).mean(), "wins": Interval(100 * wins), "boxes": Interval(100 * boxes),
+            "icosphere": 100 * boxes["icosphere"], "half": (wins <= 0.5).sum(), "kinds": len(wins)}

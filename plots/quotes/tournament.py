@@ -3,8 +3,9 @@
 
 from functools import cache
 
-import tournament
-from quoting import README, RESULTS, Interval, claim, quotes
+import quoting
+from bvlab_scripts import tournament
+from quoting import Interval, claim, quotes
 
 SOURCE, SHIPPED, EIGHT, ONE = "from-source", "as-shipped", "eight-lanes", "one-lane"
 OURS = "recommended"
@@ -21,7 +22,7 @@ def cells(record):
 
     def beside(ours, theirs, column="ns"):
         return tournament.tournament(rows, ours, theirs, column).set_index(tournament.PLACES)
-    fresh = [called(name, SOURCE) for name in ("OPCODE", "FCL, obb")]
+    fresh = [called(name, SOURCE) for name in ("OPCODE", "PhysX", "FCL, obb", "Coal, obb")]
     return rows, {
         "sixteen": beside(called(OURS, SOURCE), fresh), "eight": beside(called(OURS, EIGHT), fresh),
         "one": beside(called(OURS, ONE), fresh), "roots": beside(called("wide, from the roots", SOURCE), fresh),
@@ -35,28 +36,22 @@ def written(line):
     return f"{line.ratio:.1f} ({line.low:.1f} to {line.high:.1f})"
 
 
-@quotes("tournament", RESULTS,
-        "| motion | polygons | us a pair: 16 lanes | 8 | 1 | fastest peer, our flags | us | times as long as 16 lanes (95 %) | as 1 lane | "
-        "first frame | slowest of a hundred |")
-def table(record):
+@quotes("tournament")
+def tournament_table(record):
     _, found = cells(record)
     lines, last = [], None
     for place, line in found["sixteen"].iterrows():
         lines.append(["" if place[0] == last else place[0], str(place[1]),
                       *(f"{found[lanes].loc[place].ours_ns / 1e3:.2f}" for lanes in ("sixteen", "eight", "one")),
-                      line.fastest.removesuffix(f", {SOURCE}"), f"{line.fastest_ns / 1e3:.2f}", written(line),
+                      tournament.named(line).replace(f", {SOURCE}", ""), f"{line.fastest_ns / 1e3:.2f}", written(line),
                       written(found["one"].loc[place]),
                       *(f"{found[column].loc[place].ratio:.1f}" for column in ("cold", "tail"))])
         last = place[0]
     return {"rows": lines}
 
 
-@quotes("tournament", RESULTS,
-        "With sixteen lanes `recommended` is {sixteen:.1f} times as fast as the fastest of FCL and OPCODE compiled with the same flags, with eight {eight:.1f} "
-        "times, and with one, the same program without vector registers, {one:.1f} times (from the roots {roots:.1f} and {roots_one:.1f})",
-        "so width makes it {width:.1f} times as fast; without it OPCODE is faster from the roots, and `recommended` only where motion is coherent",
-        "FCL compiled with our flags takes {fcl:.2f} of its time as Debian ships it")
-def headline(record):
+@quotes("tournament")
+def tournament_headline(record):
     rows, found = cells(record)
     claim(rows.seed.nunique() >= 5 and rows.repetition.nunique() >= 10, "five seeds and ten repetitions")
     claim((found["sixteen"].low > 1).all(), "sixteen lanes are faster than the fastest peer in every cell")
@@ -68,5 +63,37 @@ def headline(record):
             "width": Interval(found["one"].ours_ns / found["sixteen"].ours_ns), "fcl": Interval(1 / found["fcl"].ratio)}
 
 
-headline.also(README,
-              "compiled with the same flags, it is {sixteen:.1f} times as fast as the faster of the two, and {one:.1f} times without vector registers")
+SHOWN = {"recommended": "recommended", "wide, from the roots": "wide, from the roots", "OPCODE": "OPCODE", "OPCODE, coherent": "OPCODE, coherent",
+         "FCL, obb": "FCL, oriented boxes"}
+
+
+PEERS = [name for name in SHOWN if name.startswith(("OPCODE", "FCL"))]
+
+
+@cache
+def beside_all(record):
+    """`recommended` beside the fastest of all configurations of other libraries, OPCODE's coherence among them."""
+    rows, _ = cells(record)
+    return tournament.tournament(rows, called(OURS, SOURCE), [called(name, SOURCE) for name in PEERS]).set_index(tournament.PLACES)
+
+
+@quotes("tournament")
+def scenes(record):
+    """Scene by method: microseconds a pair, mean and the 99th percentile of frames; and the lead over the fastest peer."""
+    rows, _ = cells(record)
+    rows = rows[rows.program == SOURCE]
+    middle = rows.groupby([*tournament.PLACES, "method", "seed"])[["ns", "tail_ns"]].median().groupby([*tournament.PLACES, "method"]).mean() / 1e3
+    beside = beside_all(record)
+    peers = [called(name, SOURCE) for name in PEERS]
+    lines, last = [], None
+    for place, line in beside.iterrows():
+        texts = []
+        for name in SHOWN:
+            key = (*place, called(name, SOURCE))
+            texts.append(f"{quoting.written(middle.ns[key], '.2g')}, {quoting.written(middle.tail_ns[key], '.2g')}" if key in middle.index else "")
+        lines.append(["" if place[0] == last else place[0], str(place[1]), *texts, written(line) + ("*" if line.differing else "")])
+        last = place[0]
+    claim((beside.low > 1).all(), "recommended is faster than every peer in every scene")
+    tails = middle.tail_ns.unstack("method")
+    claim((tails[called(OURS, SOURCE)] < tails[peers].min(axis=1)).all(), "recommended has the least 99th percentile")
+    return {"rows": lines, "lead": Interval(beside.ratio), "seeds": rows.seed.nunique(), "repetitions": rows.repetition.nunique()}

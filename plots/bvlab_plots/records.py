@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Records as pandas frames.
+
+    from bvlab_plots import records
+    rows = records.read("experiments/record/hierarchies")
+    rows.attrs["units"]["time_ns"]                     # "ns"
+    rows.groupby(["query", "variant"]).time_ns.median()
+"""
+
+import json
+import re
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from bvlab_plots import words
+from bvlab_plots.looks import STYLES
+from bvlab_plots.refused import Refused
+
+# Where a table has no column `repetition`, the first column that is measured.
+MEASURED_FROM = {"tightness": "nodes", "stability": "answers"}
+WRONG = ["differing", "wrong", "outside"]  # counts of answers that should not be
+CORRECTED = ["time_ns", "first_ns", "build_ns"]  # times of a run as a whole: of single frames nobody knows the share
+OF_FRAMES = ["p99_ns", "worst_ns"]
+
+
+def read(record, table="", needs=(), clock="wall"):
+    """The rows of a record as a frame, one for each variant, scene, seed and repetition, in the order of its
+    definition; of `table` "frames" or "disagreements", the rows of <name>.<table>.csv.
+
+    Numbers are numbers (lengths as "0.03body", too, where all of a column are in the same unit), NaN where there
+    is none; names are strings, "" where there is none. Added are: `peer`, the other library that a row is of, or
+    "" for ours; `variant`, what distinguishes what was run, as "sphere deferred", "blocks" or a peer's name;
+    later_ns and later_pairs, those of all frames but the first; and the columns of <name>.coherence.csv.
+
+    Times are wall times, as the record has them, or, by `clock="processor"`, as figures have them, processor times where
+    the record says how much longer the run took (`wall_per_processor`). They are NaN in rows that were measured beside other work (column `alone` "no") where their cell
+    has others, and where nothing was timed.
+
+    attrs: name and kind (of the study, "" for an experiment), definition (a dictionary), settings (the columns that
+    say what was run), units (of each column: ns, B, radii, °, or ""), clock (of times), unfinished (nothing, or "31 of
+    216 rows"). Refused where it is no record, where a column that is needed is not there,
+    and where answers of an experiment were not compared.
+    """
+    record = Path(record)
+    definition = read_definition(record)
+    name, kind = definition["name"], definition.get("kind", "")
+    rows = read_table(record / (f"{name}.{table}.csv" if table else f"{name}.csv"))
+    if rows.empty:
+        raise Refused(f"{name}.csv has no rows")
+    unfinished = unfinished_of(record, definition, rows if not table else [])
+    if table:
+        settings = list(rows.columns[:list(rows.columns).index("frame")]) if "frame" in rows and table == "frames" else []
+        units = {column: words.unit_of(column) for column in rows} if settings else {}
+        if settings:
+            rows["peer"] = ""
+            rows["variant"] = variant_names(rows)
+            rows = in_order(rows, definition, settings)
+        rows.attrs.update(name=name, kind=kind, definition=definition, settings=settings, units=units, clock="",
+                          unfinished=unfinished)
+        return rows
+    check_compared(rows, name, kind)
+    settings = setting_columns(rows, kind)
+    rows, settings = with_peers(rows, definition, settings)
+    rows = with_coherence(rows, record / f"{name}.coherence.csv")
+    rows = own_times(rows)
+    if clock == "processor" and "wall_per_processor" in rows:
+        longer = pd.to_numeric(rows.wall_per_processor, errors="coerce").fillna(1)
+        corrected = [column for column in CORRECTED if column in rows]
+        rows[corrected] = rows[corrected].div(longer, axis=0)
+    if {"time_ns", "first_ns", "frames", "pairs"} <= set(rows):
+        rows["later_ns"] = rows.time_ns - rows.first_ns
+        rows["later_pairs"] = rows.pairs * (rows.frames - 1) / rows.frames
+    units = {column: words.unit_of(column) for column in rows}
+    for column in settings:
+        rows[column], units[column] = as_lengths(rows[column], units[column])
+    if kind == "worlds":
+        units.update(step="radii", side="radii")
+    if "variant" not in rows:
+        rows["variant"] = variant_names(rows)
+    units.setdefault("variant", "")
+    if missing := [column for column in needs if column not in rows]:
+        raise Refused(f"{record}: has no {', '.join(missing)}: it is the record of something else")
+    rows = in_order(rows, definition, settings)
+    rows.attrs.update(name=name, kind=kind, definition=definition, settings=settings, units=units, clock=clock,
+                      unfinished=unfinished)
+    return rows
+
+
+def times_of_frames(text):
+    """The columns named in an expression that are times of single frames: wall times in every record."""
+    return [name for name in dict.fromkeys(re.findall(r"\b\w+_ns\b", text)) if name in OF_FRAMES]
+
+
+def unfinished_of(record, definition, rows):
+    """How many rows or parts there are, of how many, where a run is under way or was broken off: "31 of 216 rows"; said
+    where they are read."""
+    path = Path(record) / "unfinished.json"
+    if not path.is_file():
+        return None
+    try:
+        said = json.loads(path.read_text())
+        what, done, wanted = said["what"], int(said["done"]), int(said["all"])
+    except (OSError, ValueError, KeyError, TypeError):
+        raise Refused(f"{path}: does not say how much of the record is missing") from None
+    text = f"{len(rows) if what == 'rows' and len(rows) else done} of {wanted} {what}"
+    if len(rows):
+        print(f"unfinished: {text} of {definition['name']}")
+    return text
+
+
+def check_compared(rows, name, kind):
+    """An experiment's answers are compared with the reference: a table that does not say so is none of bvlab's."""
+    if not kind and "differing" not in rows:
+        raise Refused(f"{name}.csv has no column differing: nobody compared its answers")
+    column = next((column for column in WRONG if column in rows), None)
+    blank = pd.to_numeric(rows[column], errors="coerce").isna() if column else pd.Series(False, rows.index)
+    if blank.any():
+        raise Refused(f"{name}.csv: {column} is empty in {blank.sum()} of {len(rows)} rows: nobody compared their answers")
+
+
+def read_toml(path):
+    try:
+        definition = tomllib.loads(Path(path).read_bytes().decode("utf-8-sig"))
+        definition["name"]
+    except KeyError:
+        raise Refused(f"{path}: has no name") from None
+    except (OSError, ValueError) as fault:
+        raise Refused(f"{path}: {fault}".replace("\n", " ")) from None
+    for key in ("axis", "figure"):
+        tables = definition.get(key, [])
+        if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
+            raise Refused(f"{path}: {key} is no list of tables: it is written as [[{key}]]")
+    if not isinstance(definition.get("parameters", {}), dict):
+        raise Refused(f"{path}: parameters is no table")
+    return definition
+
+
+def read_definition(record):
+    """The definition that stands in a record, as a dictionary."""
+    if not (Path(record) / "definition.toml").is_file():
+        raise Refused(f"{record}: no record: it has no definition.toml")
+    return read_toml(Path(record) / "definition.toml")
+
+
+def read_table(path):
+    """Blanks are empty names, and NaN in columns of numbers."""
+    try:
+        if not ends(path):
+            raise Refused(f"{path}: is cut off: its last line has no end")
+        rows = pd.read_csv(path, keep_default_na=False, encoding="utf-8-sig")
+    except (OSError, ValueError, UnicodeDecodeError) as fault:
+        raise Refused(f"{path}: {fault}".replace("\n", " ")) from None
+    for column in rows.columns[rows.dtypes == object]:
+        text = rows[column]
+        numbers = pd.to_numeric(text, errors="coerce")
+        if (text != "").any() and numbers[text != ""].notna().all():
+            rows[column] = numbers
+    return rows
+
+
+def ends(path):
+    """Whether the last line has an end, outside of quotes."""
+    with open(path, "rb") as file:
+        quotes, last = 0, b"\n"
+        while data := file.read(1 << 20):
+            quotes, last = quotes + data.count(b'"'), data[-1:]
+    return last in b"\r\n" and quotes % 2 == 0
+
+
+def setting_columns(rows, kind):
+    columns = list(rows.columns)
+    measured = "repetition" if "repetition" in columns else MEASURED_FROM.get(kind)
+    if measured in columns:
+        return columns[:columns.index(measured)]
+    return [column for column in columns if rows[column].dtype == object]
+
+
+def with_peers(rows, definition, settings):
+    """The same column `peer` for every kind, and nothing in settings that a peer does not have."""
+    if "peer" in rows:
+        return without_ours(rows), settings
+    peers = []
+    for key in ("peers", "peers_if_built"):
+        asked = definition.get("parameters", {}).get(key, [])
+        peers += [asked] if isinstance(asked, str) else asked
+    if "source" in rows:
+        own = {"bvlab", "batched", "one by one"}
+        rows["peer"] = ["" if s in own else rows.test[i] if s == "peer" else s for i, s in rows.source.items()]
+    elif "method" in rows:
+        rows["peer"] = rows.method.where(rows.method.isin(peers), "")
+        for mode in {"coherent", "changes"} & set(rows):
+            rows[mode] = rows[mode].where((rows.peer == "") | (rows[mode] == "told"), "")
+    else:
+        rows["peer"] = ""
+    return rows, settings + ["peer"]
+
+
+def without_ours(rows):
+    """A peer has neither a volume nor a strategy of ours, whatever an older record says."""
+    for column in {"volume", "tree", "fan_out", "frame", "kernel", "strategy"} & set(rows):
+        rows[column] = rows[column].where(rows.peer == "", "")
+    return rows
+
+
+def with_coherence(rows, path):
+    if not path.is_file():
+        return rows
+    coherence = read_table(path)
+    shared = [column for column in coherence if column in rows]
+    rows = rows.merge(coherence, how="left", on=shared)
+    if {"kept", "entries"} <= set(rows):
+        rows["survival"] = rows.kept / rows.entries.where(rows.entries > 0)
+    return rows
+
+
+def own_times(rows):
+    """Times of rows that had their node to themselves, where their cell has any; where it has none they stay, which
+    is said, since a busy machine is better seen than hidden. A record from before rows said so is taken at its word."""
+    times = [column for column in rows if words.is_time(column)]
+    rows[times] = rows[times].apply(pd.to_numeric, errors="coerce")  # blank in all rows, where nothing was timed
+    beside = rows.alone == "no" if "alone" in rows else pd.Series(False, rows.index)
+    if not beside.any():
+        return rows
+    cell = list(rows.columns[: list(rows.columns).index("repetition")]) if "repetition" in rows else []
+    quiet = ~beside & rows[times].notna().any(axis=1)
+    quiet_in_cell = quiet.groupby([rows[c].astype(str) for c in cell]).transform("any") if cell else quiet | quiet.any()
+    left_out = beside & quiet_in_cell
+    if left_out.any():
+        print(f"left out: times of {left_out.sum()} of {len(rows)} rows, which were measured beside other work")
+        rows[times] = rows[times].mask(left_out)
+    if kept := (beside & ~left_out).sum():
+        print(f"beside other work: times of {kept} of {len(rows)} rows, of cells in which none was measured alone")
+    return rows
+
+
+def as_lengths(column, unit):
+    """"0.03body" as 0.03 in radii, where all are written so."""
+    if column.dtype == object:
+        for suffix, name in words.LENGTHS.items():
+            numbers = pd.to_numeric(column.str.removesuffix(suffix), errors="coerce")
+            if column.str.endswith(suffix).all() and numbers.notna().all():
+                return numbers.astype(float), name
+    return column, unit
+
+
+def variant_names(rows):
+    """For each row what was run: "volume strategy", the part alone of which there is more than one, the configuration
+    that chose both, or the peer."""
+    for column in ("method", "test", "policy"):
+        if column in rows:
+            return rows[column].where(rows.peer == "", rows.peer)
+    ours = rows[rows.peer == ""]
+    parts = [part for part in ("volume", "strategy") if part in rows]
+    several = [part for part in parts if ours[part].nunique() > 1] or parts[-1:]
+    named = rows[several].agg(" ".join, axis=1) if several else pd.Series("", rows.index)
+    if "configuration" in rows:
+        named = named.where(rows.configuration == "", rows.configuration)
+    return pd.Series(np.where(rows.peer == "", named, rows.peer), rows.index)
+
+
+def in_order(rows, definition, settings):
+    """Rows are run in random order: here as the definition's lists have them."""
+    lists = [[str(v["name"]) for v in axis.get("value", [])] or list(map(str, axis.get("values", [])))
+             for axis in definition.get("axis", [])]
+    lists += [list(map(str, v)) if isinstance(v, list) else [str(v)] for v in definition.get("parameters", {}).values()]
+    place = {name: i for i, name in enumerate(name for names in lists for name in names)}
+    # Names that the definition leaves open: as in STYLES, and then in the order in which they come first.
+    found = [name for column in settings if rows[column].dtype == object for name in dict.fromkeys(rows[column])]
+    place = {**{name: len(place) + i for i, name in enumerate(dict.fromkeys([*STYLES, *found]))}, **place}
+    for column in reversed(settings):
+        named = rows[column].dtype == object
+        rows = rows.sort_values(column, key=lambda c, named=named: c.map(place) if named else c, kind="stable")
+    return rows.sort_values("peer", key=lambda c: c != "", kind="stable").reset_index(drop=True)
+
+
+def wrong_of(rows):
+    """Which rows hold answers that differ from the reference."""
+    wrong = pd.Series(False, rows.index)
+    for column in set(WRONG) & set(rows):
+        wrong |= rows[column].fillna(0) != 0
+    return wrong
+
+
+def wrong_answers(rows):
+    """Which rows hold answers that differ from the reference; refused where one of ours does."""
+    wrong = wrong_of(rows)
+    names = list(dict.fromkeys(rows[wrong & (rows.peer == "")].variant))
+    if names:
+        raise Refused(f"answers of {', '.join(names)} differ from the reference")
+    return wrong
+
+
+def say_left_out(names, why):
+    """Nothing is left out in silence."""
+    names = sorted(set(map(str, names)))
+    if names:
+        print(f"left out, {why}: {', '.join(names)}")

@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The report as HTML: a section for each record, and the page around them."""
+
+import html
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from urllib.parse import quote
+
+import pandas as pd
+
+from bvlab_plots import board, findings, provenance, records, words
+
+PLOTS = Path(__file__).resolve().parents[1]
+MOST_ROWS = 1000  # of a table; the record has them all
+LINK = re.compile(r"\]\((?:\.\./)?record/")
+MARKS = re.compile(r"[^\w.-]+")
+
+
+@dataclass
+class Section:
+    name: str
+    folder: str
+    description: str
+    figures: list  # files beside the page
+    rows: pd.DataFrame
+    table: pd.DataFrame
+    machine: dict
+    command: str
+    definition: str
+    results: list  # what the pages of results say of it
+    place: int  # in their story
+
+
+def section_of(record, out):
+    """Reads a record, and puts its figures beside the page."""
+    rows = records.read(record)
+    definition = rows.attrs["definition"]
+    machine = provenance.machine_of(record)
+    return Section(rows.attrs["name"], record.resolve().name, definition.get("description", ""),
+                   figures_of(record, rows.attrs["name"], out), rows, medians(rows), machine,
+                   read_text(record / "command.txt").strip(),
+                   read_text(record / "definition.toml").strip(), paragraphs_on(record), place_in_story(record))
+
+
+def read_text(path):
+    return path.read_text() if path.is_file() else ""
+
+
+def story():
+    """The pages of results, in the order in which they are read: their paragraphs."""
+    folder = PLOTS.parent / "experiments"
+    pages = [folder / "results.md", folder / "seeds.md", *sorted((folder / "results").glob("*.md"))]
+    return [part for page in pages for part in read_text(page).split("\n\n")]
+
+
+def mentions(part, record):
+    return re.search(rf"\]\((?:\.\./)?record/{re.escape(record.resolve().name)}[)/]", part)
+
+
+def is_ours(record):
+    return record.resolve().parent == PLOTS.parent / "experiments" / "record"
+
+
+def paragraphs_on(record):
+    """Those that link to this record, and what follows under the same heading until another record is linked to; their
+    numbers are held against the records by a test."""
+    found, here = [], False
+    for part in story() if is_ours(record) else []:
+        if part.startswith("#"):
+            here = False
+        elif not part.startswith("!") and LINK.search(part):
+            here = bool(mentions(part, record))
+        if here and not part.startswith(("|", "!", "#", "*")) or here and part.startswith("**"):
+            found.append(part)
+    return found
+
+
+def place_in_story(record):
+    """After which paragraph a record comes: as the pages tell of them, then what they leave out."""
+    parts = story() if is_ours(record) else []
+    return next((place for place, part in enumerate(parts) if mentions(part, record)), len(parts))
+
+
+def figures_of(record, name, out):
+    folder = Path("figures") / MARKS.sub("-", f"{record.resolve().parent.name}-{record.resolve().name}")
+    (out / folder).mkdir(parents=True, exist_ok=True)
+    for old in (out / folder).glob("*.p*"):
+        old.unlink()
+    for figure in sorted((record / "figures").glob("*.png")):
+        shutil.copy(figure, out / folder)
+    if not any((out / folder).glob("*.png")):
+        drawn(record, name, out / folder)
+    return [(folder / path.name).as_posix() for path in sorted((out / folder).glob("*.png"))]
+
+
+def drawn(record, name, folder):
+    """What the record's own script draws, where it has one, or plots/draw."""
+    own = PLOTS / "bvlab_scripts" / f"{name.replace('-', '_')}.py"
+    for program in ([["script", name]] if own.is_file() else []) + [["draw"]]:
+        if not any(folder.glob("*.png")):
+            words = [sys.executable, "-B", PLOTS / program[0], *program[1:], record, "--out", folder]
+            subprocess.run(words, capture_output=True, check=False)
+    for other in folder.glob("*.pdf"):
+        other.unlink()
+
+
+def medians(rows):
+    """A line for each setting, what is measured as the median over repetitions; columns that say the same
+    everywhere are left out."""
+    settings = [c for c in rows.attrs["settings"] if rows[c].nunique() > 1 and c != "repetition"]
+    measured = [c for c in rows if c not in rows.attrs["settings"] and c not in ("variant", "repetition")
+                and pd.api.types.is_numeric_dtype(rows[c]) and rows[c].notna().any() and rows[c].nunique() > 1]
+    if not settings:
+        return rows[measured]
+    return rows.groupby(settings, sort=False, dropna=False)[measured].median().reset_index()
+
+
+# HTML
+
+def text(value):
+    return html.escape(str(value))
+
+
+def link(file):
+    """The address of a file beside the page, whatever its name holds."""
+    return text(quote(file))
+
+
+def cell(value):
+    if isinstance(value, str):
+        return f"<td>{text(value)}</td>"
+    if pd.isna(value):
+        return "<td></td>"
+    shown = f"{value:,.0f}" if value == int(value) and abs(value) < 1e15 else f"{value:.4g}"
+    return f"<td class=n>{shown}</td>"
+
+
+def table_of(section):
+    table, units = section.table, section.rows.attrs["units"]
+    heads = "".join(head(column, units.get(column, ""), section.rows.attrs["kind"]) for column in table)
+    shown = table.head(MOST_ROWS).astype(object)
+    lines = "\n".join(f"<tr>{''.join(map(cell, row))}</tr>" for row in shown.itertuples(index=False))
+    left_out = f'<p class="faint">The first {MOST_ROWS:,} of {len(table):,} rows.</p>' if len(table) > MOST_ROWS else ""
+    return (f'<details class="table"><summary>Table: {len(table):,} settings, medians over repetitions</summary>'
+            f'{left_out}<div class="scroll"><table><thead><tr>{heads}</tr></thead><tbody>\n{lines}\n</tbody></table>'
+            "</div></details>")
+
+
+def from_markdown(part):
+    """A paragraph of a page as HTML: links without addresses, bold, code; HTML that stands in it stays."""
+    part = re.sub(r"^#+ (.*)", r"**\1**", part)
+    part = re.sub(r"\(\[record\]\([^)]*\)(?:[:,;] )?", "(", part).replace(" ()", "")
+    part = re.sub(r"^\(\)\s*", "", part)
+    part = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", part).replace("N<sub>", "<i>N</i><sub>")
+    part = re.sub(r"\*\*(.*?)\*\*", r"<b>\1</b>", part)
+    return re.sub(r"`([^`]*)`", r"<code>\1</code>", part)
+
+
+def head(column, unit, kind):
+    title = words.called(column, kind) + (f", {unit}" if unit else "")
+    return f'<th scope="col" title="{text(title)}"><button type="button">{text(column)}</button></th>'
+
+
+def facts_of(section):
+    machine = dict(section.machine)
+    by = provenance.made(machine)
+    if str(machine.get("memory", "")).endswith(" kB"):
+        machine["memory"] = f"{int(machine['memory'].split()[0]) / 1e6:.0f} GB"
+    facts = [("Command", f"<code>{text(section.command)}</code>"),
+             ("Commit", f"<code>{text(by.commit)}</code>{' with changes' if by.changes else ''} (bvlab {text(by.version)})"
+              if by.commit else ""), ("Date", text(by.date)),
+             ("Machine", text(", ".join(f"{machine[k]}{' cores' if k == 'cores' else ''}" for k in
+                                        ("processor", "cores", "memory", "system") if k in machine))),
+             ("Compiler", text(f"{machine.get('compiler', '')} {machine.get('flags', '')}")),
+             ("Libraries", text(machine.get("libraries", ""))), ("Record", f"<code>{text(section.folder)}</code>")]
+    facts = [(name, value) for name, value in facts if value.strip()]
+    lines = "".join(f"<dt>{name}</dt><dd>{value}</dd>" for name, value in facts)
+    return f'<dl>{lines}</dl><details><summary>Definition</summary><pre>{text(section.definition)}</pre></details>'
+
+
+def html_of(section, anchor):
+    said = findings.sentence_of(section.rows)
+    figures = "".join(f'<a href="{link(file)}"><img src="{link(file)}" alt="{text(section.name)}: {text(Path(file).stem)}" '
+                      'loading="lazy"></a>' for file in section.figures)
+    return (f'<section id="{anchor}" class="experiment"><h2><a href="#{anchor}">{text(section.name)}</a></h2>'
+            f'<p class="asks">{text(section.description)}</p>'
+            + (f'<p class="says">{text(said)}</p>' if said else "")
+            + "".join(f'<p class="results">{from_markdown(part)}</p>' for part in section.results)
+            + f'<div class="figures">{figures}</div>{table_of(section)}{facts_of(section)}</section>')
+
+
+def list_of(anchor, title, pages):
+    """Pages that stand beside this one: name, description and file of each."""
+    shown = "".join(f'<li><a href="{link(file)}">{text(name)}</a> <span>{text(description)}</span></li>'
+                    for name, description, file in pages)
+    return f'<section id="{anchor}"><h2>{title}</h2><ul>{shown}</ul></section>' if pages else ""
+
+
+def write(sections, scenes, out, notebooks=(), gallery=()):
+    """Writes OUT/index.html with what it needs in it, and figures and scenes beside it; says where."""
+    sections = sorted(sections, key=lambda section: (section.place, section.name, section.folder))
+    anchors = [MARKS.sub("-", f"{section.name}-{section.folder}") for section in sections]
+    links = "".join(f'<li><a href="#{anchor}">{text(section.name)}</a></li>'
+                    for section, anchor in zip(sections, anchors))
+    parts = {"links": links, "count": str(len(sections)),
+             "scenes": list_of("scenes", "Scenes in 3D", scenes) + list_of("notebooks", "Notebooks", notebooks)
+                       + list_of("gallery", "Figures", gallery),
+             "sections": board.html_of([section.rows for section in sections]) +
+                         "\n".join(html_of(section, anchor) for section, anchor in zip(sections, anchors))}
+    folder = PLOTS / "page"
+    page = (folder / "report.html").read_text()
+    page = re.sub(r'<link rel="stylesheet" href="(.*?)">', lambda m: f"<style>\n{(folder / m[1]).read_text()}</style>", page)
+    page = re.sub(r'<script src="(.*?)"></script>', lambda m: f"<script>\n{(folder / m[1]).read_text()}</script>", page)
+    page = re.sub(r"<!--(\w+)-->", lambda m: parts[m[1]], page)
+    out.mkdir(parents=True, exist_ok=True)
+    unfinished = out / "index.html.unfinished"
+    unfinished.write_text(page)
+    unfinished.replace(out / "index.html")
+    return out / "index.html"

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How figures look: legible in print and in greyscale; names have the looks of looks.py."""
+
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+from bvlab_plots.looks import STYLES, joint_looks, looks  # noqa: F401
+
+DPI = 200  # of images
+WIDTHS = {"column": 3.4, "page": 7.0}  # inches, of a paper of two columns
+WARNING = "#b0413e"
+FORMATS = {"pdf": dict(CreationDate=None), "png": dict(Software=None)}  # and what would differ from run to run
+
+plt.rcParams.update({
+    "font.size": 9,
+    "axes.titlesize": 9,
+    "axes.labelsize": 9,
+    "legend.fontsize": 8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "figure.dpi": 150,
+    "pdf.fonttype": 42,
+    "savefig.bbox": "tight",
+    "hatch.linewidth": 0.6,
+})
+
+
+def line_style(look):
+    """Keywords for plot: colour, dashes."""
+    return dict(color=look["color"], linestyle=look["linestyle"])
+
+
+def marker_style(look):
+    """Keywords for plot without a line: colour, marker, its filling."""
+    return dict(point_style(look), linestyle="none")
+
+
+def point_style(look):
+    """Keywords for plot: colour, dashes, marker, its filling."""
+    fill = {"none": "white", "half": lighter(look["color"])}.get(look.get("fill"), look["color"])
+    return dict(color=look["color"], linestyle=look["linestyle"], marker=look["marker"], markerfacecolor=fill)
+
+
+def bar_style(look):
+    """Keywords for bar: fill, hatch, edge."""
+    if look.get("fill", "full") == "full":
+        return dict(facecolor=look["color"], hatch=look["hatch"], edgecolor="white", linewidth=0.5)
+    colour = "white" if look["fill"] == "none" else lighter(look["color"])
+    return dict(facecolor=colour, hatch=look["hatch"], edgecolor=look["color"], linewidth=0.8)
+
+
+def lighter(colour):
+    return tuple(0.5 + 0.5 * channel for channel in matplotlib.colors.to_rgb(colour))
+
+
+def legend_below(figure, handles, labels, **keywords):
+    """Under the whole figure, in as many columns as its width holds."""
+    for columns in range(len(labels), 0, -1):
+        legend = figure.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, 0), ncols=columns,
+                               frameon=False, columnspacing=1.2, handlelength=2.4, borderaxespad=0.2, **keywords)
+        if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            return legend
+        legend.remove()
+    return None
+
+
+def labelled(axes):
+    """Handles and labels of several axes, each label once."""
+    found = {}
+    for axis in axes:
+        for handle, label in zip(*axis.get_legend_handles_labels()):
+            found.setdefault(label, handle)
+    return list(found.values()), list(found)
+
+
+def save(figure, folder, name, formats=None):
+    """Writes <folder>/<name>.pdf and .png, the same bytes for the same record, each whole or not at all."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    written = [ending for ending in FORMATS if formats is None or ending in formats]
+    for ending in written:
+        unfinished = folder / f".{name}.{ending}.unfinished"
+        try:
+            figure.savefig(unfinished, format=ending, dpi=DPI, metadata=FORMATS[ending])
+            unfinished.replace(folder / f"{name}.{ending}")
+        finally:
+            unfinished.unlink(missing_ok=True)
+    plt.close(figure)
+    return folder / f"{name}.{written[-1]}"
+
+
+def write(folder, name, text):
+    """A file of text, whole or not at all."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    unfinished = folder / f".{name}.unfinished"
+    try:
+        unfinished.write_text(text)
+        unfinished.replace(folder / name)
+    finally:
+        unfinished.unlink(missing_ok=True)
+    return folder / name

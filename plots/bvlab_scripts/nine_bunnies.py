@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The nine-bunnies record as the talk's table (printed) and as figures.
+
+usage: plots/script nine-bunnies RECORD [--out FOLDER] [--table-only]
+
+Figures: nine-bunnies-table (speedup of both lists by reading and density beside the published one),
+nine-bunnies-runs (the talk's ten runs), nine-bunnies-tests (N_v per frame), nine-bunnies-front
+(length of the front).
+"""
+
+
+import numpy as np
+import pandas as pd
+import matplotlib.pyplot as plt
+
+from bvlab_plots import records, style
+from bvlab_plots.arguments import record_arguments
+
+# Li and Chen's table (li1998incremental): seconds for the recursive algorithm, the separation list
+# and the deferred one, runs 1 to 10.
+PUBLISHED = pd.DataFrame(
+    [(1507.9, 1075.7, 759.2), (1744, 1252.2, 1021.7), (1552.8, 1077.7, 781.5),
+     (1713, 1177.3, 980.1), (1548.4, 1080.5, 808.2), (1653.4, 1168.3, 969.5),
+     (1403, 1021.2, 687.5), (1570.5, 1120.2, 831.4), (1564.9, 1163.1, 900.4),
+     (1580.5, 1139.2, 865.7)],
+    columns=["recursive", "separation-list", "deferred"], index=range(1, 11))
+LISTS = ["separation-list", "deferred"]
+BASE = "recursive"
+
+
+def read(record):
+    """One row per (reading, density, seed, variant): median time over repetitions, mean counts."""
+    rows = records.read(record, needs=["reading", "density"])
+    records.wrong_answers(rows)
+    keys = ["reading", "density", "seed", "variant"]
+    runs = rows.groupby(keys, sort=False).agg(
+        time_ns=("time_ns", "median"), pairs=("pairs", "first"), frames=("frames", "first"),
+        hits=("hits", "first"), n_u=("n_u", "first"), n_v=("n_v", "first"), n_p=("n_p", "first"),
+        front=("front", "first")).reset_index()
+    return runs
+
+
+def lists_of(runs):
+    """The talk's two, then whatever else was run; not what the others are compared with."""
+    present = dict.fromkeys(runs.variant)
+    return [v for v in dict.fromkeys([*LISTS, *present]) if v in present and v != BASE]
+
+
+def speedups(runs, what="time_ns"):
+    """Recursive over each other variant, one row per (reading, density, seed), one column per variant."""
+    wide = runs.pivot_table(index=["reading", "density", "seed"], columns="variant", values=what,
+                            sort=False)
+    return pd.DataFrame({name: wide[BASE] / wide[name] for name in lists_of(runs)})
+
+
+def saved_by_cost(rows, price):
+    """What each list saves over recursion where a pair of triangles costs as much as `price` tests of volumes: one row a
+    build, reading, density and seed."""
+    wide = rows.assign(cost=rows.n_v + price * rows.n_p).pivot_table(
+        index=["build", "reading", "density", "seed"], columns="strategy", values="cost", sort=False)
+    return wide[LISTS].rdiv(wide[BASE], axis=0)
+
+
+def percent(ratio):
+    return f"{100 * (ratio - 1):+.0f}%"
+
+
+def print_table(runs):
+    published = PUBLISHED.mean()
+    print("Published: nine bunnies, K5 at 133 MHz. Average seconds and speedup:")
+    print(f"  recursive {published['recursive']:.1f}   list {published['separation-list']:.1f} "
+          f"(+40%)   deferred {published['deferred']:.1f} (+84%)\n")
+    for (reading, density), group in runs.groupby(["reading", "density"], sort=False):
+        touching = group.hits.sum() / group.pairs.sum()
+        print(f"{reading}; {density} ({100 * touching:.1f}% of the pairs touch)")
+        print("run  " + ", ".join([BASE, *lists_of(group)]) + "; N_u, N_v, N_p per pair and frame (front) of each")
+        variants = [BASE, *lists_of(group)]
+        wide = {name: group[group.variant == name].set_index("seed") for name in variants}
+        for seed in wide[BASE].index:
+            print(table_line(str(seed), {name: wide[name].loc[seed] for name in variants}))
+        mean = {name: wide[name].drop(columns=["reading", "density", "variant"]).mean()
+                for name in variants}
+        print(table_line("ave", mean), "\n")
+
+
+def table_line(label, of):
+    seconds = {name: of[name].time_ns / 1e9 for name in of}
+    counts = []
+    for name in of:
+        pairs = of[name].pairs
+        text = " ".join(f"{of[name][n] / pairs:.1f}" for n in ("n_u", "n_v", "n_p"))
+        counts.append(text if name == "recursive" else f"{text} ({of[name].front:.0f})")
+    columns = [f"{label:>3}  {seconds['recursive']:8.4f} s"]
+    for name in list(of)[1:]:
+        columns.append(f"{seconds[name]:8.4f} s {percent(seconds['recursive'] / seconds[name]):>6}")
+    return "  ".join(columns) + "   " + " | ".join(counts)
+
+
+def nearest_reading(runs):
+    """The (reading, density) whose two average speedups are nearest to the published ones."""
+    average = speedups(runs).groupby(level=["reading", "density"], sort=False).mean()
+    target = PUBLISHED.mean()
+    goal = np.log([target[BASE] / target[name] for name in LISTS])
+    distance = ((np.log(average[LISTS]) - goal) ** 2).sum(axis=1)
+    return distance.idxmin(), average
+
+
+def draw_table(runs, out):
+    """Speedup by reading and density, in tests and in time: quartiles over the ten runs, published
+    values as lines."""
+    readings = list(dict.fromkeys(runs.reading))
+    densities = list(dict.fromkeys(runs.density))
+    figure, axes = plt.subplots(2, len(densities), figsize=(7.2, 0.86 * len(readings) + 1.2),
+                                sharex=True, sharey=True, squeeze=False)
+    for line, (what, label) in zip(axes, (("n_v", "$N_v$"), ("time_ns", "time"))):
+        ratios = speedups(runs, what)
+        for axis, density in zip(line, densities):
+            draw_speedups(axis, [ratios.loc[(reading, density)] for reading in readings])
+            axis.set_title(f"{label}, recursive / list; {density}")
+    axes[0, 0].set_yticks(range(len(readings)), readings)
+    axes[0, 0].invert_yaxis()
+    for axis in axes[1]:
+        axis.set_xlabel("speedup over the recursive algorithm")
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.tight_layout()
+    figure.legend(handles, labels, loc="lower center", ncol=4, frameon=False,
+                  bbox_to_anchor=(0.5, -0.05))
+    return style.save(figure, out, "nine-bunnies-table")
+
+
+def draw_speedups(axis, tables):
+    names = list(tables[0].columns)
+    looks, height = style.looks(names), 0.76 / len(names)
+    for k, name in enumerate(names):
+        quartiles = np.array([table[name].quantile([0.25, 0.5, 0.75]) for table in tables])
+        places = np.arange(len(tables)) + (k - (len(names) - 1) / 2) * height
+        axis.barh(places, quartiles[:, 1], height=height - 0.02, label=name, **style.bar_style(looks[name]))
+        axis.errorbar(quartiles[:, 1], places, fmt="none", ecolor="black", elinewidth=0.8,
+                      xerr=[quartiles[:, 1] - quartiles[:, 0], quartiles[:, 2] - quartiles[:, 1]])
+        if name in PUBLISHED:
+            published = PUBLISHED["recursive"].mean() / PUBLISHED[name].mean()
+            axis.axvline(published, linewidth=1.4, label=f"{name}, published time",
+                         **style.line_style(looks[name]))
+    axis.axvline(1, color="black", linewidth=0.8)
+    axis.grid(axis="y", visible=False)
+
+
+def draw_runs(runs, out):
+    """The ten runs of the nearest reading beside the published ten, both as speedups."""
+    (reading, density), _ = nearest_reading(runs)
+    ratios = speedups(runs).loc[(reading, density)]
+    figure, axes = plt.subplots(1, 2, figsize=(7.2, 2.4), sharey=True)
+    published = pd.DataFrame({name: PUBLISHED["recursive"] / PUBLISHED[name] for name in LISTS})
+    for axis, table, title in ((axes[0], published, "published"),
+                               (axes[1], ratios, f"measured: {reading}; {density}")):
+        looks, width = style.looks(table.columns), 0.8 / len(table.columns)
+        for k, name in enumerate(table.columns):
+            axis.bar(np.arange(len(table)) + (k - (len(looks) - 1) / 2) * width, table[name], width=width - 0.02,
+                     label=name, **style.bar_style(looks[name]))
+            axis.axhline(table[name].mean(), linewidth=1.2, **style.line_style(looks[name]))
+        axis.axhline(1, color="black", linewidth=0.8)
+        axis.set_xticks(range(len(table)), table.index)
+        axis.set_xlabel("run")
+        axis.set_title(title)
+        axis.grid(axis="x", visible=False)
+    axes[0].set_ylabel("speedup over recursive")
+    axes[1].legend(loc="lower center", ncol=2, frameon=True, framealpha=1)
+    return style.save(figure, out, "nine-bunnies-runs")
+
+
+SMOOTHED = 25  # frames
+
+
+def draw_over_time(frames, column, label, out, name):
+    """A count per frame, all pairs together, as a running mean; one panel for each reading."""
+    every = list(dict.fromkeys(frames.reading))
+    readings = [reading for reading in every if "rejecting" not in reading]
+    records.say_left_out(set(every) - set(readings), f"of {name}")
+    lines = (len(readings) + 1) // 2
+    figure, axes = plt.subplots(lines, 2, figsize=(7.2, 2 * lines), sharex=True, squeeze=False)
+    variants = [BASE, *lists_of(frames)]
+    looks = style.looks(variants)
+    for axis, reading in zip(axes.flat, readings):
+        for variant in variants:
+            if column == "front" and variant == BASE:
+                continue
+            series = frames[(frames.reading == reading) & (frames.variant == variant)]
+            mean = series[column].rolling(SMOOTHED, center=True, min_periods=1).mean()
+            axis.plot(series.frame, mean, linewidth=1.1, label=variant,
+                      **style.line_style(looks[variant]))
+        axis.set_title(reading)
+        axis.set_ylim(bottom=0)
+    for axis in axes[-1]:
+        axis.set_xlabel("frame")
+    for axis in axes[:, 0]:
+        axis.set_ylabel(label)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="lower center", ncol=3, frameon=False,
+                  bbox_to_anchor=(0.5, -0.1), title=f"running mean over {SMOOTHED} frames",
+                  title_fontsize=8)
+    figure.tight_layout()
+    return style.save(figure, out, name)
+
+
+def main():
+    arguments = record_arguments(__doc__, table_only=True)
+    runs = read(arguments.record)
+    print_table(runs)
+    (reading, density), average = nearest_reading(runs)
+    tests = speedups(runs, "n_v").groupby(level=["reading", "density"], sort=False).mean()
+    print("Average speedups, list and deferred (published: 1.40 and 1.84), in time | in N_v:")
+    for (r, d), row in average.iterrows():
+        mark = "   <- nearest in time" if (r, d) == (reading, density) else ""
+        saved = tests.loc[(r, d)]
+        print(f"  {r + '; ' + d:46} {row['separation-list']:.2f}  {row['deferred']:.2f}  |  "
+              f"{saved['separation-list']:.2f}  {saved['deferred']:.2f}{mark}")
+    if arguments.table_only:
+        return
+    out = arguments.out
+    frames = records.read(arguments.record, "frames")
+    for path in (draw_table(runs, out), draw_runs(runs, out),
+                 draw_over_time(frames, "n_v", "$N_v$ per frame", out, "nine-bunnies-tests"),
+                 draw_over_time(frames, "front", "entries of all fronts", out, "nine-bunnies-front")):
+        print(path)
+

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Motions that others made, and boxes of which some move: `recommended` and `auto` beside the libraries."""
+
+from functools import cache
+
+import pandas as pd
+from bvlab_plots import records
+from quoting import Interval, claim, quotes
+
+NEAR = 1.1  # times the best of ours
+
+
+@cache
+def motions(record):
+    """By motion: us a pair of `recommended`, over the best of ours, and over the fastest library."""
+    rows = records.read(record)
+    claim((rows.differing[rows.peer == ""] == 0).all(), "answers of ours agree")
+    rows = rows.assign(us=(rows.time_ns - rows.first_ns) / (rows.pairs * (1 - 1 / rows.frames)) / 1e3)
+    median = rows.groupby(["motion", "method", "peer"]).us.median().reset_index()
+    ours, theirs = median[median.peer == ""].groupby("motion").us.min(), median[median.peer != ""]
+    us = median[median.method == "recommended"].set_index("motion").us
+    fastest = theirs.loc[theirs.groupby("motion").us.idxmin()].set_index("motion")
+    return rows, pd.DataFrame({"us": us, "over_ours": us / ours, "peer": fastest.method, "peer_us": fastest.us, "times": fastest.us / us})
+
+
+@quotes("real-motions")
+def real_motions(record):
+    rows, found = motions(record)
+    near = found[found.over_ours <= NEAR]
+    peers = rows[rows.peer != ""]
+    unseen = found[found.index.str.contains("unseen")]
+    claim(len(found) == 8 and len(unseen) == 2, "eight motions are in the record, two of them unseen before")
+    claim((unseen.over_ours <= NEAR).all(), "on the unseen motions recommended is as good as the best of ours")
+    claim(set(found.index) - set(near.index) == {"easy (seen)", "torus (seen)"}, "recommended misses the best of ours on easy and torus")
+    wrong = peers[peers.differing > 0].groupby("method").motion.nunique()
+    claim(set(wrong.index) == {"Bullet", "PhysX"}, "answers of Bullet and PhysX differ")
+    return {"count": len(found), "least": found.us.min(), "most": found.us.max(), "times": Interval(found.times), "libraries": peers.method.str.split(",").str[0].nunique(),
+            "near": len(near), "beside": Interval(near.over_ours), "easy": found.over_ours["easy (seen)"],
+            "torus": found.over_ours["torus (seen)"], "five": int((found.times >= 5).sum()), "unseen": Interval(unseen.times),
+            "bullet": int(peers[peers.method == "Bullet"].groupby("motion").differing.max().sum()),
+            "physx": int(peers[peers.method == "PhysX"].groupby("motion").differing.max().sum())}
+
+
+@quotes("real-motions")
+def real_motions_table(record):
+    _, found = motions(record)
+    return {"rows": [[motion, f"{line.us:.2f}", f"{line.over_ours:.2f}", line.peer, f"{line.peer_us:.2f}", f"{line.times:.1f}"]
+                     for motion, line in found.iterrows()]}
+
+
+@quotes("boxes-changes")
+def boxes_changes(record):
+    rows = records.read(record)
+    claim((rows.differing[rows.method == "auto"] == 0).all(), "the list of auto is that of brute force")
+    auto = rows[rows.method == "auto"].set_index(["set", "motion", "coherent"])
+    mean, tail = auto.frame_ns.unstack(), auto.p99_ns.unstack()
+    on, late = mean["on"] / mean["off"], tail["on"] / tail["off"]
+    few = on[on.index.get_level_values("motion").isin(["few", "same", "rare"])]
+    rivals = rows[(rows.method != "auto") & (rows.coherent != "told") & (rows.frame_ns > 0)].groupby(["set", "motion"]).frame_ns.min()
+    beside = (mean["on"] / rivals).dropna()
+    claim((on <= 1.05).all() and (beside <= 1).all(), "in the mean following costs at most 1.05 of starting over, and no rival is faster")
+    return {"cases": len(on), "few": Interval(few), "worst": on.max(), "beside": Interval(beside), "late": int((late > 1.05).sum()),
+            "latest": late.max()}
