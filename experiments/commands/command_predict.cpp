@@ -2,10 +2,12 @@
 /// `bvlab predict`: what each strategy would cost on a trace.
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/variant_options.hpp"
 #include "experiments/commands/whole_number.hpp"
 #include "experiments/files/totals.hpp"
 #include "experiments/files/unusable.hpp"
@@ -21,21 +23,35 @@ struct Arguments {
   std::vector<std::string> meshes;
   std::string trace, json, csv;
   Variant variant;
-  PredictOptions options;
+  std::optional<std::size_t> stride, window;
 };
 
 using Rows = std::vector<Predicted>;
 
-/// By `format`, of the strategy, n_v, n_p and seconds.
+/// By `format`, of the strategy, n_v, n_p, seconds and their interval.
 std::string lines(const Rows& rows, const char* format) {
   std::string text;
   for (const Predicted& row : rows) {
-    char line[160];
+    char line[200];
     std::snprintf(line, sizeof line, format, std::string(row.strategy).c_str(), row.n_v, row.n_p,
-                  row.seconds);
+                  row.seconds, row.low, row.high);
     text += line;
   }
   return text;
+}
+
+/// "deferred", or why nobody is named.
+std::string verdict(const Rows& rows) {
+  if (rows.back().windows == 0) return "unknown: there are no frames";
+  if (!can_tell(rows))
+    return "cannot be told: " + std::to_string(rows.back().windows) + " of the " +
+           std::to_string(least_windows) +
+           " windows that are needed; a smaller --stride gives more";
+  const auto names = candidates(rows);
+  std::string text(names[0]);
+  for (std::size_t i = 1; i < names.size(); ++i)
+    text += (i + 1 < names.size() ? ", " : " or ") + std::string(names[i]);
+  return text + (names.size() > 1 ? ": the intervals overlap" : "");
 }
 
 /// The survival is null where no pair was near another.
@@ -52,11 +68,20 @@ Totals totals_of(const Arguments& arguments, const Trace& trace, const Coherence
                static_cast<double>(coherence.kept) / static_cast<double>(coherence.entries));
   else
     totals.set("survival", nullptr);
-  totals.set("fastest", fastest(rows));
+  const auto names = candidates(rows);
+  const bool is_told = can_tell(rows) && names.size() == 1;
+  if (is_told)
+    totals.set("fastest", names[0]);
+  else
+    totals.set("fastest", nullptr);
+  std::string list;
+  for (const auto& name : names) list += (list.empty() ? "" : ", ") + std::string(name);
+  totals.set("candidates", list).set("windows", rows.back().windows).set("verdict", verdict(rows));
   Totals strategies;
   for (const Predicted& row : rows) {
     Totals each;
     each.set("n_v", row.n_v).set("n_p", row.n_p).set("seconds", row.seconds);
+    each.set("seconds_low", row.low).set("seconds_high", row.high);
     strategies.set(std::string(row.strategy).c_str(), each);
   }
   totals.set("strategies", strategies);
@@ -64,37 +89,44 @@ Totals totals_of(const Arguments& arguments, const Trace& trace, const Coherence
 }
 
 void run(const Arguments& arguments) {
-  const std::string& query = arguments.variant.query;
   check(arguments.variant);
-  if (query != "touching" && query != "contacts")
-    throw Unusable("--query", "predicted are touching and contacts, not " + query);
   std::vector<NamedFile> read{{"--trace", arguments.trace}};
   for (const auto& mesh : arguments.meshes) read.push_back({"--mesh", mesh});
   const NamedFile written[] = {
       {"the table", "/dev/stdout"}, {"--csv", arguments.csv}, {"--json", arguments.json}};
   require_places(read, written);
   std::vector<TriangleMesh> meshes;
-  for (const auto& file : arguments.meshes) meshes.push_back(read_mesh(file));
+  for (const auto& file : arguments.meshes) {
+    meshes.push_back(read_mesh(file));
+    say_if_nothing_is_culled(meshes.back(), file);
+  }
   const Trace trace = read_trace(arguments.trace);
   require_finite_corners(trace, arguments.trace, meshes);
-  const Rows rows = predict(meshes, trace, arguments.variant, arguments.options);
+  PredictOptions options = options_for(trace.frames);
+  if (arguments.stride || arguments.window) {
+    const PredictOptions otherwise;
+    options.stride = arguments.stride.value_or(otherwise.stride);
+    options.window = arguments.window.value_or(otherwise.window);
+  }
+  const Rows rows = predict(meshes, trace, arguments.variant, options);
   if (!arguments.csv.empty())
-    write_whole(arguments.csv, "strategy,n_v,n_p,seconds\n" + lines(rows, "%s,%.0f,%.0f,%.9g\n"));
+    write_whole(arguments.csv, "strategy,n_v,n_p,seconds,seconds_low,seconds_high\n" +
+                                   lines(rows, "%s,%.0f,%.0f,%.9g,%.9g,%.9g\n"));
   if (!arguments.json.empty()) {
     const CoherenceSums sums = coherence(meshes, trace, arguments.variant);
     write_totals(totals_of(arguments, trace, sums, rows), arguments.json);
   }
-  std::printf("%-16s %14s %14s %12s\n%s", "strategy", "n_v", "n_p", "seconds",
-              lines(rows, "%-16s %14.0f %14.0f %12.6f\n").c_str());
-  std::printf("fastest: %s\n", std::string(fastest(rows)).c_str());
+  std::printf("%-16s %14s %14s %12s  %s\n%s", "strategy", "n_v", "n_p", "seconds", "interval",
+              lines(rows, "%-16s %14.0f %14.0f %12.6f  %.6f to %.6f\n").c_str());
+  std::printf("fastest: %s\n", verdict(rows).c_str());
 }
 
 }  // namespace
 
 void add_predict(CLI::App& app) {
   CLI::App* command = app.add_subcommand("predict",
-                                         "What each strategy would cost on a trace, from "
-                                         "recursions and windows begun at their fronts");
+                                         "Predicts what each strategy would cost on a "
+                                         "trace, from windows of it");
   auto arguments = std::make_shared<Arguments>();
   command
       ->add_option("trace,--trace", arguments->trace, "poses: .npy, float64, (frames, objects, 7)")
@@ -102,30 +134,24 @@ void add_predict(CLI::App& app) {
   command
       ->add_option("--mesh", arguments->meshes, "mesh file; object i uses mesh i mod their number")
       ->required();
-  command->add_option("--volume", arguments->variant.volume, "see `bvlab list volumes`")
-      ->capture_default_str();
-  command->add_option("--query", arguments->variant.query, "touching or contacts")
-      ->capture_default_str();
-  command->add_option("--build", arguments->variant.build, "see `bvlab list builds`")
-      ->capture_default_str();
-  command->add_option("--fit", arguments->variant.fit, "of volumes: published, or tight")
-      ->capture_default_str();
-  command->add_option("--leaf-size", arguments->variant.leaf_size, "triangles in a leaf, at most")
+  add_tree_options(*command, arguments->variant);
+  add_query_options(*command, arguments->variant);
+  add_build_options(*command, arguments->variant);
+  command->add_option("--leaf-size", arguments->variant.leaf_size, "most triangles in a leaf")
       ->check(whole_number(1, 1u << 16))
       ->capture_default_str();
   command
-      ->add_option("--stride", arguments->options.stride,
-                   "a window begins in every so-many-th frame, about")
-      ->check(whole_number(1, 1u << 16))
-      ->capture_default_str();
+      ->add_option("--stride", arguments->stride,
+                   "frames from the start of one window to the next (default: 96; a trace of fewer "
+                   "than 384 frames is played whole)")
+      ->check(whole_number(1, 1u << 16));
   command
-      ->add_option("--window", arguments->options.window,
-                   "frames for which strategies are followed from a recursion's front")
-      ->check(whole_number(2, 1u << 16))
-      ->capture_default_str();
-  command->add_option("--csv", arguments->csv, "the table, one row a strategy");
+      ->add_option("--window", arguments->window,
+                   "frames of a window; it starts from the front of a recursion (default: 48)")
+      ->check(whole_number(2, 1u << 16));
+  command->add_option("--csv", arguments->csv, "the table as CSV, one row for each strategy");
   command->add_option("--json", arguments->json,
-                      "the same and how much of the front survives a frame, as an object");
+                      "the table and the survival of the front, as JSON");
   command->callback([arguments] { run(*arguments); });
 }
 

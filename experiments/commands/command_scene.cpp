@@ -12,6 +12,7 @@
 #include "experiments/replay/touches_any.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/named_mesh.hpp"
+#include "experiments/scenes/public/public_scenes.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 #include "experiments/scenes/scenes.hpp"
 
@@ -113,11 +114,11 @@ void add(CLI::App& parent) {
       ->required();
   command->add_option("--meshes", arguments->meshes, "directory to write the meshes to, as OFF");
   command->add_option("--mesh", arguments->files, "mesh file; object i is mesh i mod their number");
-  command->add_option(
-      "--shape", arguments->names,
-      "the same, a mesh as NAME[:POLYGONS[:SCALE]]; names are bunny, " + formula_mesh_names() +
-          "; NAME-hull is its convex hull (where none is given: " + default_meshes<S>() + ")");
-  command->add_option("--polygons", arguments->polygons, "triangles of each mesh given by name")
+  command->add_option("--shape", arguments->names,
+                      "built-in mesh, as NAME[:POLYGONS[:SCALE]]; names are bunny, " +
+                          formula_mesh_names() +
+                          "; NAME-hull is its convex hull (default: " + default_meshes<S>() + ")");
+  command->add_option("--polygons", arguments->polygons, "triangles of each built-in mesh")
       ->check(whole_number())
       ->capture_default_str();
   command->footer(
@@ -126,11 +127,59 @@ void add(CLI::App& parent) {
   command->callback([scene, arguments] { run(*scene, *arguments); });
 }
 
+struct PublicArguments {
+  std::string scene, from, out, meshes;
+  std::size_t frames = 500;
+};
+
+void run_public(const PublicArguments& arguments) {
+  const NamedFile written[] = {{"--out", arguments.out}};
+  require_places({}, written);
+  require_public_scene(arguments.scene);
+  if (is_public_box_scene(arguments.scene)) {
+    const auto boxes = public_boxes(arguments.scene, arguments.from, arguments.frames);
+    return write_npy<float>(arguments.out, boxes.shape, boxes.data);
+  }
+  const auto touches = [](std::span<const TriangleMesh> meshes) {
+    return touches_any(meshes, meshes.size());
+  };
+  auto motion = public_motion(arguments.scene, arguments.from, {arguments.frames, touches});
+  std::vector<std::string> names;
+  std::vector<TriangleMesh> meshes;
+  for (auto& [name, mesh] : motion.meshes) {
+    names.push_back(std::move(name));
+    meshes.push_back(std::move(mesh));
+  }
+  if (!arguments.meshes.empty()) write_meshes(arguments.meshes, names, meshes);
+  write_npy<double>(arguments.out, motion.trace.shape, motion.trace.data);
+}
+
+void add_public(CLI::App& parent) {
+  CLI::App* command = parent.add_subcommand(
+      "public", "public:NAME: meshes and motions of public repositories, at a fixed commit");
+  auto arguments = std::make_shared<PublicArguments>();
+  command->add_option("name", arguments->scene, "see `bvlab list scenes`")->required();
+  command->add_option(
+      "--from", arguments->from,
+      "a clone of the repository, or `git` to fetch the commit (default: files that "
+      "were fetched before)");
+  command
+      ->add_option("--frames", arguments->frames,
+                   "number of frames; for boxes, parts of a simulation step")
+      ->check(whole_number())
+      ->capture_default_str();
+  command->add_option("--out", arguments->out, "the trace of bodies or of boxes, as .npy")
+      ->required();
+  command->add_option("--meshes", arguments->meshes, "directory to write the meshes to, as OFF");
+  command->callback([arguments] { run_public(*arguments); });
+}
+
 }  // namespace
 
 void add_scene(CLI::App& app) {
   CLI::App* command = app.add_subcommand("scene", "Writes a built-in scene as a trace");
   Scenes::for_each([&]<class S>(std::type_identity<S>) { add<S>(*command); });
+  add_public(*command);
   command->allow_extras();
   command->callback([command] {
     if (!command->get_subcommands().empty()) return;

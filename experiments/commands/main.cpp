@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// bvlab: the command line. Exit 0 done, 2 unusable arguments or input (one line says which), 1
 /// anything else.
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -8,9 +9,11 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "experiments/commands/commands.hpp"
 #include "experiments/files/unusable.hpp"
+#include "experiments/scenes/public/public_scenes.hpp"
 
 namespace bvlab {
 namespace {
@@ -39,9 +42,21 @@ void flush_output() {
                              (errno ? ": " + std::string(std::strerror(errno)) : ""));
 }
 
+/// The words as the parser takes them, the last one first: `scene public:NAME` as `scene public
+/// public:NAME`, since names of commands have no colons.
+std::vector<std::string> words_of(int argc, char** argv) {
+  std::vector<std::string> words;
+  for (int i = 1; i < argc; ++i) {
+    if (i == 2 && words[0] == "scene" && is_public_scene(argv[i])) words.push_back("public");
+    words.push_back(argv[i]);
+  }
+  std::reverse(words.begin(), words.end());
+  return words;
+}
+
 int parsed(CLI::App& app, int argc, char** argv) {
   try {
-    app.parse(argc, argv);
+    app.parse(words_of(argc, argv));
     return 0;
   } catch (const CLI::CallForHelp& help) {
     return app.exit(help);
@@ -59,7 +74,7 @@ int parsed(CLI::App& app, int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace bvlab;
-  CLI::App app("bvlab: collision detection with bounding-volume hierarchies and boxes, measured");
+  CLI::App app("bvlab: measures collision detection with bounding-volume hierarchies and boxes");
   app.require_subcommand(1);
   try {
     add_replay(app);

@@ -8,7 +8,6 @@
 #include <set>
 #include <sstream>
 
-#include "experiments/definitions/figure_tables.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
 #include "experiments/scenes/scenes.hpp"
@@ -129,7 +128,7 @@ class Reader {
       else if (key == "series")
         read_series(node, definition);
       else if (key == "figure")
-        check_figures(node, name_);
+        definition.figures = read_figures(node, name_);
       else
         fail(key.source(), "unknown key '" + std::string(key.str()) + "'");
     }
@@ -249,10 +248,23 @@ class Reader {
     for (auto&& [key, value] : table(node, "parameters")) {
       if (key == but) continue;
       const std::string name(key.str());
+      if (name == "tree") {
+        add_tree(scalar(value, name), key.source(), result);
+        continue;
+      }
       known(name, key.source());
       result.emplace_back(name, scalar(value, name));
     }
     return result;
+  }
+  /// What definitions said before there were fan-outs and frames.
+  void add_tree(const std::string& tree, const toml::source_region& where,
+                Settings& settings) const {
+    if (tree != "binary" && tree != "wide") fail(where, "tree must be binary or wide");
+    const bool wide = tree == "wide";
+    settings.emplace_back("fan_out", wide ? "native" : "2");
+    settings.emplace_back("frame", wide ? "body" : "world");
+    settings.emplace_back("kernel", wide ? "siblings" : "gathered");
   }
 
   std::vector<Definition::Axis> axes(const toml::node& node) const {
@@ -350,10 +362,12 @@ const std::vector<Parameter>& parameters() {
              {"query", "touching", "see `bvlab list queries`"},
              {"build", "top-down-principal", "how trees are built; see `bvlab list builds`"},
              {"leaf_size", "1", "triangles in a leaf, at most"},
-             {"fit", "published", "how volumes are fitted: published, or tight"},
+             {"fit", "published", "how volumes are fitted: published, or tight where they have such a fit"},
              {"precision", "exact", "of triangle tests; see `bvlab list precisions`"},
              {"relative_error", "0", "distances may be above the truth by this part of it"},
-             {"tree", "binary", "binary, or wide: siblings compared in the mesh's own frame"},
+             {"fan_out", "2", "children a node, at most: 2, 4, 8, 16; or native, a register's lanes"},
+             {"frame", "world", "where volumes are compared; see `bvlab list frames`"},
+             {"kernel", "gathered", "how lanes are filled; see `bvlab list kernels`"},
              {"configuration", "", "chooses volume, tree, build and all else; see `bvlab list`"},
              {"peer", "", "another library in place of ours; see `bvlab list peers`"}})
       all.push_back(each);

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The sample is TOML line by line, and kept so:
+// clang-format off
 /// An experiment as it is written down: parameters that stay, axes that vary, and what is wanted of
 /// every cell of their product.
 ///
 ///     name = "nine-bunnies"
 ///     description = "one line"
 ///     repetitions = 3                # timed runs of each cell, interleaved
-///     measures = ["coherence", "best rebuilds"]   # beside the rest, see coherence.hpp
-///     measures = ["frames"]          # times of single frames: p99_ns
-///     measures = ["predictions"]     # of every strategy's cost, see predict.hpp
+///     # beside the rest: see coherence.hpp, times of single frames (p99_ns), see predict.hpp
+///     measures = ["coherence", "best rebuilds", "frames", "predictions"]
 ///
-///     [parameters]                   # see `bvlab list parameters`; what is not set has its
-///     default mesh = "bunny" configuration = "recommended"  # sets volume, tree, strategy, build,
-///     fit and leaf_size
+///     [parameters]                   # see `bvlab list parameters`; what is not set has its default
+///     mesh = "bunny"
+///     configuration = "recommended"  # sets the parameters that say what is compared, and how
 ///
 ///     [[axis]]                       # one parameter
 ///     name = "seed"
@@ -27,9 +28,10 @@
 ///     seed = 1
 ///     until = 1000                   # this many frames of each, at most
 ///
-///     [[figure]]                     # what plots/draw shows of it: see plots/figures.py
+///     [[figure]]                     # what plots/draw shows of it: see README.md beside this file
 ///     name = "tests"
 ///     x = "seed"
+// clang-format on
 #pragma once
 
 #include <set>
@@ -37,6 +39,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "experiments/definitions/figure_tables.hpp"
 
 namespace bvlab {
 
@@ -62,8 +66,9 @@ struct Definition {
   bool has_series = false;
   std::size_t series_until = static_cast<std::size_t>(-1);  ///< frames of each
   std::set<std::string> measures;                           ///< of every trace, for every volume
-  std::string text;                                         ///< the file as it was
-  std::string file;                                         ///< for messages
+  std::vector<FigureTable> figures;
+  std::string text;  ///< the file as it was
+  std::string file;  ///< for messages
 };
 
 /// One point of the product: every parameter, and the labels of the axes that are no parameters.

@@ -17,7 +17,10 @@ Totals::Totals(Totals&&) noexcept = default;
 Totals& Totals::operator=(Totals&&) noexcept = default;
 Totals::~Totals() = default;
 
-std::string Totals::text() const { return object_->json.dump(2) + "\n"; }
+std::string Totals::text() const {
+  // Names of files may be no UTF-8: what is not becomes U+FFFD.
+  return object_->json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
 
 void Totals::set_object(const char* key, const Totals& value) {
   object_->json[key] = value.object_->json;

@@ -181,6 +181,11 @@ void write_whole(const std::filesystem::path& path, std::span<const std::string_
   if (!write_nameless(place, parts, mode)) write_beside(place, parts, mode);
 }
 
+void append_to(const std::filesystem::path& path, std::string_view text) {
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
+  if (!file || !file.write(std::span(&text, 1)) || !file.close()) fail(path, errno);
+}
+
 void clear_left_behind(const std::filesystem::path& folder) {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))

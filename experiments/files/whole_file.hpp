@@ -23,6 +23,9 @@ inline void write_whole(const std::filesystem::path& path, std::string_view text
   write_whole(path, std::span(&text, 1));
 }
 
+/// Adds text to the end of a file that is there, in one write. Throws std::runtime_error as above.
+void append_to(const std::filesystem::path& path, std::string_view text);
+
 /// Removes what processes that were killed while they wrote into `folder` have left there.
 void clear_left_behind(const std::filesystem::path& folder);
 

@@ -8,7 +8,7 @@
 #include <concepts>
 #include <memory>
 
-#include "experiments/replay/replay.hpp"
+#include "experiments/peers/peers.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/queries/contacts.hpp"
 
@@ -112,6 +112,14 @@ template <class W>
 ReplayResult play_peer(std::span<const TriangleMesh> meshes, const Trace& trace,
                        std::string_view query, const ReplayOptions& options) {
   return PeerPlay<W>(meshes, trace, options).play(query);
+}
+
+/// The same of a library that counts where it is asked to.
+template <class Counting, class NotCounting>
+ReplayResult play_counting_peer(std::span<const TriangleMesh> meshes, const Trace& trace,
+                                std::string_view query, const ReplayOptions& options) {
+  return options.count == Count::on ? play_peer<Counting>(meshes, trace, query, options)
+                                    : play_peer<NotCounting>(meshes, trace, query, options);
 }
 
 }  // namespace bvlab

@@ -28,15 +28,4 @@ std::span<const TriangleTestPeer> triangle_test_peers();
 /// Null where there is none of that name.
 const TriangleTestPeer* triangle_test_peer(std::string_view name);
 
-namespace peers {
-
-void decide_cgal(TriangleTestPeer::Pairs pairs, std::uint8_t* verdicts);
-void decide_guigue_devillers(TriangleTestPeer::Pairs pairs, std::uint8_t* verdicts);
-void decide_fcl(TriangleTestPeer::Pairs pairs, std::uint8_t* verdicts);
-void decide_moller(TriangleTestPeer::Pairs pairs, std::uint8_t* verdicts);
-void decide_bullet(TriangleTestPeer::Pairs pairs, std::uint8_t* verdicts);
-void decide_ode(TriangleTestPeer::Pairs pairs, std::uint8_t* verdicts);
-
-}  // namespace peers
-
 }  // namespace bvlab

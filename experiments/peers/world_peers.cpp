@@ -2,44 +2,41 @@
 #include "experiments/peers/world_peers.hpp"
 
 #include <algorithm>
-#include <vector>
+
+#include "experiments/peers/collected.hpp"
+#include "experiments/peers/found.hpp"
 
 namespace bvlab {
+
+#define BVLAB_DECLARED(library) std::span<const WorldPeer> library##_worlds();
+#define BVLAB_LISTED(library) library##_worlds,
+BVLAB_WORLD_PEERS(BVLAB_DECLARED)
+
 namespace {
 
-struct Entry {
-  std::string_view name;
-  std::unique_ptr<WorldEngine> (*make)(std::span<const TriangleMesh>, std::size_t);
-};
-
-const std::vector<Entry> list {
-#if BVLAB_FCL
-  {"fcl-world", make_fcl_world<FclPairs::all>},              // dynamic tree of boxes, OBB trees
-      {"fcl-world-moved", make_fcl_world<FclPairs::moved>},  // of pairs at rest the last answer
-#endif
-#if BVLAB_BULLET
-      {"bullet-world", make_bullet_world},  // dynamic trees of boxes, GImpact
-#endif
-};
+const std::vector<WorldPeer>& list() {
+  static const auto all = collected<WorldPeer>({BVLAB_WORLD_PEERS(BVLAB_LISTED)});
+  return all;
+}
 
 }  // namespace
 
 std::unique_ptr<WorldEngine> make_world_peer(std::string_view name,
                                              std::span<const TriangleMesh> meshes,
                                              std::size_t objects) {
-  for (const auto& each : list)
+  for (const auto& each : list())
     if (each.name == name) return each.make(meshes, objects);
   return nullptr;
 }
 
 bool is_world_peer(std::string_view name) {
-  return std::any_of(std::begin(list), std::end(list),
-                     [&](const Entry& each) { return each.name == name; });
+  return std::any_of(list().begin(), list().end(),
+                     [&](const WorldPeer& each) { return each.name == name; });
 }
 
 std::string world_peer_names() {
   std::string names;
-  for (const auto& each : list) names += (names.empty() ? "" : ", ") + std::string(each.name);
+  for (const auto& each : list()) names += (names.empty() ? "" : ", ") + std::string(each.name);
   return names;
 }
 

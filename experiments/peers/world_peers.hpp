@@ -12,21 +12,18 @@
 
 namespace bvlab {
 
-/// Object i uses mesh i mod meshes.size(). Nothing where there is no peer of that name.
+struct WorldPeer {
+  std::string_view name;
+  /// Object i uses mesh i mod meshes.size().
+  std::unique_ptr<WorldEngine> (*make)(std::span<const TriangleMesh> meshes, std::size_t objects);
+};
+
+/// Nothing where there is no peer of that name.
 std::unique_ptr<WorldEngine> make_world_peer(std::string_view name,
                                              std::span<const TriangleMesh> meshes,
                                              std::size_t objects);
 bool is_world_peer(std::string_view name);
-/// "fcl-tree-obb, ..."
+/// "fcl-world, ..."
 std::string world_peer_names();
-
-// One translation unit a library.
-/// Which pairs that are near FCL is asked about in a frame: all, or those of which a body moved.
-enum class FclPairs { all, moved };
-template <FclPairs which>
-std::unique_ptr<WorldEngine> make_fcl_world(std::span<const TriangleMesh> meshes,
-                                            std::size_t objects);
-std::unique_ptr<WorldEngine> make_bullet_world(std::span<const TriangleMesh> meshes,
-                                               std::size_t objects);
 
 }  // namespace bvlab

@@ -30,15 +30,16 @@ class BodyLoops {
  public:
   virtual ~BodyLoops() = default;
   virtual std::size_t size() const = 0;
+  virtual Frame frame() const = 0;
   virtual const TriangleMesh& mesh(std::size_t i) const = 0;
   virtual MovingBody& body(std::size_t i) = 0;
   virtual void make_room() = 0;
-  virtual void asked_by(Askers askers) = 0;
+  virtual void set_sharing(Sharing sharing) = 0;
   virtual void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) = 0;
   virtual void move(std::span<const Pose> poses, const Vec3<double>& origin) = 0;
   virtual void cull_roots(std::span<const ObjectPair> pairs, std::span<const std::uint32_t> fresh,
                           Query& query, std::uint8_t* apart) = 0;
-  /// Volumes posed, of all bodies, since this was asked last. O(nodes) a body.
+  /// Volumes posed into the world, of all bodies, since this was asked last. O(nodes) a body.
   virtual std::size_t newly_posed() = 0;
   /// The loop from that kind of front, a Loop; null where it was not compiled with the bodies.
   virtual AnyLoop loop(const std::type_info& front) const = 0;
@@ -99,6 +100,8 @@ class AnyPair {
     const auto loop = loops_.template from<std::remove_cvref_t<Front>>();
     const TraversalStatistics statistics = loop(bodies_, pair_, query_, front);
     counter_.tested(statistics.volumes);
+    if constexpr (Counter::counts)
+      if (bodies_.frame() == Frame::body) counter_.posed(statistics.volumes);
     counter_.primitives(statistics.triangles);
     return statistics;
   }
@@ -134,7 +137,7 @@ class AnyBodies {
   std::size_t size() const { return bodies_.size(); }
   const TriangleMesh& mesh(std::size_t i) const { return loops_->mesh(i); }
   void make_room() { loops_->make_room(); }
-  void asked_by(Askers askers) { loops_->asked_by(askers); }
+  void set_sharing(Sharing sharing) { loops_->set_sharing(sharing); }
   void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) {
     loops_->move(i, pose, origin);
   }
@@ -145,7 +148,8 @@ class AnyBodies {
     return {from_, *loops_, *bodies_[pair.i], *bodies_[pair.j], pair, query, counter};
   }
   void cull_roots(std::span<const ObjectPair> pairs, std::span<const std::uint32_t> fresh,
-                  Query& query, Counter&, std::uint8_t* apart) {
+                  Query& query, Counter& counter, std::uint8_t* apart) {
+    if (loops_->frame() == Frame::body) counter.posed(fresh.size());
     loops_->cull_roots(pairs, fresh, query, apart);
   }
   /// Counts what has been posed since this was called last.

@@ -18,6 +18,8 @@ class AnyMethod {
  public:
   virtual ~AnyMethod() = default;
   virtual std::span<const Pair> overlapping(Boxes<T> boxes) = 0;
+  /// The same where it is known which boxes moved; a method that cannot be told finds out.
+  virtual std::span<const Pair> update(Boxes<T> boxes, std::span<const std::uint32_t> moved) = 0;
   /// Pairs that began and ended; none where the method was not told to report them, or cannot.
   virtual PairChanges changes() const = 0;
   /// Why it does what it does, where the method has a choice; empty elsewhere.

@@ -59,8 +59,9 @@ class CoherenceMeter {
       : pairs_(all_object_pairs(static_cast<std::uint32_t>(objects))),
         fronts_(pairs_.size()),
         hierarchies_(volume_entry(variant.volume).hierarchies(meshes, variant)),
-        bodies_(loops_of<Query>(variant.volume).bodies(*hierarchies_, objects)),
-        apart_(loops_of<Distance>(variant.volume).bodies(*hierarchies_, objects)) {
+        bodies_(loops_of<Query>(variant.volume).bodies(*hierarchies_, objects, frame_of(variant))),
+        apart_(
+            loops_of<Distance>(variant.volume).bodies(*hierarchies_, objects, frame_of(variant))) {
     for (const auto& mesh : meshes) {
       middles_.emplace_back(mesh);
       leaf_sizes_.push_back(leaf_size_of(mesh));
@@ -224,7 +225,7 @@ BestRebuilds best_rebuilds_under(std::span<const TriangleMesh> meshes, const Tra
   for (std::size_t frame = 0; frame < trace.frames; ++frame) trace.poses(frame, poses[frame]);
   const auto hierarchies = volume_entry(variant.volume).hierarchies(meshes, variant);
   RebuildSearch<Query> search(AnyBodies<Query, NotCounting>(
-      loops_of<Query>(variant.volume).bodies(*hierarchies, trace.objects)));
+      loops_of<Query>(variant.volume).bodies(*hierarchies, trace.objects, frame_of(variant))));
   BestRebuilds sum;
   for (const auto& pair : all_object_pairs(static_cast<std::uint32_t>(trace.objects))) {
     const BestRebuilds best = search.search(pair, poses);

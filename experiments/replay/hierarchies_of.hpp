@@ -31,7 +31,10 @@ class HierarchiesOf final : public AnyHierarchies {
   HierarchiesOf(std::span<const TriangleMesh> meshes, const Variant& variant) : meshes_(meshes) {
     all_.reserve(meshes.size());
     for (const auto& mesh : meshes)
-      all_.emplace_back(mesh, topology_of(mesh, variant), fit_of(variant));
+      if (variant.fan_out == 2)
+        all_.emplace_back(mesh, topology_of(mesh, variant), fit_of(variant));
+      else
+        all_.emplace_back(mesh, wide_topology_of(mesh, variant), fit_of(variant));
   }
 
   std::size_t meshes() const override { return all_.size(); }

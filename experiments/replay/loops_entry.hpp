@@ -16,7 +16,7 @@ namespace bvlab {
 template <class Query>
 struct LoopsEntry {
   std::string_view volume;
-  std::unique_ptr<BodyLoops<Query>> (*bodies)(const AnyHierarchies&, std::size_t objects);
+  std::unique_ptr<BodyLoops<Query>> (*bodies)(const AnyHierarchies&, std::size_t objects, Frame);
 };
 
 /// Loops over bodies of that volume from fronts that are a strategy's own.

@@ -18,7 +18,7 @@ namespace detail {
 template <BoundingVolume V, class Query>
 class BodiesOver : public BodyLoops<Query> {
  public:
-  explicit BodiesOver(std::span<const Shape<V>> shapes) : bodies_(shapes) {}
+  BodiesOver(std::span<const Shape<V>> shapes, Frame frame) : bodies_(shapes, frame) {}
 
   BodyPair<NativeBatch<typename V::scalar>, V, Query, NotCounting> pair(const ObjectPair& pair,
                                                                         Query& query) {
@@ -26,10 +26,11 @@ class BodiesOver : public BodyLoops<Query> {
   }
 
   std::size_t size() const override { return bodies_.size(); }
+  Frame frame() const override { return bodies_.frame(); }
   const TriangleMesh& mesh(std::size_t i) const override { return bodies_.mesh(i); }
   MovingBody& body(std::size_t i) override { return bodies_[i]; }
   void make_room() override { bodies_.make_room(); }
-  void asked_by(Askers askers) override { bodies_.asked_by(askers); }
+  void set_sharing(Sharing sharing) override { bodies_.set_sharing(sharing); }
   void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) override {
     bodies_.move(i, pose, origin);
   }
@@ -90,10 +91,10 @@ class LoopsOver final : public BodiesOver<V, Query> {
 };
 
 template <BoundingVolume V, class Query>
-std::unique_ptr<BodyLoops<Query>> loops_over(const AnyHierarchies& hierarchies,
-                                             std::size_t objects) {
+std::unique_ptr<BodyLoops<Query>> loops_over(const AnyHierarchies& hierarchies, std::size_t objects,
+                                             Frame frame) {
   return std::make_unique<LoopsOver<V, Query>>(
-      static_cast<const HierarchiesOf<V>&>(hierarchies).shapes(objects));
+      static_cast<const HierarchiesOf<V>&>(hierarchies).shapes(objects), frame);
 }
 
 }  // namespace detail

@@ -16,6 +16,13 @@ class ChosenMethod final : public AnyMethod<typename M::Scalar> {
   std::span<const Pair> overlapping(Boxes<typename M::Scalar> boxes) override {
     return method_.overlapping(boxes);
   }
+  std::span<const Pair> update(Boxes<typename M::Scalar> boxes,
+                               std::span<const std::uint32_t> moved) override {
+    if constexpr (TakesMoved<M>)
+      return method_.update(boxes, moved);
+    else
+      return method_.overlapping(boxes);
+  }
   PairChanges changes() const override {
     if constexpr (ReportsChanges<M>)
       return method_.changes();

@@ -29,8 +29,8 @@ template <class Query>
 class Answers {
   static constexpr bool lists =
       requires(const QueryOptions& options, std::vector<std::array<std::uint32_t, 2>>& found) {
-    Query::asked(options, found);
-  };
+        Query::from_options(options, found);
+      };
 
  public:
   Answers(ReplayResult& result, const Trace& trace, const ReplayOptions& options,
@@ -48,9 +48,9 @@ class Answers {
     if constexpr (lists) {
       auto& found = list_of(p).found;
       found.clear();
-      return Query::asked(how_, found);
+      return Query::from_options(how_, found);
     } else {
-      return Query::asked(how_);
+      return Query::from_options(how_);
     }
   }
 
@@ -160,7 +160,7 @@ struct FrontsOf {
   using type = Fronts;
 };
 template <class Strategy, class... Shared>
-requires requires { typename Strategy::OwnFronts; }
+  requires requires { typename Strategy::OwnFronts; }
 struct FrontsOf<Strategy, TypeList<Shared...>> {
   template <class... Own>
   static TypeList<Shared..., Own...> with(TypeList<Own...>);
@@ -173,9 +173,9 @@ using BodiesFor = AnyBodies<Query, Counter, typename FrontsOf<Strategy>::type>;
 template <class Strategy, class Query, class Counter>
 BodiesFor<Strategy, Query, Counter> bodies_for(const VolumeEntry& volume,
                                                const AnyHierarchies& hierarchies,
-                                               std::size_t objects) {
+                                               std::size_t objects, const Variant& variant) {
   return BodiesFor<Strategy, Query, Counter>(
-      loops_of<Query>(volume.name).bodies(hierarchies, objects),
+      loops_of<Query>(volume.name).bodies(hierarchies, objects, frame_of(variant)),
       [&](const std::type_info& front) { return own_loop<Query>(volume.name, front); });
 }
 
@@ -201,7 +201,7 @@ void play(const VolumeEntry& volume, const AnyHierarchies& hierarchies, const Tr
   const auto strategy = made_from<Strategy>(variant.strategy);
   const auto engine = [&]<class Counter>(std::type_identity<Counter>) {
     return AllPairsOf<BodiesFor<Strategy, Query, Counter>, Strategy>(
-        bodies_for<Strategy, Query, Counter>(volume, hierarchies, trace.objects),
+        bodies_for<Strategy, Query, Counter>(volume, hierarchies, trace.objects, variant),
         all_object_pairs(static_cast<std::uint32_t>(trace.objects)), strategy,
         static_cast<int>(options.threads));
   };
@@ -215,7 +215,7 @@ std::unique_ptr<WorldEngine> world(const VolumeEntry& volume,
                                    const Variant& variant, int threads) {
   using Pairs = StrategyPairs<BodiesFor<Strategy, Query, NotCounting>, Strategy>;
   if constexpr (SaysYesOrNo<Query>) {
-    Pairs pairs(bodies_for<Strategy, Query, NotCounting>(volume, *hierarchies, objects),
+    Pairs pairs(bodies_for<Strategy, Query, NotCounting>(volume, *hierarchies, objects, variant),
                 made_from<Strategy>(variant.strategy));
     return std::make_unique<TouchingWorld<Pairs, Query, std::unique_ptr<AnyHierarchies>>>(
         std::move(hierarchies), std::move(pairs), variant, threads);

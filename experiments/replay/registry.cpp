@@ -34,19 +34,42 @@ std::vector<Named> volumes() {
   return all;
 }
 
-std::vector<Named> wide_volumes() {
+std::vector<Named> wide_volumes(std::string_view kernel) {
   std::vector<Named> all;
-  for (const auto* entry : wide_entries()) add(all, entry->volume, entry->volume_description);
+  for (const auto* entry : wide_entries())
+    if (entry->fan_out(kernel) > 0) add(all, entry->volume, entry->volume_description);
   return all;
 }
 
-std::vector<Named> trees() {
+std::uint32_t wide_fan_out(std::string_view volume, std::string_view kernel) {
+  for (const auto* entry : wide_entries())
+    if (entry->volume == volume) return entry->fan_out(kernel);
+  return 0;
+}
+
+std::vector<Named> frames() {
   return {
-      {"binary", "two children a node, which are posed into the world: any volume, any strategy"},
-      {"wide", "up to " + std::to_string(wide_entries()[0]->fan_out) +
-                   " children a node, tested at once in their mesh's own frame, the likeliest "
-                   "first: --volume " +
-                   text_of(wide_volumes()) + ", --strategy recursive or margins"}};
+      {std::string(name_of(Frame::world)),
+       "every body is posed into the world, each volume once whenever its body has moved"},
+      {std::string(name_of(Frame::body)),
+       "one volume of a pair is posed into the frame of the other body, whenever it is tested"}};
+}
+
+std::vector<Named> kernels() {
+  return {{"gathered",
+           "a register holds pairs of nodes from anywhere in both trees: every volume, strategy, "
+           "query, fan-out and frame"},
+          {"siblings",
+           "a register holds the children of one node, against one volume: --volume " +
+               text_of(wide_volumes("siblings")) + ", --strategy recursive or margins, --fan-out " +
+               std::to_string(wide_entries()[0]->fan_out("siblings")) +
+               " (the lanes of a register), --frame body; others are not compiled for it"},
+          {"mixed",
+           "four children against four where nodes are alike in size, else one against sixteen "
+           "grandchildren: --volume " +
+               text_of(wide_volumes("mixed")) +
+               ", --strategy recursive or margins, --fan-out 4, --frame body; others are not "
+               "compiled for it"}};
 }
 
 std::vector<Named> strategies() {
@@ -64,15 +87,7 @@ std::vector<Named> queries() {
 const VolumeEntry& volume_entry(std::string_view name) {
   for (const auto* entry : volume_entries())
     if (entry->name == name) return *entry;
-  std::string hint;
-  for (const auto& each : wide_volumes()) {
-    if (each.name == name)
-      throw Unusable("--volume " + each.name +
-                     ": in wide trees alone (--tree wide); in binary ones " + text_of(volumes()));
-    hint += ", and with --tree wide " + each.name;
-  }
-  throw Unusable("--volume " + std::string(name) + ": unknown; there are " + text_of(volumes()) +
-                 hint);
+  refuse("--volume", name, volumes());
 }
 
 const WideEntry& wide_entry(std::string_view volume, std::string_view query) {
@@ -83,8 +98,9 @@ const WideEntry& wide_entry(std::string_view volume, std::string_view query) {
     if (entry->query == query) return *entry;
   }
   if (!volume_exists)
-    throw Unusable("--volume " + std::string(volume) + ": not in wide trees; there is " +
-                   text_of(wide_volumes()));
+    throw Unusable("--volume " + std::string(volume) +
+                   ": the kernel siblings is not compiled for it; there is " +
+                   text_of(wide_volumes("siblings")));
   refuse("--query", query, queries());
 }
 

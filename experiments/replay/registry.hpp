@@ -35,9 +35,15 @@ std::span<const OwnLoopsEntry<Query>* const> own_loops_entries();
 struct Named {
   std::string name, description;
 };
-std::vector<Named> volumes();       ///< in binary trees
-std::vector<Named> wide_volumes();  ///< in wide ones
-std::vector<Named> trees();
+std::vector<Named> volumes();
+std::vector<Named> frames();
+/// How the lanes of a register are filled. What each is compiled for, and why not for the rest,
+/// stands in its description: `bvlab list kernels` is that table.
+std::vector<Named> kernels();
+/// Those that a kernel of sixteen lanes is compiled for.
+std::vector<Named> wide_volumes(std::string_view kernel);
+/// Children a node of such a kernel over a volume; 0 where it is not compiled for that.
+std::uint32_t wide_fan_out(std::string_view volume, std::string_view kernel);
 std::vector<Named> strategies();
 std::vector<Named> queries();
 

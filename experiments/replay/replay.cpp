@@ -13,6 +13,7 @@
 #include "hierarchies/builds.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/primitives/precisions.hpp"
+#include "traversal/wide/kernels.hpp"
 
 namespace bvlab {
 namespace {
@@ -24,30 +25,76 @@ void check_name(std::string_view option, std::string_view name) {
                    List::names());
 }
 
-/// Loops over binary trees know every strategy; those over wide ones two.
-void check_tree(const Variant& variant) {
-  if (variant.tree == "binary") {
-    volume_entry(variant.volume);
-    play_entry(name_of(variant.strategy), variant.query).check(variant.strategy);
-  } else if (variant.tree == "wide") {
-    wide_entry(variant.volume, variant.query);
-    if (variant.strategy != "recursive" && variant.strategy != "margins")
-      throw Unusable("--strategy " + variant.strategy +
-                     ": not in wide trees; there are recursive, margins");
-  } else {
-    throw Unusable("--tree " + variant.tree + ": unknown; there are binary, wide");
-  }
+/// The fan-outs that there are.
+constexpr std::uint32_t fan_outs[] = {2, 4, 8, 16};
+
+void check_gathered(const Variant& variant) {
+  const VolumeEntry& volume = volume_entry(variant.volume);
+  play_entry(name_of(variant.strategy), variant.query).check(variant.strategy);
+  if (frame_of(variant) == Frame::body && !volume.has_body_frame)
+    throw Unusable("--frame body: not with --volume " + variant.volume +
+                   ", whose placement takes no error bound of a relative pose; there is world");
 }
 
-void need_binary(const Variant& variant, const char* what) {
-  if (variant.tree != "binary")
-    throw Unusable("--tree " + variant.tree + ": not for " + what + "; there is binary");
+/// Kernels of sixteen lanes are each compiled for one fan-out, one frame and two strategies.
+void check_wide(const Variant& variant) {
+  std::string volumes;
+  for (const auto& each : wide_volumes(variant.kernel))
+    volumes += (volumes.empty() ? "" : ", ") + each.name;
+  const std::uint32_t fan_out = wide_fan_out(variant.volume, variant.kernel);
+  if (fan_out == 0)
+    throw Unusable("--volume " + variant.volume + ": the kernel " + variant.kernel +
+                   " is not compiled for it; there is " + volumes);
+  wide_entry(variant.volume, variant.query);
+  const std::string with = ": not with --kernel " + variant.kernel + "; there ";
+  if (variant.strategy != "recursive" && variant.strategy != "margins")
+    throw Unusable("--strategy " + variant.strategy + with + "are recursive, margins");
+  if (variant.fan_out != fan_out)
+    throw Unusable("--fan-out " + std::to_string(variant.fan_out) + with + "is " +
+                   std::to_string(fan_out));
+  if (frame_of(variant) != Frame::body)
+    throw Unusable("--frame " + variant.frame + with + "is body");
+}
+
+/// Names of a tree, a frame and a kernel, and what each kernel is compiled for.
+void check_engine(const Variant& variant) {
+  if (std::find(std::begin(fan_outs), std::end(fan_outs), variant.fan_out) == std::end(fan_outs))
+    throw Unusable("--fan-out " + std::to_string(variant.fan_out) +
+                   ": unknown; there are 2, 4, 8, 16");
+  if (variant.frame != name_of(Frame::world) && variant.frame != name_of(Frame::body))
+    throw Unusable("--frame " + variant.frame + ": unknown; there are world, body");
+  if (variant.kernel == "gathered")
+    check_gathered(variant);
+  else if (Kernels::with(variant.kernel, [](auto) {}))
+    check_wide(variant);
+  else
+    throw Unusable("--kernel " + variant.kernel + ": unknown; there are gathered, " +
+                   Kernels::names());
+}
+
+void need_gathered(const Variant& variant, const char* what) {
+  if (variant.kernel != "gathered")
+    throw Unusable("--kernel " + variant.kernel + ": not for " + what + "; there is gathered");
 }
 
 }  // namespace
 
+void set_kernel(Variant& variant, std::string_view kernel) {
+  variant.kernel = kernel;
+  const Variant gathered;
+  variant.frame = gathered.frame, variant.fan_out = gathered.fan_out;
+  for (const auto* entry : wide_entries())
+    if (const std::uint32_t fan_out = entry->fan_out(kernel))
+      variant.frame = name_of(Frame::body), variant.fan_out = fan_out;
+}
+
+bool set_tree(Variant& variant, std::string_view tree) {
+  set_kernel(variant, tree == "wide" ? "siblings" : "gathered");
+  return tree == "wide" || tree == "binary";
+}
+
 void check(const Variant& variant) {
-  check_tree(variant);
+  check_engine(variant);
   check_name<Precisions>("--precision", variant.precision);
   check_name<Builds>("--build", variant.build);
   if (variant.fit != "published" && variant.fit != "tight")
@@ -65,7 +112,7 @@ ReplayResult replay(std::span<const TriangleMesh> meshes, const Trace& trace,
   // Nothing happens without frames, so bodies are not made, however many there would be.
   if (trace.frames == 0 && trace.objects > 0) return replay(meshes, Trace{}, variant, options);
   ReplayResult result;
-  if (variant.tree == "wide") {
+  if (variant.kernel != "gathered") {
     wide_entry(variant.volume, variant.query).play(meshes, trace, variant, options, result);
     return result;
   }
@@ -81,7 +128,7 @@ ReplayResult replay(std::span<const TriangleMesh> meshes, const Trace& trace,
 BudgetedResult replay_budgeted(std::span<const TriangleMesh> meshes, const Trace& trace,
                                const Variant& variant, std::uint64_t budget, Count count) {
   check(variant);
-  need_binary(variant, "answers within a budget");
+  need_gathered(variant, "answers within a budget");
   return volume_entry(variant.volume).budgeted(meshes, trace, variant, budget, count);
 }
 
@@ -89,7 +136,7 @@ std::unique_ptr<WorldEngine> make_world(std::span<const TriangleMesh> meshes, st
                                         const Variant& variant, int threads) {
   check(variant);
   std::unique_ptr<WorldEngine> world;
-  if (variant.tree == "wide") {
+  if (variant.kernel != "gathered") {
     world = wide_entry(variant.volume, variant.query).world(meshes, objects, variant, threads);
   } else {
     const VolumeEntry& volume = volume_entry(variant.volume);
@@ -114,6 +161,7 @@ void detail::play_frames(Player& player, const Trace& trace, const ReplayOptions
       result.frame_seconds.push_back(std::chrono::duration<double>(now - last).count());
       last = now;
     }
+    if (options.after_frame) options.after_frame(frame);
   }
   result.seconds = seconds_since(start);
   player.finish();

@@ -12,6 +12,7 @@
 
 #include "experiments/scenes/trace.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
+#include "traversal/frame.hpp"
 #include "traversal/front.hpp"
 
 namespace bvlab {
@@ -26,9 +27,23 @@ struct Variant {
   std::uint32_t leaf_size = 1;
   std::string fit = "published";  ///< or "tight", see bounding_volume.hpp
   std::string precision = "exact";
-  double relative_error = 0;    ///< of distances
-  std::string tree = "binary";  ///< or "wide", see wide_entry.hpp
+  double relative_error = 0;        ///< of distances
+  std::uint32_t fan_out = 2;        ///< children a node, at most: 2, 4, 8 or 16
+  std::string frame = "world";      ///< or "body", see traversal/frame.hpp
+  std::string kernel = "gathered";  ///< or "siblings", "mixed": see kernels() in registry.hpp
 };
+
+/// The frame of a variant whose names have been checked.
+inline Frame frame_of(const Variant& variant) {
+  return variant.frame == name_of(Frame::body) ? Frame::body : Frame::world;
+}
+
+/// Sets a kernel, and the fan-out and frame that it is compiled for.
+void set_kernel(Variant& variant, std::string_view kernel);
+
+/// Sets what an older definition says by `tree`: "binary" or "wide". Says whether it is one of
+/// them.
+bool set_tree(Variant& variant, std::string_view tree);
 
 struct ReplayOptions {
   Count count = Count::off;
@@ -38,6 +53,8 @@ struct ReplayOptions {
   bool keep_frame_seconds = false;  ///< fill `frame_seconds`: a reading of the clock in each frame
   /// Called after every frame, for every pair, with what the strategy keeps of it, if it does.
   std::function<void(std::size_t frame, std::size_t pair, std::span<const NodePair>)> see_front;
+  /// Called after every frame; what it throws ends the replay.
+  std::function<void(std::size_t frame)> after_frame;
 };
 
 /// Counts of one frame, all pairs together.

@@ -126,7 +126,7 @@ class Page {
     if (trace_.frames == 0) return values;
     std::vector<Pose> first(trace_.objects);
     trace_.poses(0, first);
-    const Vec3<double> middle = middle_of(first);
+    const Vec3<double> middle = centre_of(first);
     for (std::size_t frame = 0; frame < trace_.frames; frame += stride_) {
       const double* v = trace_.values.data() + frame * trace_.objects * 7;
       for (std::size_t i = 0; i < trace_.objects * 7; ++i)

@@ -13,4 +13,13 @@ Topology topology_of(const TriangleMesh& mesh, const Variant& variant) {
   return topology;
 }
 
+WideTopology wide_topology_of(const TriangleMesh& mesh, const Variant& variant) {
+  return collapsed(mesh, topology_of(mesh, variant), variant.fan_out, 1);
+}
+
+std::size_t nodes_of(const TriangleMesh& mesh, const Variant& variant) {
+  return variant.fan_out == 2 ? topology_of(mesh, variant).nodes.size()
+                              : wide_topology_of(mesh, variant).nodes.size();
+}
+
 }  // namespace bvlab

@@ -48,7 +48,7 @@ class TouchingWorld final : public WorldEngine {
   void update() override {
     NotCounting counter;
     world_.update(
-        counter, [&](const ObjectPair&) { return Query::asked(how_); },
+        counter, [&](const ObjectPair&) { return Query::from_options(how_); },
         [&](std::uint32_t slot, const ObjectPair& pair, const Query& query) {
           touching_.put(slot, pair, query.answer());
         },

@@ -31,7 +31,7 @@ struct GapQuestion {
 
 struct VolumeEntry {
   std::string_view name, description;
-  bool has_tight_fit;
+  bool has_tight_fit, has_body_frame;
   std::unique_ptr<AnyHierarchies> (*hierarchies)(std::span<const TriangleMesh>, const Variant&);
   /// The gap between each node's volume and the volume around each point, both at rest.
   std::vector<double> (*gaps)(const TriangleMesh&, const Topology&, Fit,

@@ -49,7 +49,7 @@ BudgetedResult play_budgeted(std::span<const TriangleMesh> meshes, const Trace& 
     start = Clock::now();
     for (std::size_t frame = 0; frame < trace.frames; ++frame) {
       const auto poses = poses_in_turn.at(frame);
-      if (frame == 0) origin = middle_of(poses);
+      if (frame == 0) origin = centre_of(poses);
       bodies.move(poses, origin);
       for (const auto& [i, j] : pairs)
         note(result, ask(bodies[i], sizes[i % meshes.size()], bodies[j], sizes[j % meshes.size()],
@@ -106,6 +106,7 @@ constexpr VolumeEntry volume_of() {
       V::name,
       V::description,
       FittedTightly<V>,
+      PlacedRelatively<V>,
       [](std::span<const TriangleMesh> meshes, const Variant& variant) {
         return std::unique_ptr<AnyHierarchies>(std::make_unique<HierarchiesOf<V>>(meshes, variant));
       },

@@ -4,6 +4,7 @@
 /// lanes, every pair from the roots in every frame.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -15,7 +16,8 @@ namespace bvlab {
 
 struct WideEntry {
   std::string_view volume, volume_description, query;
-  int fan_out;
+  /// Of a kernel; 0 where it is not compiled for the volume.
+  std::uint32_t (*fan_out)(std::string_view kernel);
   /// Adds to the result, the time to build included.
   void (*play)(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
                const ReplayOptions& options, ReplayResult& result);

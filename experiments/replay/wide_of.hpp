@@ -11,6 +11,7 @@
 #include "experiments/replay/play.hpp"
 #include "experiments/replay/touching_world.hpp"
 #include "experiments/replay/wide_entry.hpp"
+#include "traversal/wide/mixed_kernel.hpp"
 #include "traversal/wide/wide_pairs.hpp"
 
 namespace bvlab {
@@ -21,14 +22,20 @@ namespace detail {
 template <class T>
 inline constexpr int native_fan_out = std::clamp(native_width<T>, 2, 16);
 
-template <BoundingVolume V>
-std::vector<WideHierarchy<V, native_fan_out<typename V::scalar>>> wide_hierarchies(
-    std::span<const TriangleMesh> meshes, const Variant& variant, int threads) {
+/// How many children a node has.
+template <class Kernel, class T>
+inline constexpr int fan_out_of = native_fan_out<T>;
+template <class T>
+inline constexpr int fan_out_of<MixedKernel, T> = 4;
+
+template <class Hierarchy>
+std::vector<Hierarchy> wide_hierarchies(std::span<const TriangleMesh> meshes,
+                                        const Variant& variant, int threads) {
   Threads several(threads);
   // Leaves are made while the tree is collapsed.
   Variant down_to_triangles = variant;
   down_to_triangles.leaf_size = 1;
-  std::vector<WideHierarchy<V, native_fan_out<typename V::scalar>>> hierarchies;
+  std::vector<Hierarchy> hierarchies;
   hierarchies.reserve(meshes.size());
   for (const auto& mesh : meshes)
     hierarchies.emplace_back(mesh, topology_of(mesh, down_to_triangles), fit_of(variant),
@@ -37,38 +44,52 @@ std::vector<WideHierarchy<V, native_fan_out<typename V::scalar>>> wide_hierarchi
 }
 
 /// Object i uses mesh i mod the number of meshes.
-template <BoundingVolume V, int F>
-std::vector<WideShape<V, F>> wide_shapes(std::span<const TriangleMesh> meshes,
-                                         const std::vector<WideHierarchy<V, F>>& hierarchies,
-                                         std::size_t objects) {
-  std::vector<WideShape<V, F>> shapes;
+template <class Hierarchy>
+std::vector<ShapeOver<Hierarchy>> wide_shapes(std::span<const TriangleMesh> meshes,
+                                              const std::vector<Hierarchy>& hierarchies,
+                                              std::size_t objects) {
+  std::vector<ShapeOver<Hierarchy>> shapes;
   for (std::size_t i = 0; i < objects; ++i)
     shapes.push_back({&meshes[i % meshes.size()], &hierarchies[i % meshes.size()]});
   return shapes;
+}
+
+template <class V>
+using KernelsOf = std::conditional_t<MixedKernel::takes<V>, TypeList<SiblingsKernel, MixedKernel>,
+                                     TypeList<SiblingsKernel>>;
+
+/// Calls `with` with the variant's kernel and its hierarchies.
+template <BoundingVolume V, class With>
+void with_kernel(const Variant& variant, const With& with) {
+  KernelsOf<V>::with(variant.kernel,
+                     [&]<class Kernel>(std::type_identity<Kernel> kernel) { with(kernel); });
 }
 
 /// Calls `with` with the type that is what the variant's strategy remembers.
 template <class With>
 auto with_memory(const Variant& variant, const With& with) {
   if (variant.strategy == WideMargins::name) return with(std::type_identity<WideMargins>());
-  return with(std::type_identity<Forgetful>());
+  return with(std::type_identity<NoMemory>());
 }
 
 template <BoundingVolume V, class Query>
 void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
                const ReplayOptions& options, ReplayResult& result) {
-  constexpr int fan_out = native_fan_out<typename V::scalar>;
-  const auto start = Clock::now();
-  const auto hierarchies = wide_hierarchies<V>(meshes, variant, static_cast<int>(options.threads));
-  result.build_seconds = seconds_since(start);
-  const auto shapes = wide_shapes(meshes, hierarchies, trace.objects);
-  with_memory(variant, [&]<class Memory>(std::type_identity<Memory>) {
-    const auto engine = [&](auto) {
-      return WidePairs<V, fan_out, RelativeFrame, Memory>(
-          shapes, all_object_pairs(static_cast<std::uint32_t>(trace.objects)),
-          static_cast<int>(options.threads));
-    };
-    play_over<Query>(engine, trace, variant, options, result);
+  with_kernel<V>(variant, [&]<class Kernel>(std::type_identity<Kernel>) {
+    constexpr int fan_out = fan_out_of<Kernel, typename V::scalar>;
+    const auto start = Clock::now();
+    const auto hierarchies = wide_hierarchies<typename Kernel::template Hierarchy<V, fan_out>>(
+        meshes, variant, static_cast<int>(options.threads));
+    result.build_seconds = seconds_since(start);
+    const auto shapes = wide_shapes(meshes, hierarchies, trace.objects);
+    with_memory(variant, [&]<class Memory>(std::type_identity<Memory>) {
+      const auto engine = [&](auto) {
+        return WidePairs<V, fan_out, Memory, Kernel>(
+            shapes, all_object_pairs(static_cast<std::uint32_t>(trace.objects)),
+            static_cast<int>(options.threads));
+      };
+      play_over<Query>(engine, trace, variant, options, result);
+    });
   });
 }
 
@@ -76,19 +97,30 @@ void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const V
 template <BoundingVolume V, class Query>
 std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, std::size_t objects,
                                         const Variant& variant, int threads) {
-  if constexpr (SaysYesOrNo<Query>) {
-    auto hierarchies = wide_hierarchies<V>(meshes, variant, threads);
-    // Shapes point to what the vector holds, wherever that is moved.
-    const auto shapes = wide_shapes(meshes, hierarchies, objects);
-    return with_memory(
-        variant, [&]<class Memory>(std::type_identity<Memory>) -> std::unique_ptr<WorldEngine> {
-          using Pairs = WidePairs<V, native_fan_out<typename V::scalar>, RelativeFrame, Memory>;
-          return std::make_unique<TouchingWorld<Pairs, Query, decltype(hierarchies)>>(
-              std::move(hierarchies), Pairs(shapes), variant, threads);
-        });
-  } else {
-    return nullptr;
-  }
+  std::unique_ptr<WorldEngine> world;
+  if constexpr (SaysYesOrNo<Query>)
+    with_kernel<V>(variant, [&]<class Kernel>(std::type_identity<Kernel>) {
+      constexpr int fan_out = fan_out_of<Kernel, typename V::scalar>;
+      auto hierarchies = wide_hierarchies<typename Kernel::template Hierarchy<V, fan_out>>(
+          meshes, variant, threads);
+      // Shapes point to what the vector holds, wherever that is moved.
+      const auto shapes = wide_shapes(meshes, hierarchies, objects);
+      with_memory(variant, [&]<class Memory>(std::type_identity<Memory>) {
+        using Pairs = WidePairs<V, fan_out, Memory, Kernel>;
+        world = std::make_unique<TouchingWorld<Pairs, Query, decltype(hierarchies)>>(
+            std::move(hierarchies), Pairs(shapes), variant, threads);
+      });
+    });
+  return world;
+}
+
+template <BoundingVolume V>
+constexpr std::uint32_t fan_out_with(std::string_view kernel) {
+  std::uint32_t fan_out = 0;
+  KernelsOf<V>::with(kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+    fan_out = fan_out_of<Kernel, typename V::scalar>;
+  });
+  return fan_out;
 }
 
 }  // namespace detail
@@ -98,7 +130,7 @@ constexpr WideEntry wide_of() {
   return {V::name,
           V::description,
           Query::name,
-          detail::native_fan_out<typename V::scalar>,
+          detail::fan_out_with<V>,
           detail::play_wide<V, Query>,
           detail::wide_world<V, Query>};
 }

@@ -198,8 +198,8 @@ std::vector<std::string> box_set_names() {
           "elongated", "flock",         "pile",     "triangles",     "swept-edges", "cloth"};
 }
 std::vector<std::string> box_motion_names() {
-  return {"still",      "drift",   "rigid",  "breathe", "part",
-          "accelerate", "reverse", "jitter", "teleport"};
+  return {"still", "drift", "rigid",      "breathe", "part",   "same",    "few",
+          "rare",  "jump",  "accelerate", "reverse", "jitter", "teleport"};
 }
 
 std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count, unsigned seed) {
@@ -258,7 +258,10 @@ BoxMotion::BoxMotion(std::string motion, double displacement, const std::string&
       std::find(known.begin(), known.end(), motion_) == known.end())
     throw Unusable("motion " + motion_ + ": unknown");
   Maker make(seed + 2);
-  const std::size_t every = motion_ == "part" ? 100 : set == "pile" && motion_ == "drift" ? 50 : 1;
+  const std::size_t every = motion_ == "part"                     ? 100
+                            : motion_ == "same"                   ? 50
+                            : set == "pile" && motion_ == "drift" ? 50
+                                                                  : 1;
   for (std::size_t k = 0; k < boxes_.size(); ++k) {
     Centre v{make.uniform(-1, 1), make.uniform(-1, 1), make.uniform(-1, 1)};
     if (set == "flock") v = {1 + 0.1f * v[0], 0.5f + 0.1f * v[1], 0.1f * v[2]};
@@ -266,6 +269,14 @@ BoxMotion::BoxMotion(std::string motion, double displacement, const std::string&
     velocity_.push_back(v);
     if (make.random()() % every == 0) movers_.push_back(k);
   }
+  const std::size_t divisor = motion_ == "few"    ? 50
+                              : motion_ == "rare" ? 1000
+                              : motion_ == "jump" ? 10
+                                                  : 0;
+  if (divisor == 0) return;
+  // In turn, in an order that is as good as any.
+  std::shuffle(movers_.begin(), movers_.end(), make.random());
+  in_turn_ = std::min(boxes_.size(), boxes_.size() / divisor + 1);
 }
 
 void BoxMotion::step() {
@@ -277,6 +288,7 @@ void BoxMotion::step() {
   const float speed = motion_ == "accelerate" ? static_cast<float>(frame_) / frames_to_speed
                       : motion_ == "reverse" && (frame_ - 1) / frames_to_reversal % 2 == 1 ? -1.0f
                                                                                            : 1.0f;
+  if (in_turn_ > 0) return step_in_turn();
   for (const std::size_t k : movers_)
     if (motion_ == "jitter") {
       for (int axis = 0; axis < 3; ++axis) {
@@ -295,6 +307,19 @@ void BoxMotion::step() {
     } else {
       drift(k, speed);
     }
+}
+
+void BoxMotion::step_in_turn() {
+  const auto mover = [&](std::size_t turn) { return movers_[(next_ + turn) % movers_.size()]; };
+  if (motion_ == "jump") {
+    const Box<float> first = boxes_[mover(0)];
+    for (std::size_t turn = 0; turn + 1 < in_turn_; ++turn)
+      boxes_[mover(turn)] = boxes_[mover(turn + 1)];
+    boxes_[mover(in_turn_ - 1)] = first;
+  } else {
+    for (std::size_t turn = 0; turn < in_turn_; ++turn) drift(mover(turn), 1);
+  }
+  next_ += in_turn_;
 }
 
 void BoxMotion::drift(std::size_t k, float speed) {

@@ -32,6 +32,10 @@ std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count,
 ///   rigid     all by the same translation;
 ///   breathe   boxes grow and shrink along one axis each;
 ///   part      one box in a hundred drifts;
+///   same      two boxes in a hundred drift, always the same;
+///   few       two boxes in a hundred drift by a step, in every frame others;
+///   rare      as few, one box in a thousand;
+///   jump      as few, one box in ten: they take each other's places;
 ///   accelerate  as drift, from rest, faster by an eighth of that in every frame;
 ///   reverse   as drift, but all turn round after every fourth frame;
 ///   jitter    every box stands somewhere within `displacement` of its size from its start, anew in
@@ -47,12 +51,14 @@ class BoxMotion {
  private:
   /// With `speed` times the velocity it has.
   void drift(std::size_t k, float speed);
+  void step_in_turn();
 
   std::string motion_;
   float displacement_;
   std::vector<Box<float>> start_, boxes_;
   std::vector<std::array<float, 3>> velocity_;
   std::vector<std::size_t> movers_;
+  std::size_t in_turn_ = 0, next_ = 0;  ///< movers of a frame, where not all are; the first of them
   std::mt19937 random_, jitter_;
   int frame_ = 0;
 };

@@ -49,7 +49,11 @@ bool is_file(const std::string& text) {
 NamedMesh from_text(const std::string& text, std::size_t polygons) {
   const auto parts = parts_of(text, ':');
   if (parts.empty()) throw Unusable("mesh: a name is needed");
-  if (is_file(text)) return {std::filesystem::path(text).stem().string(), read_mesh(text)};
+  if (is_file(text)) {
+    NamedMesh result{std::filesystem::path(text).stem().string(), read_mesh(text)};
+    say_if_nothing_is_culled(result.mesh, text);
+    return result;
+  }
   if (parts.size() > 3) throw Unusable("mesh '" + text + "': must be NAME[:POLYGONS[:SCALE]]");
   if (parts.size() > 1) polygons = number<std::size_t>(parts[1], text);
   NamedMesh result = named_mesh(parts[0], polygons);
@@ -58,8 +62,16 @@ NamedMesh from_text(const std::string& text, std::size_t polygons) {
     if (!(scale > 0) || !std::isfinite(scale))
       throw Unusable("mesh '" + text + "': the scale must be above 0");
     for (auto& vertex : result.mesh.vertices) vertex *= scale;
+    say_if_nothing_is_culled(result.mesh, text);
   }
   return result;
+}
+
+/// A file's name may have commas in it.
+std::vector<std::string> entries_of(const std::string& list) {
+  std::error_code none;
+  if (is_file(list) && std::filesystem::is_regular_file(list, none)) return {list};
+  return parts_of(list, ',');
 }
 
 std::string source_of(const std::string& name) { return name == "bunny" ? "bunny00" : name; }
@@ -96,13 +108,13 @@ NamedMesh named_mesh(const std::string& name, std::size_t polygons,
 }
 
 bool names_files(const std::string& list) {
-  const auto parts = parts_of(list, ',');
+  const auto parts = entries_of(list);
   return std::any_of(parts.begin(), parts.end(), is_file);
 }
 
 std::vector<NamedMesh> named_meshes(const std::string& list, std::size_t polygons) {
   std::vector<NamedMesh> meshes;
-  for (const auto& text : parts_of(list, ',')) meshes.push_back(from_text(text, polygons));
+  for (const auto& text : entries_of(list)) meshes.push_back(from_text(text, polygons));
   if (meshes.empty()) throw Unusable("mesh: a name is needed");
   return meshes;
 }

@@ -12,10 +12,8 @@ namespace bvlab {
 /// The triangles of a mesh with corners R v + t, in its order.
 inline std::vector<Triangle> posed_triangles(const TriangleMesh& mesh, const Pose& pose) {
   std::vector<Triangle> triangles;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    triangles.push_back(mesh.corners(t));
-    for (auto& corner : triangles.back()) corner = pose(corner);
-  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    triangles.push_back(pose(mesh.corners(t)));
   return triangles;
 }
 

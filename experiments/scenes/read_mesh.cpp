@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
@@ -41,6 +42,16 @@ TriangleMesh read_mesh(const std::filesystem::path& path) {
     if (extension == format.extension)
       return checked(format.parse(bytes, path.string()), path.string());
   return checked(read_with_assimp(path), path.string());
+}
+
+void say_if_nothing_is_culled(const TriangleMesh& mesh, const std::string& name) {
+  double size = 0;
+  for (const auto& vertex : mesh.vertices) size = std::max(size, vertex.cwiseAbs().maxCoeff());
+  if (mesh.triangles.size() < 2 || size == 0 || (0x1p-50 <= size && size <= 0x1p58)) return;
+  std::fprintf(stderr,
+               "bvlab: %s: coordinates up to %.3g, outside of 1e-15 to 2e17: volumes tell nothing "
+               "apart, so every pair of triangles may be tested; answers are right\n",
+               one_line(name).c_str(), size);
 }
 
 void write_off(const std::filesystem::path& path, const TriangleMesh& mesh) {

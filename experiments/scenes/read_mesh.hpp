@@ -29,6 +29,12 @@ TriangleMesh read_mesh(const std::filesystem::path& path);
 /// The same from bytes in memory; `name` stands in for the file, in messages and for its extension.
 TriangleMesh parse_mesh(std::string_view bytes, const std::string& name);
 
+/// Says on standard error, in one line that names the mesh, that volumes will not tell its
+/// triangles apart, for its largest coordinate is below 2^-50 or above 2^58
+/// (hierarchies/exactness.md). Says nothing of other meshes, nor where there is nothing to tell
+/// apart.
+void say_if_nothing_is_culled(const TriangleMesh& mesh, const std::string& name);
+
 /// Writes the mesh in OFF, whole or not at all, with as many digits as give the same float64 back.
 void write_off(const std::filesystem::path& path, const TriangleMesh& mesh);
 

@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "experiments/files/utf8.hpp"
+
 namespace bvlab {
 namespace {
 
@@ -32,7 +34,7 @@ std::string numbers(const Numbers& values) {
 /// What an XML attribute in double quotes may hold.
 std::string escaped(const std::string& text) {
   std::string result;
-  for (const char c : text) {
+  for (const char c : as_utf8(text)) {
     if (c == '&')
       result += "&amp;";
     else if (c == '<')

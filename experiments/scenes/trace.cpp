@@ -9,6 +9,7 @@
 
 #include "experiments/files/npy.hpp"
 #include "experiments/files/unusable.hpp"
+#include "experiments/scenes/checked_trace.hpp"
 
 namespace bvlab {
 
@@ -33,7 +34,12 @@ std::span<const Pose> PosesInTurn::at(std::size_t frame) {
 Trace parse_trace(std::string_view bytes, const std::string& name) {
   constexpr std::size_t shape[] = {any_length, any_length, 7};
   auto array = parse_npy<double>(bytes, name, shape);
-  Trace trace{array.shape[0], array.shape[1], std::move(array.data)};
+  return checked_trace(array.shape[0], array.shape[1], std::move(array.data), name);
+}
+
+Trace checked_trace(std::size_t frames, std::size_t objects, std::vector<double> values,
+                    const std::string& name) {
+  Trace trace{frames, objects, std::move(values)};
   // An array without entries can promise any lengths.
   if (std::max(trace.frames, trace.objects) > std::numeric_limits<std::uint32_t>::max())
     throw Unusable(name, "more frames or objects than 32 bits number");

@@ -11,6 +11,7 @@
 #include "experiments/replay/configurations.hpp"
 #include "experiments/replay/touches_any.hpp"
 #include "experiments/scenes/named_mesh.hpp"
+#include "experiments/scenes/public/public_scenes.hpp"
 #include "experiments/scenes/scenes.hpp"
 
 namespace bvlab {
@@ -50,15 +51,24 @@ std::string trace_key(const Cell& cell) {
   return key;
 }
 
+/// A number, or as many as the kernel over siblings has lanes.
+std::uint32_t fan_out_of(const Cell& cell) {
+  if (cell["fan_out"] != "native") return number<std::uint32_t>("fan_out", cell["fan_out"]);
+  Variant native;
+  set_kernel(native, cell["kernel"] == "gathered" ? "siblings" : cell["kernel"]);
+  return native.fan_out;
+}
+
 /// What a configuration says stands in the cell's row.
-void spell_out(Cell& cell) {
-  const Variant variant = variant_of(cell);
+void spell_out(Cell& cell, const Variant& variant) {
   for (const auto& [key, said] : Settings{{"volume", variant.volume},
                                           {"strategy", variant.strategy},
                                           {"build", variant.build},
                                           {"leaf_size", std::to_string(variant.leaf_size)},
                                           {"fit", variant.fit},
-                                          {"tree", variant.tree}})
+                                          {"fan_out", std::to_string(variant.fan_out)},
+                                          {"frame", variant.frame},
+                                          {"kernel", variant.kernel}})
     for (auto& [name, value] : cell.parameters)
       if (name == key) value = said;
 }
@@ -79,7 +89,57 @@ void with_scene(const Cell& cell, Use&& use) {
     scene.visit_options(SettingOption{cell});
     use(scene);
   });
+  if (is_public_scene(cell["scene"])) return require_public_scene(cell["scene"]);
   if (!known) throw Unusable("no scene '" + cell["scene"] + "'; there are " + Scenes::names());
+}
+
+/// A public scene's meshes and motion, by name.
+PublicMotion public_motion_of(const Cell& cell) {
+  const auto touches = [](std::span<const TriangleMesh> meshes) {
+    return touches_any(meshes, meshes.size());
+  };
+  return public_motion(cell["scene"], "", {number<std::size_t>("frames", cell["frames"]), touches});
+}
+
+/// A public scene brings its meshes: a record says how many, and the most triangles of one.
+void set_meshes_of_public_scenes(std::vector<Cell>& cells) {
+  std::map<std::string, Settings> known;
+  for (auto& cell : cells) {
+    if (!is_public_scene(cell["scene"])) continue;
+    auto& said = known[cell["scene"] + "/" + cell["frames"]];
+    if (said.empty()) {
+      const auto motion = public_motion_of(cell);
+      std::size_t most = 0;
+      for (const auto& each : motion.meshes) most = std::max(most, each.mesh.triangles.size());
+      said = {{"mesh", cell["scene"]},
+              {"objects", std::to_string(motion.meshes.size())},
+              {"polygons", std::to_string(most)}};
+    }
+    for (auto& [name, value] : cell.parameters)
+      for (const auto& [key, text] : said)
+        if (name == key) value = text;
+  }
+}
+
+/// As the cell's parameters say before they are spelled out: a configuration's replace them.
+Variant configured_variant_of(const Cell& cell) {
+  const Variant variant = variant_of(cell);
+  return cell["configuration"].empty() ? variant : configured(variant, cell["configuration"]);
+}
+
+/// What is recommended depends on the meshes.
+void set_recommended_of_meshes(std::vector<Cell>& cells) {
+  std::map<std::string, Variant> known;
+  for (auto& cell : cells) {
+    if (cell["configuration"] != "recommended") continue;
+    const std::string key = cell["mesh"] + "/" + cell["polygons"] + "/" + cell["query"];
+    auto found = known.find(key);
+    if (found == known.end()) {
+      const auto meshes = is_public_scene(cell["scene"]) ? prepared(cell).meshes : meshes_of(cell);
+      found = known.emplace(key, configured(variant_of(cell), "recommended", meshes).variant).first;
+    }
+    spell_out(cell, found->second);
+  }
 }
 
 /// Of a mesh from a file a record says what it has, and not what a mesh by name would have had: the
@@ -88,7 +148,7 @@ void set_polygons_of_files(std::vector<Cell>& cells) {
   std::map<std::string, std::string> known;
   for (auto& cell : cells) {
     const std::string& mesh = cell["mesh"];
-    if (!names_files(mesh)) continue;
+    if (!names_files(mesh) || is_public_scene(cell["scene"])) continue;
     auto& polygons = known[mesh];
     if (polygons.empty()) {
       std::size_t most = 0;
@@ -103,27 +163,35 @@ void set_polygons_of_files(std::vector<Cell>& cells) {
 }  // namespace
 
 bool is_of_variant(const std::string& name) {
-  static const std::set<std::string> names{"volume", "strategy",  "query",        "build",
-                                           "fit",    "leaf_size", "precision",    "relative_error",
-                                           "tree",   "peer",      "configuration"};
+  static const std::set<std::string> names{
+      "volume",         "strategy", "query", "build",  "fit",  "leaf_size",    "precision",
+      "relative_error", "fan_out",  "frame", "kernel", "peer", "configuration"};
   return names.contains(name);
 }
 
 Variant variant_of(const Cell& cell) {
-  const Variant variant{cell["volume"],
-                        cell["strategy"],
-                        cell["query"],
-                        cell["build"],
-                        number<std::uint32_t>("leaf_size", cell["leaf_size"]),
-                        cell["fit"],
-                        cell["precision"],
-                        number<double>("relative_error", cell["relative_error"]),
-                        cell["tree"]};
-  return cell["configuration"].empty() ? variant : configured(variant, cell["configuration"]);
+  return {cell["volume"],
+          cell["strategy"],
+          cell["query"],
+          cell["build"],
+          number<std::uint32_t>("leaf_size", cell["leaf_size"]),
+          cell["fit"],
+          cell["precision"],
+          number<double>("relative_error", cell["relative_error"]),
+          fan_out_of(cell),
+          cell["frame"],
+          cell["kernel"]};
 }
 
 Prepared prepared(const Cell& cell) {
   Prepared ready;
+  if (is_public_scene(cell["scene"])) {
+    auto motion = public_motion_of(cell);
+    for (auto& each : motion.meshes) ready.meshes.push_back(std::move(each.mesh));
+    const auto& shape = motion.trace.shape;
+    ready.trace = {shape[0], shape[1], std::move(motion.trace.data)};
+    return ready;
+  }
   ready.meshes = meshes_of(cell);
   std::vector<Extent> extents;
   for (const auto& mesh : ready.meshes) extents.push_back(extent_of(mesh));
@@ -135,7 +203,7 @@ Prepared prepared(const Cell& cell) {
 }
 
 void check(const Cell& cell) {
-  check(variant_of(cell));
+  check(configured_variant_of(cell));
   number<std::size_t>("polygons", cell["polygons"]);
   with_scene(cell, [](const auto& scene) {
     if constexpr (requires { scene.check(); }) scene.check();
@@ -161,8 +229,8 @@ std::vector<Cell> cells_with_answers(const Definition& definition) {
     if (of_peer) {
       for (auto& [name, value] : cell.parameters)
         if (is_of_variant(name) && name != "peer" && name != "query") value.clear();
-    } else if (!cell["configuration"].empty()) {
-      spell_out(cell);
+    } else if (!cell["configuration"].empty() || cell["fan_out"] == "native") {
+      spell_out(cell, configured_variant_of(cell));
     }
     if (of_peer || !cell["configuration"].empty()) {
       Settings all = cell.labels;
@@ -171,7 +239,9 @@ std::vector<Cell> cells_with_answers(const Definition& definition) {
     }
     cells.push_back(std::move(cell));
   }
+  set_meshes_of_public_scenes(cells);
   set_polygons_of_files(cells);
+  set_recommended_of_meshes(cells);
   return cells;
 }
 

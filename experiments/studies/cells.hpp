@@ -24,6 +24,7 @@ Prepared prepared(const Cell& cell);
 /// Parameters that say how a trace is answered; all the others say which trace it is.
 bool is_of_variant(const std::string& name);
 
+/// Of a cell of `cells_with_answers`, in which a configuration is spelled out.
 Variant variant_of(const Cell& cell);
 
 /// By the cell's peer, or by us.

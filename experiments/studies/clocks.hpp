@@ -3,7 +3,9 @@
 /// the time takes as long by the wall clock as by its processor's.
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <ctime>
 #include <utility>
 
@@ -17,6 +19,12 @@ inline double processor_seconds() {
 }
 inline double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// How many runs of this process were made again: said where a run says how far it is.
+inline std::atomic<std::size_t>& repeated_runs() {
+  static std::atomic<std::size_t> count = 0;
+  return count;
 }
 
 /// What came of it, and how many seconds went by for each that the process worked.
@@ -39,9 +47,11 @@ auto undisturbed(Run&& run) {
     return Undisturbed<decltype(run())>{std::move(result), worked > 0 ? passed / worked : 1};
   };
   auto best = once();
-  for (int again = 1; again < at_most && best.wall_per_processor > tolerated; ++again)
+  for (int again = 1; again < at_most && best.wall_per_processor > tolerated; ++again) {
+    ++repeated_runs();
     if (auto next = once(); next.wall_per_processor < best.wall_per_processor)
       best = std::move(next);
+  }
   return best;
 }
 

@@ -289,18 +289,30 @@ std::vector<std::uint8_t> truth_of(const StressCase& stress) {
 
 std::vector<Variant> stressed_variants() {
   std::vector<Variant> variants;
-  const auto add = [&](const char* tree, const std::string& volume, const std::string& strategy) {
+  const auto add = [&](const Variant& engine, const std::string& volume,
+                       const std::string& strategy) {
     Precisions::for_each([&]<class P>(std::type_identity<P>) {
-      Variant variant;
-      variant.tree = tree, variant.volume = volume, variant.strategy = strategy;
+      Variant variant = engine;
+      variant.volume = volume, variant.strategy = strategy;
       variant.precision = P::name;
       variants.push_back(std::move(variant));
     });
   };
   for (const auto& volume : volumes())
-    for (const auto& strategy : strategies()) add("binary", volume.name, strategy.name);
-  for (const auto& volume : wide_volumes())
-    for (const char* strategy : {"recursive", "margins"}) add("wide", volume.name, strategy);
+    for (const auto& strategy : strategies()) {
+      add({}, volume.name, strategy.name);
+      // Every fan-out and both frames, but each by some of the volumes and strategies alone.
+      Variant wide;
+      wide.fan_out = 4u << variants.size() % 3;
+      wide.frame = name_of(variants.size() % 2 ? Frame::world : Frame::body);
+      add(wide, volume.name, strategy.name);
+    }
+  for (const char* kernel : {"siblings", "mixed"}) {
+    Variant wide;
+    set_kernel(wide, kernel);
+    for (const auto& volume : wide_volumes(kernel))
+      for (const char* strategy : {"recursive", "margins"}) add(wide, volume.name, strategy);
+  }
   return variants;
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 /// THE list of kinds.
 const StudyKind* const kinds[] = {&studies::boxes,     &studies::box_precision, &studies::budget,
-                                  &studies::distance,  &studies::frames,        &studies::memory,
+                                  &studies::distance,  &studies::memory,
                                   &studies::posing,    &studies::stability,     &studies::tightness,
                                   &studies::triangles, &studies::worlds};
 
@@ -125,7 +125,7 @@ std::optional<StudyDefinition> study_from(const std::string& text, const std::st
           list.push_back(scalar(file, value));
       }
     } else if (key == "figure") {
-      check_figures(node, file);
+      definition.figures = read_figures(node, file);
     } else if (key != "kind" && key != "description") {
       fail(file, node, "unknown key '" + std::string(key.str()) + "' of a study");
     }
@@ -154,6 +154,13 @@ void check(const StudyDefinition& definition) {
                                           "; there are " + names);
 }
 
+void check_extends(const StudyDefinition& held, const StudyDefinition& definition) {
+  if (held.name != definition.name) throw Unusable("it is named " + held.name);
+  if (held.kind != definition.kind) throw Unusable("it is of kind " + held.kind);
+  if (held.repetitions != definition.repetitions || held.parameters != definition.parameters)
+    throw Unusable("a study goes on with the same parameters and repetitions alone");
+}
+
 void run_study(const StudyDefinition& definition, const std::filesystem::path& folder,
                const Progress& progress) {
   kind_of(definition).run(definition, folder, progress);
@@ -162,8 +169,15 @@ void run_study(const StudyDefinition& definition, const std::filesystem::path& f
 StudyRecord::StudyRecord(const StudyDefinition& definition, const std::filesystem::path& folder,
                          Row columns, std::size_t keys, const Progress& progress)
     : table_(folder / (definition.name + ".csv"), std::move(columns)),
+      folder_(folder),
       keys_(keys),
-      progress_(progress) {}
+      progress_(progress) {
+  DrawnColumns there;
+  there.record = table_.columns();
+  for (const char* made : {"peer", "variant", "later_ns", "later_pairs"})
+    there.record.push_back(made);
+  check_figures(definition.figures, there, definition.file);
+}
 
 bool StudyRecord::has(const Row& key) const {
   const auto count = static_cast<std::ptrdiff_t>(std::min(keys_, key.size()));
@@ -173,7 +187,9 @@ bool StudyRecord::has(const Row& key) const {
 }
 
 void StudyRecord::save(std::size_t done, std::size_t all) {
+  if (done < all) mark_unfinished(folder_, "parts", done, all);
   table_.save();
+  if (done == all) mark_finished(folder_);
   progress_(done, all);
 }
 

@@ -8,7 +8,7 @@
 ///     repetitions = 5
 ///     [parameters]                # numbers, strings, or lists of either; each kind knows its own
 ///     pairs = 50000
-///     [[figure]]                  # what plots/draw shows of it: see plots/figures.py
+///     [[figure]]                  # what plots/draw shows of it: see ../definitions/README.md
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,8 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/records/record.hpp"
+#include "experiments/definitions/figure_tables.hpp"
+#include "experiments/recorder/record.hpp"
 #include "experiments/studies/experiment.hpp"
 
 namespace bvlab {
@@ -38,6 +39,7 @@ class StudyDefinition {
   std::size_t whole(const std::string& key, std::size_t fallback, std::size_t most) const;
 
   std::map<std::string, std::vector<std::string>> parameters;
+  std::vector<FigureTable> figures;
 };
 
 /// What a study has to work with: rows are saved as they are finished, and what a broken run has
@@ -55,6 +57,7 @@ class StudyRecord {
 
  private:
   Table table_;
+  std::filesystem::path folder_;
   std::size_t keys_;
   Progress progress_;
 };
@@ -64,6 +67,9 @@ std::optional<StudyDefinition> study_from(const std::string& text, const std::st
 
 /// Throws Unusable for unknown kinds, parameters and names.
 void check(const StudyDefinition& definition);
+/// Throws Unusable where a record of `held` cannot go on as one of the definition: all but figures,
+/// description and file is the same.
+void check_extends(const StudyDefinition& held, const StudyDefinition& definition);
 void run_study(const StudyDefinition& definition, const std::filesystem::path& folder,
                const Progress& progress);
 
@@ -80,7 +86,6 @@ extern const StudyKind box_precision;
 extern const StudyKind boxes;
 extern const StudyKind budget;
 extern const StudyKind distance;
-extern const StudyKind frames;
 extern const StudyKind memory;
 extern const StudyKind posing;
 extern const StudyKind stability;

@@ -2,19 +2,25 @@
 /// Broad-phase methods and peers on the built-in sets, interleaved: for every set, number, motion
 /// and displacement all variants run the same frames, in an order drawn anew for each repetition,
 /// and every frame's pair set is compared with the reference's by count and by a sum of hashes.
-/// A frame's time is the mean over all but the first, since some methods save work up for later
-/// frames; beside it stand the median and the 99th percentile. Memory that an earlier run freed is
-/// given back to the system first, so that the first frame is a first call. A run that something
-/// else disturbed is made again. Processor time, which neighbours on the machine disturb less,
-/// stands beside that of the wall clock; `bytes` is the heap that a method holds after its last
-/// frame.
+/// A frame's time is the mean over all but the first (or over those from `steady_from` on), since
+/// some methods save work up for later frames; beside it stand the median, the 99th percentile and
+/// the worst. Where `plays` is more than one, a row is made of so many plays, interleaved as well,
+/// and each of its frames is the fastest of them: what else the machine did is not in the worst
+/// frames. A method that is `told`, or a peer, gets the indices of the boxes that moved; the others
+/// find out. A set is a built-in one or a file: the first frame of a box trace. Memory that
+/// an earlier run freed is given back to the system first, so that the first frame is a first call.
+/// A run that something else disturbed is made again. Processor time, which neighbours on the
+/// machine disturb less, stands beside that of the wall clock; `bytes` is the heap that a method
+/// holds after its last frame.
 #include <algorithm>
+#include <optional>
 #include <random>
 #include <set>
 
 #include "experiments/files/heap_bytes.hpp"
+#include "experiments/files/npy.hpp"
 #include "experiments/files/unusable.hpp"
-#include "experiments/peers/boxes_peers.hpp"
+#include "experiments/peers/box_peers.hpp"
 #include "experiments/replay/box_methods.hpp"
 #include "experiments/scenes/boxes.hpp"
 #include "experiments/studies/clocks.hpp"
@@ -24,7 +30,10 @@
 namespace bvlab {
 namespace {
 
-using Frames = std::vector<std::vector<Box<float>>>;
+struct Frames {
+  std::vector<std::vector<Box<float>>> boxes;
+  std::vector<std::vector<std::uint32_t>> moved;  ///< since the frame before; all in the first
+};
 
 struct Case {
   std::string set, motion;
@@ -45,7 +54,9 @@ struct Answer {
 };
 struct Outcome {
   std::vector<Answer> answers;
-  double first_ns = 0, frame_ns = 0, middle_ns = 0, p99_ns = 0, wall_ns = 0, events = 0;
+  std::vector<double> ns, wall;  ///< of each frame
+  double first_ns = 0, frame_ns = 0, middle_ns = 0, p99_ns = 0, worst_ns = 0, wall_ns = 0,
+         events = 0;
   std::size_t bytes = 0;
   bool slow = false;
 };
@@ -55,8 +66,12 @@ struct Settings {
   std::vector<Variant> variants;
   std::size_t reference = 0;
   int frames = 0;
+  std::size_t steady_from = 1;
+  std::size_t plays = 1;
   double limit_ns = 0;
 };
+
+bool is_file(const std::string& set) { return set.ends_with(".npy"); }
 
 Settings settings_of(const StudyDefinition& definition) {
   Settings s;
@@ -85,15 +100,15 @@ Settings settings_of(const StudyDefinition& definition) {
   for (const double seed : definition.numbers("seed", {1}))
     seeds.push_back(static_cast<unsigned>(whole("seed", seed, 1e9)));
   for (const auto& set : definition.strings("sets", box_set_names())) {
-    known("sets", set, box_set_names());
-    for (const double count : counts)
+    if (!is_file(set)) known("sets", set, box_set_names());
+    for (const double count : is_file(set) ? std::vector<double>{1} : counts)
       for (const auto& motion : motions)
         for (const double displacement : displacements)
           for (const unsigned seed : seeds)
             s.cases.push_back({set, motion, whole("counts", count, 1e8), displacement, seed});
   }
   const auto coherent = definition.strings("coherent", {"on"});
-  for (const auto& each : coherent) known("coherent", each, {"on", "off"});
+  for (const auto& each : coherent) known("coherent", each, {"on", "off", "told"});
   const auto changes = definition.strings("changes", {"off"});
   for (const auto& each : changes) known("changes", each, {"on", "off"});
   std::vector<std::string> method_names;
@@ -110,9 +125,17 @@ Settings settings_of(const StudyDefinition& definition) {
             s.variants.push_back(
                 {method, c, reported, sort, static_cast<int>(whole("threads", t, 1024))});
   }
-  for (const auto& peer : definition.strings("peers", {})) {
-    known("peers", peer, box_peer_names());
+  auto peers = definition.strings("peers", {});
+  for (const auto& peer : peers) known("peers", peer, box_peer_names());
+  // Of libraries that not every machine has.
+  const auto built = box_peer_names();
+  for (const auto& peer : definition.strings("peers_if_built", {}))
+    if (std::find(built.begin(), built.end(), peer) != built.end()) peers.push_back(peer);
+  const bool told = std::find(coherent.begin(), coherent.end(), "told") != coherent.end();
+  for (const auto& peer : peers) {
     s.variants.push_back({peer, "on", "off", "", peer == "cgal-parallel" ? 2 : 1});
+    if (told && make_box_peer(peer)->takes_moved())
+      s.variants.push_back({peer, "told", "off", "", 1});
   }
   const std::string reference = definition.strings("reference", {s.variants.back().method}).at(0);
   while (s.reference < s.variants.size() && s.variants[s.reference].method != reference)
@@ -120,6 +143,8 @@ Settings settings_of(const StudyDefinition& definition) {
   if (s.reference == s.variants.size())
     throw Unusable(definition.file, "reference: " + reference + " is not among methods and peers");
   s.frames = static_cast<int>(whole("frames", definition.number("frames", 10), 1e6));
+  s.steady_from = whole("steady_from", definition.number("steady_from", 1), s.frames);
+  s.plays = whole("plays", definition.number("plays", 1), 1000);
   s.limit_ns = 1e9 * definition.number("seconds_a_frame", 1);
   return s;
 }
@@ -154,16 +179,18 @@ Answer answer_of(std::span<const Pair> pairs) {
 class Player {
  public:
   explicit Player(const Variant& variant) {
+    told_ = variant.coherent == "told";
     if ((peer_ = make_box_peer(variant.method))) return;
     MethodSettings settings;
-    settings.coherence = variant.coherent == "on" ? Coherence::on : Coherence::off;
+    settings.coherence = variant.coherent == "off" ? Coherence::off : Coherence::on;
     settings.changes = variant.changes == "on" ? Changes::reported : Changes::unreported;
     settings.sort = variant.sort == "comparison" ? Sort::comparison : Sort::radix;
     settings.threads = variant.threads;
     method_ = make_method<float>(variant.method, settings);
   }
-  std::span<const Pair> overlapping(Boxes<float> boxes) {
-    return peer_ ? peer_->overlapping(boxes) : method_->overlapping(boxes);
+  std::span<const Pair> overlapping(Boxes<float> boxes, std::span<const std::uint32_t> moved) {
+    if (peer_) return told_ ? peer_->update(boxes, moved) : peer_->overlapping(boxes);
+    return told_ ? method_->update(boxes, moved) : method_->overlapping(boxes);
   }
   std::size_t events() const {
     if (peer_) return 0;
@@ -174,33 +201,53 @@ class Player {
  private:
   std::unique_ptr<BoxPeer> peer_;
   std::unique_ptr<AnyMethod<float>> method_;
+  bool told_ = false;
 };
 
-Outcome play(const Variant& variant, const Frames& frames, double limit_ns) {
+Outcome play(const Variant& variant, const Frames& frames, const Settings& settings,
+             double limit_ns) {
   Outcome outcome;
-  std::vector<double> later, wall, events;
+  std::vector<double> events;
   give_back_heap();
   const std::size_t heap = heap_bytes();
   Player player(variant);
-  for (std::size_t f = 0; f < frames.size(); ++f) {
+  for (std::size_t f = 0; f < frames.boxes.size(); ++f) {
     const double start_wall = wall_ns(), start = processor_ns();
-    const auto pairs = player.overlapping(frames[f]);
+    const auto pairs = player.overlapping(frames.boxes[f], frames.moved[f]);
     const double ns = processor_ns() - start, took = wall_ns() - start_wall;
     outcome.answers.push_back(answer_of(pairs));
-    if (f == 0)
-      outcome.first_ns = ns;
-    else
-      later.push_back(ns), wall.push_back(took),
-          events.push_back(static_cast<double>(player.events()));
+    outcome.ns.push_back(ns), outcome.wall.push_back(took);
+    if (f > 0 && f >= settings.steady_from) events.push_back(static_cast<double>(player.events()));
     outcome.slow |= ns > limit_ns;
     if (ns > limit_ns && (f > 0 || ns > 10 * limit_ns)) break;
   }
   const std::size_t now = heap_bytes();
   outcome.bytes = now > heap ? now - heap : 0;
+  outcome.events = mean(events);
+  return outcome;
+}
+
+/// Each frame as the faster of the two plays has it.
+void keep_faster(Outcome& outcome, const Outcome& next) {
+  outcome.slow |= next.slow;
+  if (next.ns.size() < outcome.ns.size()) outcome.ns.resize(next.ns.size());
+  outcome.wall.resize(outcome.ns.size());
+  for (std::size_t f = 0; f < outcome.ns.size(); ++f) {
+    outcome.ns[f] = std::min(outcome.ns[f], next.ns[f]);
+    outcome.wall[f] = std::min(outcome.wall[f], next.wall[f]);
+  }
+}
+
+void sum_up(Outcome& outcome, const Settings& settings) {
+  if (outcome.ns.empty()) return;
+  const auto from = static_cast<std::ptrdiff_t>(
+      std::min(std::max<std::size_t>(settings.steady_from, 1), outcome.ns.size()));
+  const std::vector<double> later(outcome.ns.begin() + from, outcome.ns.end());
+  outcome.first_ns = outcome.ns[0];
   outcome.frame_ns = mean(later), outcome.middle_ns = median(later);
   outcome.p99_ns = percentile(later, 0.99);
-  outcome.wall_ns = mean(wall), outcome.events = mean(events);
-  return outcome;
+  outcome.worst_ns = later.empty() ? 0 : *std::max_element(later.begin(), later.end());
+  outcome.wall_ns = mean({outcome.wall.begin() + from, outcome.wall.end()});
 }
 
 class BoxStudy {
@@ -210,10 +257,10 @@ class BoxStudy {
       : settings_(settings_of(definition)),
         repetitions_(definition.repetitions),
         record_(definition, folder,
-                {"set",       "count",    "motion",  "displacement", "seed",     "boxes",
-                 "method",    "coherent", "changes", "sort",         "threads",  "repetition",
-                 "frames",    "overlaps", "events",  "differing",    "first_ns", "frame_ns",
-                 "middle_ns", "p99_ns",   "wall_ns", "bytes"},
+                {"set",       "count",    "motion",   "displacement", "seed",     "boxes",
+                 "method",    "coherent", "changes",  "sort",         "threads",  "repetition",
+                 "frames",    "overlaps", "events",   "differing",    "first_ns", "frame_ns",
+                 "middle_ns", "p99_ns",   "worst_ns", "wall_ns",      "bytes"},
                 5, progress) {}
 
   void run() {
@@ -226,27 +273,67 @@ class BoxStudy {
 
  private:
   void run_case(const Case& c) {
-    Frames frames;
-    BoxMotion motion(c.motion, c.displacement, c.set, make_box_set(c.set, c.count, c.seed), c.seed);
-    for (int f = 0; f < settings_.frames; ++f, motion.step()) frames.push_back(motion.boxes());
+    const Frames frames = frames_of(c);
     std::vector<Answer> reference;
     for (unsigned repetition = 0; repetition < repetitions_; ++repetition) {
-      std::vector<std::size_t> order(settings_.variants.size());
-      for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-      std::shuffle(order.begin(), order.end(), random_);
-      // What the others are compared with comes first.
-      if (repetition == 0)
-        std::swap(*std::find(order.begin(), order.end(), settings_.reference), order[0]);
-      for (const std::size_t k : order) {
-        if (slow_.contains(slow_key(k, c)) && k != settings_.reference) continue;
-        const double limit_ns = k == settings_.reference ? 1e18 : settings_.limit_ns;
-        const Outcome outcome =
-            undisturbed([&] { return play(settings_.variants[k], frames, limit_ns); }).result;
-        if (outcome.slow) slow_.insert(slow_key(k, c));
-        if (reference.empty()) reference = outcome.answers;
-        add_row(c, k, repetition, frames, outcome, reference);
-      }
+      std::vector<std::optional<Outcome>> outcomes(settings_.variants.size());
+      for (std::size_t play = 0; play < settings_.plays; ++play)
+        for (const std::size_t k : drawn_order(repetition == 0 && play == 0)) {
+          if (slow_.contains(slow_key(k, c)) && k != settings_.reference) continue;
+          play_once(c, k, frames, outcomes[k]);
+          if (reference.empty()) reference = outcomes[k]->answers;
+        }
+      for (std::size_t k = 0; k < outcomes.size(); ++k)
+        if (outcomes[k]) {
+          sum_up(*outcomes[k], settings_);
+          add_row(c, k, repetition, frames, *outcomes[k], reference);
+        }
     }
+  }
+  /// What the others are compared with comes first.
+  std::vector<std::size_t> drawn_order(bool reference_first) {
+    std::vector<std::size_t> order(settings_.variants.size());
+    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+    std::shuffle(order.begin(), order.end(), random_);
+    if (reference_first)
+      std::swap(*std::find(order.begin(), order.end(), settings_.reference), order[0]);
+    return order;
+  }
+  void play_once(const Case& c, std::size_t k, const Frames& frames,
+                 std::optional<Outcome>& outcome) {
+    const double limit_ns = k == settings_.reference ? 1e18 : settings_.limit_ns;
+    const auto once = [&] { return play(settings_.variants[k], frames, settings_, limit_ns); };
+    // The fastest of several plays is undisturbed enough.
+    const Outcome next = settings_.plays > 1 ? once() : undisturbed(once).result;
+    if (next.slow) slow_.insert(slow_key(k, c));
+    if (outcome)
+      keep_faster(*outcome, next);
+    else
+      outcome = next;
+  }
+  Frames frames_of(const Case& c) const {
+    Frames frames;
+    BoxMotion motion(c.motion, c.displacement, c.set,
+                     is_file(c.set) ? first_frame(c.set) : make_box_set(c.set, c.count, c.seed),
+                     c.seed);
+    for (int f = 0; f < settings_.frames; ++f, motion.step()) {
+      frames.boxes.push_back(motion.boxes());
+      std::vector<std::uint32_t> moved;
+      for (std::uint32_t k = 0; k < frames.boxes[f].size(); ++k)
+        if (f == 0 || !(frames.boxes[f][k] == frames.boxes[f - 1][k])) moved.push_back(k);
+      frames.moved.push_back(std::move(moved));
+    }
+    return frames;
+  }
+  static std::vector<Box<float>> first_frame(const std::string& file) {
+    static constexpr std::size_t shape[] = {any_length, any_length, 6};
+    const auto trace = read_npy<float>(file, shape);
+    if (trace.shape[0] == 0) throw Unusable(file, "no frames");
+    const Boxes<float> boxes(reinterpret_cast<const Box<float>*>(trace.data.data()),
+                             trace.shape[1]);
+    if (const auto fault = first_fault(boxes))
+      throw Unusable(file, "box " + std::to_string(fault->box) + ": " + std::string(fault->what));
+    return {boxes.begin(), boxes.end()};
   }
   /// What took longer than the definition allows is not run again on that set and motion: cases go
   /// on with more boxes, or with more displacement.
@@ -265,12 +352,12 @@ class BoxStudy {
     };
     Row row = c.key();
     for (auto& field :
-         {std::to_string(frames[0].size()), v.method, v.coherent, v.changes, v.sort,
+         {std::to_string(frames.boxes[0].size()), v.method, v.coherent, v.changes, v.sort,
           std::to_string(v.threads), std::to_string(repetition),
           std::to_string(outcome.answers.size()), std::to_string(outcome.answers.back().pairs),
           whole(outcome.events), std::to_string(differing), whole(outcome.first_ns),
           whole(outcome.frame_ns), whole(outcome.middle_ns), whole(outcome.p99_ns),
-          whole(outcome.wall_ns), std::to_string(outcome.bytes)})
+          whole(outcome.worst_ns), whole(outcome.wall_ns), std::to_string(outcome.bytes)})
       row.push_back(field);
     record_.add(std::move(row));
   }

@@ -50,7 +50,9 @@ struct Settings {
         throw Unusable(definition.file, "variants: '" + text + "' is not \"tree volume strategy\"");
       Variant variant = configured({}, "recommended");
       if (tree != "wide") variant.build = build, variant.fit = fit, variant.leaf_size = leaf_size;
-      variant.tree = tree, variant.volume = volume, variant.strategy = strategy;
+      if (!set_tree(variant, tree))
+        throw Unusable(definition.file, "variants: tree '" + tree + "' is not binary or wide");
+      variant.volume = volume, variant.strategy = strategy;
       bvlab::check(variant);
       variants.push_back(variant);
     }
@@ -112,7 +114,7 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
           const Held alone = held(mesh, trace, 1, variant);
           const Held all = held(mesh, trace, settings.objects, variant);
           Row row = key;
-          row.insert(row.end(), {variant.tree, variant.volume, variant.strategy, "0"});
+          row.insert(row.end(), {variant.kernel == "siblings" ? "wide" : "binary", variant.volume, variant.strategy, "0"});
           for (const std::size_t n : {trace.frames, all.near, all.touching, alone.bytes, all.bytes})
             row.push_back(std::to_string(n));
           record.add(std::move(row));

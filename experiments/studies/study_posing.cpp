@@ -109,7 +109,7 @@ Measured at_roots(const Trace& trace, const PoseRoot& pose_root) {
   std::vector<Pose> poses(trace.objects);
   std::vector<Bounds> roots(trace.objects * trace.frames);
   trace.poses(0, poses);
-  const Vec3<double> origin = middle_of(poses);
+  const Vec3<double> origin = centre_of(poses);
   Measured measured;
   measured.pose_ns = nanoseconds_each(roots.size(), [&] {
     for (std::size_t frame = 0; frame < trace.frames; ++frame) {
@@ -158,7 +158,7 @@ ReplayResult engine_of_its_own(const Scene& scene, const Hierarchy<V>& hierarchy
   const std::vector<Shape<V>> shapes(scene.trace.objects, {&scene.meshes[0], &hierarchy});
   using Loops = detail::LoopsOver<V, Query, TypeList<NoFront>>;
   return recursed<Query>(
-      scene, [&] { return std::make_unique<Loops>(shapes); }, count);
+      scene, [&] { return std::make_unique<Loops>(shapes, Frame::world); }, count);
 }
 
 template <class V, class Query>

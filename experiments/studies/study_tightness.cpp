@@ -27,7 +27,7 @@
 #include "experiments/replay/triangle_test.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/studies/study.hpp"
-#include "hierarchies/geometry/enclosing_ball.hpp"
+#include "hierarchies/geometry/enclosing_sphere.hpp"
 
 namespace bvlab {
 namespace {
@@ -88,7 +88,7 @@ struct ProbedLevel {
 double diameter_of(const std::vector<Triangle>& triangles) {
   std::vector<Vec3<double>> points;
   for (const auto& t : triangles) points.insert(points.end(), t.begin(), t.end());
-  const Vec3<double> centre = enclosing_ball(points).centre;
+  const Vec3<double> centre = enclosing_sphere(points).centre;
   std::vector<std::pair<double, Vec3<double>>> outward;
   for (const auto& p : points) outward.emplace_back((p - centre).norm(), p);
   std::sort(outward.begin(), outward.end(),

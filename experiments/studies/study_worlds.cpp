@@ -156,7 +156,7 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
                                           std::to_string(cores_allowed()) + " may be used");
   StudyRecord record(definition, folder,
                      {"objects",       "room",   "moving",  "step",       "degrees",  "mesh",
-                      "polygons",      "frames", "seed",    "volume",     "strategy", "tree",
+                      "polygons",      "frames", "seed",    "volume",     "strategy", "kernel",
                       "configuration", "peer",   "threads", "repetition", "time_ns",  "first_ns",
                       "build_ns",      "moved",  "near",    "asked",      "touching", "differing"},
                      9, progress);
@@ -193,7 +193,7 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
         Row row = key;
         for (const auto& field :
              {ours ? who.variant.volume : "", ours ? who.variant.strategy : "",
-              ours ? who.variant.tree : "", who.configuration, who.peer,
+              ours ? who.variant.kernel : "", who.configuration, who.peer,
               std::to_string(who.threads), std::to_string(repetition), nanoseconds(timed.seconds),
               nanoseconds(timed.first_seconds), nanoseconds(timed.build_seconds),
               std::to_string(timed.moved), ours ? std::to_string(timed.near) : "",

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Options that several commands have for what is run: the trees, and the query.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "experiments/commands/number.hpp"
+#include "experiments/replay/registry.hpp"
+
+namespace bvlab {
+
+/// --volume, --fan-out and --frame.
+inline void add_tree_options(CLI::App& command, Variant& variant) {
+  command.add_option("--volume", variant.volume, "see `bvlab list volumes`")->capture_default_str();
+  command.add_option("--fan-out", variant.fan_out, "most children of a node: 2, 4, 8 or 16")
+      ->capture_default_str();
+  command
+      .add_option("--frame", variant.frame,
+                  "frame in which volumes are compared: world or body; see `bvlab list frames`")
+      ->capture_default_str();
+}
+
+/// --build and --fit.
+inline void add_build_options(CLI::App& command, Variant& variant) {
+  command.add_option("--build", variant.build, "see `bvlab list builds`")->capture_default_str();
+  command.add_option("--fit", variant.fit, "how volumes are fitted: published or tight")
+      ->capture_default_str();
+}
+
+/// --query and --relative-error.
+inline void add_query_options(CLI::App& command, Variant& variant) {
+  command.add_option("--query", variant.query, "see `bvlab list queries`")->capture_default_str();
+  command
+      .add_option("--relative-error", variant.relative_error,
+                  "largest relative error of a distance; the result is never below the exact one")
+      ->check(number())
+      ->capture_default_str();
+}
+
+}  // namespace bvlab

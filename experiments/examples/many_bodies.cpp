@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Many bodies, of which few move: which touch? Pairs that nothing has happened to are not asked.
+#include <cstdio>
+
+#include "ring.hpp"
+#include "traversal/counters.hpp"
+#include "traversal/queries.hpp"
+#include "traversal/world.hpp"
+
+using namespace bvlab;
+
+int main() {
+  const TriangleMesh mesh = ring();
+  const auto hierarchy = Recommended::hierarchy(mesh);
+  constexpr std::uint32_t bodies = 200;
+  const std::vector<Recommended::Shape> shapes(bodies, {&mesh, &hierarchy});
+  World world(shapes);
+  // A row of rings that do not touch. What was never moved is not in the scene.
+  for (std::uint32_t i = 0; i < bodies; ++i) world.move(i, *pose_from({3.0 * i, 0, 0}, 1, 0, 0, 0));
+
+  TouchingPairs touching;
+  NotCounting counter;
+  for (int frame = 0; frame < 3; ++frame) {
+    // Body 0 goes along the row, into one after the other.
+    world.move(0, *pose_from({3.0 * frame + 1, 0, 0}, 1, 0, 0, 0));
+    int asked = 0;
+    world.update(
+        counter, [](const ObjectPair&) { return Touching(); },
+        [&](std::uint32_t slot, const ObjectPair& pair, const Touching& query) {
+          touching.put(slot, pair, query.touching()), ++asked;
+        },
+        [&](std::uint32_t slot) { touching.drop(slot); });
+    std::printf("frame %d, %d pairs asked:", frame, asked);
+    for (const auto& [i, j] : touching.pairs()) std::printf(" %u-%u", i, j);
+    std::printf("\n");
+  }
+}

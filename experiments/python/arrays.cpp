@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/python/arrays.hpp"
+
+#include "experiments/files/unusable.hpp"
+
+namespace bvlab {
+namespace {
+
+std::string shape_text(const py::array& array) {
+  return py::str(py::tuple(array.attr("shape"))).cast<std::string>();
+}
+
+std::string shape_text(const std::vector<Axis>& axes) {
+  std::string text;
+  for (const Axis& axis : axes)
+    text +=
+        (text.empty() ? "(" : ", ") + (axis.length < 0 ? axis.name : std::to_string(axis.length));
+  return text + ")";
+}
+
+/// Calls NumPy; whatever it does not take is unusable.
+template <class Call>
+py::array asked(const std::string& name, const Call& call) {
+  try {
+    return call();
+  } catch (py::error_already_set& error) {
+    if (error.matches(PyExc_MemoryError) || error.matches(PyExc_KeyboardInterrupt)) throw;
+    throw Unusable(name, "is no array of numbers: " + std::string(py::str(error.value())));
+  }
+}
+
+/// Masked entries would come in as what stands below the mask.
+void refuse_masked(const py::handle& given, const std::string& name) {
+  if (!py::hasattr(given, "mask") || !py::hasattr(given, "filled")) return;
+  if (py::module_::import("numpy").attr("any")(given.attr("mask")).cast<bool>())
+    throw Unusable(name, "has masked entries");
+}
+
+void check_kind(const py::array& array, const std::string& name, Kind kind) {
+  const char code = array.dtype().kind();
+  const bool whole = code == 'i' || code == 'u';
+  if (whole || (kind == Kind::real && (code == 'f' || code == 'b'))) return;
+  // An empty list is an array of float64 to NumPy.
+  if (code == 'f' && array.size() == 0) return;
+  throw Unusable(name, std::string(kind == Kind::real ? "real numbers" : "integers") +
+                           " are needed, not " + std::string(py::str(array.dtype())));
+}
+
+bool fits(const py::array& array, const std::vector<Axis>& axes) {
+  if (array.ndim() != static_cast<py::ssize_t>(axes.size())) return false;
+  for (std::size_t k = 0; k < axes.size(); ++k)
+    if (axes[k].length >= 0 && array.shape(static_cast<py::ssize_t>(k)) != axes[k].length)
+      return false;
+  return true;
+}
+
+}  // namespace
+
+py::array checked_array(const py::handle& given, const std::string& name, Kind kind,
+                        const char* dtype, const std::vector<Axis>& axes) {
+  // The common case: an array as it is wanted.
+  if (py::isinstance<py::array>(given)) {
+    const auto array = py::reinterpret_borrow<py::array>(given);
+    if ((array.flags() & py::array::c_style) && fits(array, axes) &&
+        Py_TYPE(given.ptr()) == py::detail::npy_api::get().PyArray_Type_ &&
+        array.dtype().is(py::dtype(dtype)))
+      return array;
+  }
+  refuse_masked(given, name);
+  const auto numpy = py::module_::import("numpy");
+  const py::array array = asked(name, [&] { return py::array(numpy.attr("asarray")(given)); });
+  check_kind(array, name, kind);
+  if (!fits(array, axes)) {
+    // An empty list has no second axis.
+    if (array.size() == 0 && array.ndim() == 1 && axes.size() > 1 && axes[0].length < 0) {
+      std::vector<py::ssize_t> shape;
+      for (std::size_t k = 0; k < axes.size(); ++k)
+        shape.push_back(k == 0 ? 0 : std::max<py::ssize_t>(axes[k].length, 0));
+      return asked(name, [&] { return py::array(numpy.attr("empty")(shape, dtype)); });
+    }
+    throw Unusable(name,
+                   "shape " + shape_text(array) + ", where " + shape_text(axes) + " is needed");
+  }
+  return asked(name, [&] {
+    // What float64 does not hold becomes infinite, which is looked for by who reads it.
+    const py::object state = numpy.attr("errstate")(py::arg("all") = "ignore");
+    state.attr("__enter__")();
+    py::object made;
+    try {
+      made = numpy.attr("ascontiguousarray")(array, dtype);
+    } catch (...) {
+      state.attr("__exit__")(py::none(), py::none(), py::none());
+      throw;
+    }
+    state.attr("__exit__")(py::none(), py::none(), py::none());
+    return py::array(made);
+  });
+}
+
+}  // namespace bvlab

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What of bvlab is C++."""
+
+from collections.abc import Callable, Iterable
+from os import PathLike
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+class HasFaces(Protocol):
+    """As trimesh's meshes."""
+
+    @property
+    def vertices(self) -> ArrayLike: ...
+    @property
+    def faces(self) -> ArrayLike: ...
+
+class Mesh:
+    def __init__(self, vertices: ArrayLike | HasFaces, faces: ArrayLike | None = None) -> None: ...
+    @property
+    def vertices(self) -> NDArray[np.float64]: ...
+    @property
+    def faces(self) -> NDArray[np.uint32]: ...
+    def __len__(self) -> int: ...
+
+Meshes = Mesh | HasFaces | Iterable[Mesh | HasFaces]
+
+class Result:
+    @property
+    def answers(self) -> NDArray[Any] | None: ...
+    @property
+    def totals(self) -> dict[str, Any]: ...
+    @property
+    def series(self) -> NDArray[np.void] | None: ...
+    @property
+    def frame_seconds(self) -> NDArray[np.float64] | None: ...
+    @property
+    def seconds(self) -> float: ...
+    @property
+    def build_seconds(self) -> float: ...
+    @property
+    def first_seconds(self) -> float: ...
+    @property
+    def n_u(self) -> int | None: ...
+    @property
+    def n_v(self) -> int | None: ...
+    @property
+    def n_p(self) -> int | None: ...
+    @property
+    def front(self) -> float | None: ...
+
+class World:
+    def __init__(
+        self,
+        meshes: Meshes,
+        *,
+        objects: int = 0,
+        volume: str | None = None,
+        strategy: str | None = None,
+        fan_out: int | None = None,
+        frame: str | None = None,
+        kernel: str | None = None,
+        configuration: str | None = None,
+        build: str = ...,
+        leaf_size: int = ...,
+        fit: str = ...,
+        precision: str = ...,
+        threads: int = 1,
+    ) -> None: ...
+    def move(self, object: int | ArrayLike, pose: ArrayLike) -> None: ...
+    def remove(self, object: int) -> None: ...
+    def update(self) -> None: ...
+    def timed_steps(self, objects: ArrayLike, poses: ArrayLike) -> NDArray[np.float64]: ...
+    def touching(self) -> NDArray[np.uint32]: ...
+    def contacts(self) -> NDArray[np.uint32]: ...
+    def distances(self, below: float) -> tuple[NDArray[np.uint32], NDArray[np.float64]]: ...
+    @property
+    def near(self) -> int: ...
+    @property
+    def asked(self) -> int: ...
+    def __len__(self) -> int: ...
+
+def read(path: str | PathLike[str]) -> Mesh: ...
+def named_mesh(name: str, polygons: int = 500) -> Mesh: ...
+def replay(
+    meshes: Meshes,
+    poses: ArrayLike,
+    *,
+    volume: str = ...,
+    strategy: str = ...,
+    query: str = ...,
+    fan_out: int | None = None,
+    frame: str | None = None,
+    kernel: str = ...,
+    configuration: str | None = None,
+    build: str = ...,
+    leaf_size: int = ...,
+    fit: str = ...,
+    precision: str = ...,
+    relative_error: float = ...,
+    count: bool = False,
+    threads: int = 1,
+    answers: bool = True,
+    series: bool = False,
+    frame_seconds: bool = False,
+) -> Result: ...
+def boxes(
+    trace: ArrayLike,
+    *,
+    method: str = ...,
+    coherent: bool = True,
+    precision: str = ...,
+    threads: int = 1,
+    answers: bool = True,
+) -> Result: ...
+def predict(
+    meshes: Meshes,
+    poses: ArrayLike,
+    *,
+    volume: str = ...,
+    query: str = ...,
+    fan_out: int | None = ...,
+    frame: str | None = ...,
+    build: str = ...,
+    leaf_size: int = ...,
+    fit: str = ...,
+    relative_error: float = ...,
+    stride: int = ...,
+    window: int = ...,
+) -> dict[str, Any]: ...
+def names(kind: str) -> dict[str, str]: ...
+def kinds() -> list[str]: ...
+def run_text(
+    text: str,
+    file: str,
+    record: str,
+    counts: bool,
+    threads: int,
+    progress: Callable[[int, int], object] | None,
+) -> Path: ...

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Poses of many bodies in many frames, from what others call a pose."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+ORDERS = {"wxyz": [0, 1, 2, 3], "xyzw": [3, 0, 1, 2]}
+ROUNDING = 1e-6  # by which a matrix may miss being a rotation
+
+
+def poses(positions: ArrayLike, quaternions: ArrayLike | None = None, *,
+          order: str | None = None) -> NDArray[np.float64]:
+    """Poses as a motion trace has them: float64 (frames, objects, 7), x y z qw qx qy qz, object to world.
+
+    poses(positions, quaternions, order="wxyz")   (frames, objects, 3) and (frames, objects, 4) real; the order of a
+                                                  quaternion's numbers must be said, "wxyz" or "xyzw", since one
+                                                  passes for the other. They need not be of unit length.
+    poses(matrices)                               (frames, objects, 4, 4) real: [R t; 0 0 0 1], R a rotation up to
+                                                  1e-6. The pose is that of R's quaternion: R up to rounding.
+
+    ValueError: another shape or type, NaN, infinity, a quaternion of length 0, a matrix that is no rotation.
+    """
+    if quaternions is None:
+        if order is not None:
+            raise ValueError("order: is of quaternions, and there are none")
+        return _from_matrices(_array(positions, "matrices", ("frames", "objects", 4, 4)))
+    if order not in ORDERS:
+        raise ValueError(f"order: {'is needed' if order is None else f'{order!r} is unknown'}; there are "
+                         + ", ".join(ORDERS))
+    positions = _array(positions, "positions", ("frames", "objects", 3))
+    quaternions = _array(quaternions, "quaternions", (*positions.shape[:2], 4))
+    zero = ~quaternions.any(axis=-1)
+    if zero.any():
+        raise ValueError(f"quaternions: zero quaternion {_place(zero)}")
+    return np.concatenate([positions, quaternions[..., ORDERS[order]]], axis=-1)
+
+
+def pairs_of(objects: int) -> NDArray[np.uint32]:
+    """The pairs of so many objects in the order of all answers: (pairs, 2), (0, 1) (0, 2) ... (1, 2) ..."""
+    return np.stack(np.triu_indices(objects, 1), axis=-1).astype(np.uint32)
+
+
+def _array(given, name, shape):
+    """float64, finite, of that shape, in which a name stands for any length."""
+    if np.ma.is_masked(given):
+        raise ValueError(f"{name}: has masked entries")
+    try:
+        array = np.asarray(given)
+        if array.dtype.kind not in "fiub":
+            raise ValueError(f"real numbers are needed, not {array.dtype}")
+        fits = array.ndim == len(shape) and all(isinstance(n, str) or n == m for n, m in zip(shape, array.shape))
+        if not fits:
+            wanted = ", ".join(map(str, shape))
+            raise ValueError(f"shape {array.shape}, where ({wanted}) is needed")
+        with np.errstate(all="ignore"):
+            array = array.astype(np.float64)
+    except (TypeError, ValueError) as fault:
+        raise ValueError(f"{name}: {fault}".replace("\n", " ")) from None
+    wrong = ~np.isfinite(array).reshape(*array.shape[:2], -1).all(axis=-1)
+    if wrong.any():
+        raise ValueError(f"{name}: not a finite number {_place(wrong)}")
+    return array
+
+
+def _place(wrong):
+    frame, thing = np.argwhere(wrong)[0]
+    return f"in frame {frame}, object {thing}"
+
+
+def _from_matrices(matrices):
+    rotation, translation = matrices[..., :3, :3], matrices[..., :3, 3]
+    with np.errstate(all="ignore"):
+        square = np.einsum("...ki,...kj->...ij", rotation, rotation)
+        wrong = ~(np.abs(square - np.eye(3)).max(axis=(-2, -1), initial=0) < ROUNDING)
+        wrong |= ~(np.linalg.det(rotation) > 0)
+    if wrong.any():
+        raise ValueError(f"matrices: no rotation {_place(wrong)}: scaled, sheared or mirrored")
+    wrong = (matrices[..., 3, :] != [0, 0, 0, 1]).any(axis=-1)
+    if wrong.any():
+        raise ValueError(f"matrices: the last row is not 0 0 0 1 {_place(wrong)}")
+    return np.concatenate([translation, _quaternions(rotation)], axis=-1)
+
+
+def _quaternions(r):
+    """w x y z by Shepperd's method: of the four ways the one that divides by the largest number."""
+    trace = r[..., 0, 0] + r[..., 1, 1] + r[..., 2, 2]
+    best = np.argmax(np.stack([trace, r[..., 0, 0], r[..., 1, 1], r[..., 2, 2]], axis=-1), axis=-1)
+    found = np.empty((*best.shape, 4))
+    for way in range(4):
+        m = r[best == way]
+        q = np.empty((len(m), 4))
+        i = way - 1
+        if way == 0:
+            q[:, 0] = 1 + trace[best == way]
+            q[:, 1:] = np.stack([m[:, 2, 1] - m[:, 1, 2], m[:, 0, 2] - m[:, 2, 0], m[:, 1, 0] - m[:, 0, 1]], axis=-1)
+        else:
+            j, k = (i + 1) % 3, (i + 2) % 3
+            q[:, 0] = m[:, k, j] - m[:, j, k]
+            q[:, 1 + i] = 1 + m[:, i, i] - m[:, j, j] - m[:, k, k]
+            q[:, 1 + j] = m[:, j, i] + m[:, i, j]
+            q[:, 1 + k] = m[:, k, i] + m[:, i, k]
+        found[best == way] = q
+    return found / np.linalg.norm(found, axis=-1, keepdims=True)

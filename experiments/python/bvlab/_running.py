@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Experiments: definitions in, records out."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from ._bvlab import run_text
+
+
+def run(definition: dict | str | os.PathLike, record: str | os.PathLike | None = None, *, counts: bool = False,
+        threads: int = 0, progress: Callable[[int, int], object] | bool | None = None) -> Path:
+    """Runs an experiment or a study into a record, or goes on with a broken one, as `bvlab run`.
+
+    definition  a TOML file, or a dict of what would stand in it: name, parameters, axis, figure ...; see
+                bvlab.parameters() and experiments/definitions/README.md
+    record      folder of the record; a new one, experiments/record/<date>.<n>, where not given
+    counts      time nothing: counts and answers, by all threads
+    threads     of what is not timed; 0 for all cores
+    progress    None: a bar, on a terminal or in a notebook, after two seconds; False: nothing; or a function that is
+                called with the parts that are done and all of them
+
+    Gives the record's folder, for bvlab.record and bvlab.figures. Ctrl-C ends it after the part at work.
+    ValueError: the line that the program would print.
+    """
+    if isinstance(definition, dict):
+        text = toml_of(definition)
+        name = str(Path(record) / "definition.toml") if record is not None else "definition.toml"
+    else:
+        name = os.fspath(definition)
+        try:
+            text = Path(name).read_text()
+        except (OSError, UnicodeDecodeError) as fault:
+            raise ValueError(f"{name}: {getattr(fault, 'strerror', None) or fault}") from None
+    show = Bar() if progress is None else progress or None
+    try:
+        return Path(run_text(text, name, "" if record is None else os.fspath(record), counts, threads, show))
+    finally:
+        if isinstance(show, Bar):
+            show.close()
+
+
+class Bar:
+    """On a terminal or in a notebook, once the work has taken two seconds."""
+
+    def __init__(self):
+        self.start, self.handle, self.shown = time.monotonic(), None, False
+
+    def __call__(self, done, of):
+        seconds = time.monotonic() - self.start
+        if seconds < 2:
+            return
+        filled = 40 * done // of if of else 40
+        left = f", {seconds / done * (of - done):.0f} s left" if done else ""
+        text = f"[{'=' * filled}{' ' * (40 - filled)}] {done} of {of}{left}"
+        if self._in_notebook():
+            self._update(text)
+        elif sys.stderr.isatty():
+            print(f"\r{text} \x1b[K", end="", file=sys.stderr, flush=True)
+            self.shown = True
+
+    def close(self):
+        if self.shown:
+            print(file=sys.stderr)
+
+    @staticmethod
+    def _in_notebook():
+        shell = sys.modules.get("IPython") and sys.modules["IPython"].get_ipython()
+        return bool(shell) and hasattr(shell, "kernel")
+
+    def _update(self, text):
+        from IPython.display import display
+        shown = {"text/plain": text}
+        if self.handle is None:
+            self.handle = display(shown, raw=True, display_id=True)
+        else:
+            self.handle.update(shown, raw=True)
+
+
+def toml_of(table):
+    """What tomllib.loads gives back as that dict."""
+    lines = []
+    _write(table, [], lines)
+    return "\n".join(lines) + "\n"
+
+
+def _write(table, path, lines):
+    def is_tables(value):
+        return isinstance(value, (list, tuple)) and value and all(isinstance(each, dict) for each in value)
+
+    for key, value in table.items():
+        if not isinstance(value, dict) and not is_tables(value):
+            lines.append(f"{_key(key)} = {_value(value, [*path, key])}")
+    for key, value in table.items():
+        name = ".".join(map(_key, [*path, key]))
+        if isinstance(value, dict):
+            lines += ["", f"[{name}]"]
+            _write(value, [*path, key], lines)
+        elif is_tables(value):
+            for each in value:
+                lines += ["", f"[[{name}]]"]
+                _write(each, [*path, key], lines)
+
+
+def _key(key):
+    if not isinstance(key, str):
+        raise ValueError(f"definition: a key must be a string, not {key!r}")
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else json.dumps(key)
+
+
+def _value(value, path):
+    if isinstance(value, (bool, str)) or value is None:
+        if value is None:
+            raise ValueError(f"definition: {'.'.join(map(str, path))}: None is no value; leave it out")
+        return json.dumps(value, ensure_ascii=True).replace("\x7f", "\\u007f")
+    if hasattr(value, "tolist"):  # NumPy's
+        return _value(value.tolist(), path)
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        return repr(value)
+    if isinstance(value, os.PathLike):
+        return json.dumps(os.fspath(value))
+    if isinstance(value, (list, tuple, range)):
+        return f"[{', '.join(_value(each, path) for each in value)}]"
+    raise ValueError(f"definition: {'.'.join(map(str, path))}: {type(value).__name__} is no value of TOML")

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/python/meshes.hpp"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/scenes/named_mesh.hpp"
+#include "experiments/scenes/read_mesh.hpp"
+
+namespace bvlab {
+namespace {
+
+std::vector<Vec3<double>> vertices_from(const py::handle& given) {
+  const auto array = array_of<double>(given, "vertices", Kind::real, {{"vertices"}, {"3", 3}});
+  const auto count = static_cast<std::size_t>(array.shape(0));
+  const double* values = array.data();
+  std::vector<Vec3<double>> vertices(count);
+  for (std::size_t i = 0; i < count; ++i, values += 3) {
+    vertices[i] = {values[0], values[1], values[2]};
+    if (!vertices[i].allFinite())
+      throw Unusable("vertices", "not a finite number in row " + std::to_string(i));
+  }
+  return vertices;
+}
+
+std::vector<std::array<std::uint32_t, 3>> faces_from(const py::handle& given,
+                                                     std::size_t vertices) {
+  // Of 64 bits and signed, so that what is negative or too large is seen as that.
+  const auto array = array_of<std::int64_t>(given, "faces", Kind::integer, {{"faces"}, {"3", 3}});
+  const auto count = static_cast<std::size_t>(array.shape(0));
+  if (count == 0) throw Unusable("faces", "has no triangles");
+  if (std::max(count, vertices) > std::numeric_limits<std::uint32_t>::max())
+    throw Unusable("faces", "more triangles or vertices than 32-bit indices can name");
+  const std::int64_t* values = array.data();
+  std::vector<std::array<std::uint32_t, 3>> faces(count);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < 3; ++k, ++values) {
+      if (*values < 0 || static_cast<std::uint64_t>(*values) >= vertices)
+        throw Unusable("faces", "index " + std::to_string(*values) + " in row " +
+                                    std::to_string(i) + ", where there are " +
+                                    std::to_string(vertices) + " vertices");
+      faces[i][k] = static_cast<std::uint32_t>(*values);
+    }
+  return faces;
+}
+
+Mesh mesh_from(const py::handle& vertices, const py::handle& faces) {
+  TriangleMesh mesh;
+  mesh.vertices = vertices_from(vertices);
+  mesh.triangles = faces_from(faces, mesh.vertices.size());
+  return {std::make_shared<const TriangleMesh>(std::move(mesh))};
+}
+
+/// A Mesh, or anything with `vertices` and `faces`.
+Mesh mesh_of(const py::handle& given) {
+  if (py::isinstance<Mesh>(given)) return given.cast<Mesh>();
+  if (py::hasattr(given, "vertices") && py::hasattr(given, "faces"))
+    return mesh_from(given.attr("vertices"), given.attr("faces"));
+  throw Unusable("mesh", "a bvlab.Mesh, or something with .vertices and .faces, is needed, not " +
+                             std::string(py::str(py::type::of(given).attr("__name__"))));
+}
+
+Mesh made(const py::object& vertices, const py::object& faces) {
+  return faces.is_none() ? mesh_of(vertices) : mesh_from(vertices, faces);
+}
+
+Mesh shared(TriangleMesh&& mesh) { return {std::make_shared<const TriangleMesh>(std::move(mesh))}; }
+
+Mesh read(const std::filesystem::path& path) {
+  const py::gil_scoped_release released;
+  return shared(read_mesh(path));
+}
+
+Mesh named(const std::string& name, std::size_t polygons) {
+  const py::gil_scoped_release released;
+  return shared(named_mesh(name, polygons).mesh);
+}
+
+/// Copies of them, one behind the other: those that were made last time if they are of the same.
+std::shared_ptr<const std::vector<TriangleMesh>> side_by_side(const std::vector<Mesh>& meshes) {
+  SideBySide& last = *meshes.front().last;
+  const auto is_of = [](const std::weak_ptr<const TriangleMesh>& held, const Mesh& mesh) {
+    return held.lock() == mesh.triangles;
+  };
+  if (!std::equal(last.of.begin(), last.of.end(), meshes.begin(), meshes.end(), is_of)) {
+    auto copies = std::make_shared<std::vector<TriangleMesh>>();
+    copies->reserve(meshes.size());
+    for (const Mesh& mesh : meshes) copies->push_back(*mesh.triangles);
+    last = {{}, std::move(copies)};
+    for (const Mesh& mesh : meshes) last.of.push_back(mesh.triangles);
+  }
+  return last.copies;
+}
+
+/// For tests: where the engine reads the vertices of each.
+std::vector<std::uintptr_t> places_of(const py::object& meshes) {
+  const Meshes given(meshes);
+  std::vector<std::uintptr_t> places;
+  for (const TriangleMesh& mesh : given.span())
+    places.push_back(reinterpret_cast<std::uintptr_t>(mesh.vertices.data()));
+  return places;
+}
+
+/// What the mesh holds, seen as an array that keeps it alive.
+template <class T, class Row>
+py::array_t<T> view(const std::vector<Row>& rows, const py::object& owner) {
+  static_assert(sizeof(Row) == 3 * sizeof(T));
+  py::array_t<T> array({static_cast<py::ssize_t>(rows.size()), py::ssize_t{3}},
+                       reinterpret_cast<const T*>(rows.data()), owner);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+}  // namespace
+
+Meshes::Meshes(const py::handle& given) {
+  std::vector<Mesh> all;
+  const bool one = py::isinstance<Mesh>(given) || py::hasattr(given, "vertices");
+  if (one) {
+    all.push_back(mesh_of(given));
+  } else {
+    if (!py::isinstance<py::iterable>(given))
+      throw Unusable("meshes", "a list of meshes is needed, not " +
+                                   std::string(py::str(py::type::of(given).attr("__name__"))));
+    // The same object twice is one mesh, also where it is not ours.
+    std::unordered_map<PyObject*, std::size_t> known;
+    std::vector<py::object> kept;  // so that no other gets its address
+    for (const auto& each : given) {
+      const auto [at, fresh] = known.try_emplace(each.ptr(), all.size());
+      all.push_back(fresh ? mesh_of(each) : all[at->second]);
+      kept.push_back(py::reinterpret_borrow<py::object>(each));
+    }
+  }
+  if (all.empty()) throw Unusable("meshes", "at least one is needed");
+  given_ = all.size();
+  const auto repeats = [&](std::size_t period) {
+    for (std::size_t i = period; i < all.size(); ++i)
+      if (all[i].triangles != all[i - period].triangles) return false;
+    return true;
+  };
+  std::size_t period = 1;
+  while (all.size() % period != 0 || !repeats(period)) ++period;
+  if (period == 1) {
+    one_ = all[0].triangles;
+    span_ = {one_.get(), 1};
+    return;
+  }
+  several_ = side_by_side({all.begin(), all.begin() + static_cast<std::ptrdiff_t>(period)});
+  span_ = *several_;
+}
+
+void add_meshes(py::module_& module) {
+  py::class_<Mesh>(module, "Mesh", py::module_local(), R"(Triangles over shared vertices; read-only.
+
+Mesh(vertices, faces)    (n, 3) real, in any unit, and (m, 3) integer: indices of vertices
+Mesh(other)              anything with .vertices and .faces, as trimesh's meshes have
+
+Any real dtype, C or Fortran order; kept as float64. Open, self-intersecting and degenerate meshes
+are legal. ValueError: another shape or type, NaN, infinity, an index out of range, no triangle.)")
+      .def(py::init(&made), py::arg("vertices"), py::arg("faces") = py::none())
+      .def_property_readonly(
+          "vertices",
+          [](const py::object& self) {
+            return view<double>(self.cast<const Mesh&>().triangles->vertices, self);
+          },
+          "(n, 3) float64, read-only: no copy.")
+      .def_property_readonly(
+          "faces",
+          [](const py::object& self) {
+            return view<std::uint32_t>(self.cast<const Mesh&>().triangles->triangles, self);
+          },
+          "(m, 3) uint32, read-only: indices of vertices; no copy.")
+      .def("__len__", [](const Mesh& mesh) { return mesh.triangles->triangles.size(); })
+      .def("__repr__", [](const Mesh& mesh) {
+        return "<bvlab.Mesh: " + std::to_string(mesh.triangles->vertices.size()) + " vertices, " +
+               std::to_string(mesh.triangles->triangles.size()) + " triangles>";
+      });
+  module.def("_places_of", &places_of, py::arg("meshes"),
+             "Where the vertices of each mesh are read: addresses, for tests.");
+  module.def("read", &read, py::arg("path"),
+             R"(The mesh in a file that assimp reads (OFF, OBJ, PLY and STL to the last digit).
+
+ValueError: missing, truncated, or no mesh; names the file, what is wrong, and where.)");
+  module.def("named_mesh", &named, py::arg("name"), py::arg("polygons") = 500,
+             R"(A mesh by name, as definitions name them: "bunny", "torus", "bunny-hull".
+
+See bvlab.formula_meshes() for those made by formula. It has about so many `polygons`.)");
+}
+
+}  // namespace bvlab

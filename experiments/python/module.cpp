@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// bvlab._bvlab: the program's functions for Python. bvlab/__init__.py is the page to start from.
+#include "experiments/python/module.hpp"
+
+#include <pybind11/stl.h>
+
+#include "experiments/commands/kinds.hpp"
+#include "experiments/files/unusable.hpp"
+
+PYBIND11_MODULE(_bvlab, module) {
+  namespace py = pybind11;
+  using namespace bvlab;
+  module.doc() = "What bvlab is made of; use `import bvlab`.";
+  // Python's own words for what the program exits with 2 for.
+  py::register_local_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const Unusable& error) {
+      PyErr_SetString(PyExc_ValueError, error.what());
+    }
+  });
+  module.def(
+      "names",
+      [](const std::string& kind) {
+        py::dict all;
+        for (const auto& [name, description] : kind_of(kind).entries())
+          all[py::str(name)] = description;
+        return all;
+      },
+      py::arg("kind"), "Each name of that kind with what it is, as `bvlab list KIND`.");
+  module.def("kinds", [] {
+    std::vector<std::string> all;
+    for (const Kind& kind : kinds()) all.emplace_back(kind.name);
+    return all;
+  });
+  add_meshes(module);
+  add_replaying(module);
+  add_world(module);
+  add_running(module);
+}

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The pairs of bodies that can be within a distance of each other: those whose boxes, made larger
+/// by half of it on every side, meet.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "experiments/replay/box_methods.hpp"
+#include "traversal/body_pair.hpp"
+#include "traversal/rotated_mesh_box.hpp"
+
+namespace bvlab {
+
+class NearWithin {
+ public:
+  /// Object i uses mesh i mod meshes.size().
+  NearWithin(std::span<const TriangleMesh> meshes, std::size_t objects);
+
+  /// i < j, sorted. Of who is not present nothing is known. `distance` may be infinite.
+  std::vector<ObjectPair> pairs(std::span<const Pose> poses, std::span<const std::uint8_t> present,
+                                double distance);
+
+ private:
+  std::vector<RotatedMeshBox> of_meshes_;
+  std::size_t objects_;
+  std::unique_ptr<AnyMethod<float>> method_;
+  std::vector<Box<float>> boxes_;        // of those that are present
+  std::vector<std::uint32_t> of_boxes_;  // whose each is
+};
+
+}  // namespace bvlab

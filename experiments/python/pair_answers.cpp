@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/python/pair_answers.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "experiments/replay/any_bodies.hpp"
+#include "experiments/replay/registry.hpp"
+#include "experiments/replay/triangle_test.hpp"
+#include "traversal/bodies.hpp"
+#include "traversal/counters.hpp"
+#include "traversal/queries/contacts.hpp"
+#include "traversal/queries/distance.hpp"
+
+namespace bvlab {
+namespace {
+
+/// Bodies under one query, which are moved where they stand elsewhere than when they were asked.
+template <class Query>
+class AskedBodies {
+ public:
+  AskedBodies(const AnyHierarchies& hierarchies, std::string_view volume, std::size_t objects,
+              Frame frame)
+      : bodies_(loops_of<Query>(volume).bodies(hierarchies, objects, frame)), poses_(objects) {}
+
+  void ask(const ObjectPair& pair, std::span<const Pose> poses, Query& query) {
+    // Volumes are posed relative to where bodies are: see centre_of.
+    if (!origin_) origin_ = centre_of(poses);
+    for (const auto k : {pair.i, pair.j}) {
+      if (poses_[k] == poses[k]) continue;
+      bodies_.move(k, poses[k], *origin_);
+      poses_[k] = poses[k];
+    }
+    NotCounting counter;
+    bodies_.pair(pair, query, counter).from_roots();
+  }
+
+ private:
+  AnyBodies<Query, NotCounting> bodies_;
+  std::vector<std::optional<Pose>> poses_;
+  std::optional<Vec3<double>> origin_;
+};
+
+/// A variant whose loops are found by the volume's name: the answers are the same whatever is
+/// asked.
+Variant gathered(Variant variant) {
+  if (variant.kernel == "gathered") return variant;
+  set_tree(variant, "binary");
+  variant.leaf_size = 1;
+  const auto known = volumes();
+  const auto has = [&](std::string_view name) {
+    return std::any_of(known.begin(), known.end(), [&](const Named& v) { return v.name == name; });
+  };
+  variant.volume = has("obb") ? "obb" : known.at(0).name;
+  return variant;
+}
+
+}  // namespace
+
+struct PairAnswers::Engine {
+  Engine(std::span<const TriangleMesh> meshes, std::size_t objects, const Variant& variant)
+      : meshes(meshes), objects(objects), variant(gathered(variant)) {}
+
+  template <class Query>
+  AskedBodies<Query>& of(std::optional<AskedBodies<Query>>& bodies) {
+    if (!hierarchies) hierarchies = volume_entry(variant.volume).hierarchies(meshes, variant);
+    if (!bodies) bodies.emplace(*hierarchies, variant.volume, objects, frame_of(variant));
+    return *bodies;
+  }
+
+  std::span<const TriangleMesh> meshes;
+  std::size_t objects;
+  Variant variant;
+  std::unique_ptr<AnyHierarchies> hierarchies;
+  std::optional<AskedBodies<Contacts>> for_contacts;
+  std::optional<AskedBodies<Distance>> for_distances;
+};
+
+PairAnswers::PairAnswers(std::span<const TriangleMesh> meshes, std::size_t objects,
+                         const Variant& variant)
+    : engine_(std::make_unique<Engine>(meshes, objects, variant)) {}
+PairAnswers::~PairAnswers() = default;
+
+std::vector<std::array<std::uint32_t, 4>> PairAnswers::contacts(std::span<const ObjectPair> pairs,
+                                                                std::span<const Pose> poses) {
+  auto& bodies = engine_->of(engine_->for_contacts);
+  const TriangleTest test = triangle_test(engine_->variant.precision);
+  std::vector<std::array<std::uint32_t, 4>> rows;
+  std::vector<Contact> found;
+  for (const ObjectPair& pair : pairs) {
+    found.clear();
+    Contacts query(found, test);
+    bodies.ask(pair, poses, query);
+    std::sort(found.begin(), found.end());
+    for (const auto& [a, b] : found) rows.push_back({pair.i, pair.j, a, b});
+  }
+  return rows;
+}
+
+std::vector<double> PairAnswers::distances(std::span<const ObjectPair> pairs,
+                                           std::span<const Pose> poses) {
+  auto& bodies = engine_->of(engine_->for_distances);
+  std::vector<double> all;
+  for (const ObjectPair& pair : pairs) {
+    Distance query(engine_->variant.relative_error);
+    bodies.ask(pair, poses, query);
+    all.push_back(query.distance());
+  }
+  return all;
+}
+
+}  // namespace bvlab

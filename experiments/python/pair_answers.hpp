@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Contacts and distances of some pairs of bodies, each from the roots of its trees: what a World
+/// is asked beside which pairs touch.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "experiments/replay/replay.hpp"
+#include "hierarchies/geometry/pose.hpp"
+#include "traversal/body_pair.hpp"
+
+namespace bvlab {
+
+class PairAnswers {
+ public:
+  /// Object i uses mesh i mod meshes.size(); the meshes must outlive this. Of the variant, volume,
+  /// build, leaf size, fit and precision count. Trees are built when they are first asked.
+  PairAnswers(std::span<const TriangleMesh> meshes, std::size_t objects, const Variant& variant);
+  ~PairAnswers();
+
+  /// Object i, object j, triangle of i, triangle of j: pair by pair, sorted in each. `poses` has
+  /// one for each object.
+  std::vector<std::array<std::uint32_t, 4>> contacts(std::span<const ObjectPair> pairs,
+                                                     std::span<const Pose> poses);
+  /// Of each pair, in units of the meshes; 0 where they touch.
+  std::vector<double> distances(std::span<const ObjectPair> pairs, std::span<const Pose> poses);
+
+ private:
+  struct Engine;
+  std::unique_ptr<Engine> engine_;
+};
+
+}  // namespace bvlab

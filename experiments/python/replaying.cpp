@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// replay, boxes, predict: what the commands of these names do, from arrays.
+#include <pybind11/stl.h>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/python/arrays.hpp"
+#include "experiments/python/meshes.hpp"
+#include "experiments/python/module.hpp"
+#include "experiments/python/signals.hpp"
+#include "experiments/python/variants.hpp"
+#include "experiments/replay/coherence.hpp"
+#include "experiments/replay/configurations.hpp"
+#include "experiments/replay/predict.hpp"
+#include "experiments/replay/replay_boxes.hpp"
+#include "experiments/replay/replay_totals.hpp"
+#include "experiments/scenes/checked_trace.hpp"
+
+namespace bvlab {
+namespace {
+
+using namespace py::literals;
+
+/// What `replay` and `boxes` give.
+struct Result {
+  py::object answers, series, frame_seconds;
+  py::dict totals;
+};
+
+py::dict dictionary(const Totals& totals) {
+  return py::module_::import("json").attr("loads")(totals.text());
+}
+
+Trace trace_from(const py::handle& poses) {
+  const auto array =
+      array_of<double>(poses, "poses", Kind::real, {{"frames"}, {"objects"}, {"7", 7}});
+  return checked_trace(static_cast<std::size_t>(array.shape(0)),
+                       static_cast<std::size_t>(array.shape(1)),
+                       {array.data(), array.data() + array.size()}, "poses");
+}
+
+py::object answers_of(ReplayResult& result, const Trace& trace, const std::string& query) {
+  const std::vector<py::ssize_t> cells{static_cast<py::ssize_t>(trace.frames),
+                                       static_cast<py::ssize_t>(trace.pairs())};
+  if (query == "touching") return taken<std::uint8_t>(std::move(result.touching), cells);
+  if (query == "distance") return taken<double>(std::move(result.distances), cells);
+  return taken_rows<std::uint32_t, 5>(std::move(result.contacts));
+}
+
+/// One row a frame: n_u, n_v, n_p, front, hits.
+py::object series_of(std::vector<FrameCounts>&& rows) {
+  const auto count = static_cast<py::ssize_t>(rows.size());
+  return taken<FrameCounts>(std::move(rows), {count});
+}
+
+struct Wanted {
+  bool count, answers, series, frame_seconds;
+  int threads;
+};
+
+Result play(const py::object& given_meshes, const py::object& given_poses,
+            const VariantWords& words, const Wanted& wanted) {
+  Variant variant = variant_from(words);
+  check_threads(wanted.threads);
+  const Meshes meshes(given_meshes);
+  std::string reason;
+  if (words.configuration) {
+    Chosen chosen = configured(variant, *words.configuration, meshes.span());
+    variant = std::move(chosen.variant), reason = std::move(chosen.reason);
+  }
+  const Trace trace = trace_from(given_poses);
+  ReplayOptions options;
+  options.count = wanted.count ? Count::on : Count::off;
+  options.threads = static_cast<unsigned>(wanted.threads);
+  options.keep_answers = wanted.answers;
+  options.keep_series = wanted.series;
+  options.keep_frame_seconds = wanted.frame_seconds;
+  Signals signals;
+  options.after_frame = [&](std::size_t) { signals(); };
+  auto [result, totals] = released([&] {
+    require_finite_corners(trace, "poses", meshes.span());
+    ReplayResult played = replay(meshes.span(), trace, variant, options);
+    Totals of_it = totals_of(played, meshes.span(), trace, variant, options);
+    if (!reason.empty()) of_it.set("recommended", reason);
+    return std::pair(std::move(played), std::move(of_it));
+  });
+  Result all{py::none(), py::none(), py::none(), dictionary(totals)};
+  if (wanted.answers) all.answers = answers_of(result, trace, variant.query);
+  if (wanted.series) all.series = series_of(std::move(result.series));
+  if (wanted.frame_seconds) {
+    const auto frames = static_cast<py::ssize_t>(result.frame_seconds.size());
+    all.frame_seconds = taken<double>(std::move(result.frame_seconds), {frames});
+  }
+  return all;
+}
+
+template <class T>
+Result play_boxes(const py::array& array, const BoxReplayOptions& options) {
+  const BoxTrace<T> trace{
+      static_cast<std::size_t>(array.shape(0)),
+      static_cast<std::size_t>(array.shape(1)),
+      {static_cast<const Box<T>*>(array.data()), static_cast<std::size_t>(array.size() / 6)},
+      "trace"};
+  auto result = released([&] { return replay_boxes(trace, options); });
+  const py::dict totals = dictionary(totals_of(result, trace, options));
+  py::object pairs = py::none();
+  if (options.keep_pairs) pairs = taken_rows<std::uint32_t, 3>(std::move(result.pairs));
+  return {pairs, py::none(), py::none(), totals};
+}
+
+Result boxes(const py::object& given, const std::string& method, bool coherent,
+             const std::string& precision, int threads, bool answers) {
+  check_threads(threads);
+  BoxReplayOptions options;
+  options.method = method;
+  options.precision = precision;
+  options.coherence = coherent ? Coherence::on : Coherence::off;
+  options.threads = threads;
+  options.keep_pairs = answers;
+  check(options);
+  Signals signals;
+  options.after_frame = [&](std::size_t) { signals(); };
+  // float32 stays what it is; everything else is float64.
+  const bool narrow = py::isinstance<py::array>(given) &&
+                      py::reinterpret_borrow<py::array>(given).dtype().is(py::dtype::of<float>());
+  const std::vector<Axis> axes{{"frames"}, {"boxes"}, {"6", 6}};
+  if (narrow) return play_boxes<float>(array_of<float>(given, "trace", Kind::real, axes), options);
+  return play_boxes<double>(array_of<double>(given, "trace", Kind::real, axes), options);
+}
+
+py::dict predicted(const py::object& given_meshes, const py::object& given_poses,
+                   const VariantWords& words, std::optional<std::size_t> stride,
+                   std::optional<std::size_t> window) {
+  const Variant variant = variant_from(words);
+  const Meshes meshes(given_meshes);
+  const Trace trace = trace_from(given_poses);
+  PredictOptions options = options_for(trace.frames);
+  if (stride || window) {
+    const PredictOptions otherwise;
+    options = {stride.value_or(otherwise.stride), window.value_or(otherwise.window)};
+  }
+  if (options.stride < 1 || options.window < 2)
+    throw Unusable("--stride, --window", "must be at least 1 and 2");
+  const auto [rows, sums] = released([&] {
+    require_finite_corners(trace, "poses", meshes.span());
+    return std::pair(predict(meshes.span(), trace, variant, options),
+                     coherence(meshes.span(), trace, variant));
+  });
+  py::dict strategies;
+  for (const Predicted& row : rows)
+    strategies[py::str(std::string(row.strategy))] =
+        py::dict("n_v"_a = row.n_v, "n_p"_a = row.n_p, "seconds"_a = row.seconds,
+                 "seconds_low"_a = row.low, "seconds_high"_a = row.high);
+  py::object survival = py::none();
+  if (sums.entries > 0)
+    survival = py::float_(static_cast<double>(sums.kept) / static_cast<double>(sums.entries));
+  py::list names;
+  for (const auto name : candidates(rows)) names.append(std::string(name));
+  const bool is_told = can_tell(rows) && names.size() == 1;
+  return py::dict("fastest"_a = is_told ? py::object(names[0]) : py::object(py::none()),
+                  "candidates"_a = names, "survival"_a = survival, "strategies"_a = strategies);
+}
+
+py::object total(const Result& result, const char* key) {
+  return result.totals.contains(key) ? py::object(result.totals[key]) : py::none();
+}
+
+void add_result(py::module_& module) {
+  py::class_<Result> type(module, "Result", py::module_local(),
+                          "What replay and boxes give: answers, and totals as --json has them.");
+  type.def_readonly("answers", &Result::answers,
+                    R"(As --out: what the query asks, see replay and boxes.
+None where answers=False.)")
+      .def_readonly("totals", &Result::totals, "Times in s, counts, the variant; a dict as --json.")
+      .def_readonly("series", &Result::series,
+                    R"(Of each frame, all pairs together: n_u, n_v, n_p, front, hits.
+A structured array; None unless series=True. pandas.DataFrame(result.series) has them as columns.)")
+      .def_readonly("frame_seconds", &Result::frame_seconds,
+                    "(frames,) float64; None unless frame_seconds=True.");
+  struct Field {
+    const char *name, *what;
+  };
+  static constexpr Field fields[] = {
+      {"seconds", "Posing and querying every frame, in s; no building."},
+      {"build_seconds", "Building the hierarchies, in s."},
+      {"first_seconds", "The first frame alone, in s."},
+      {"n_u", "Volumes posed; None unless count=True."},
+      {"n_v", "Pairs of volumes tested; None unless count=True."},
+      {"n_p", "Pairs of triangles tested; None unless count=True."},
+      {"front", "Mean entries of the front, for each pair and frame."}};
+  for (const Field& field : fields)
+    type.def_property_readonly(
+        field.name, [name = field.name](const Result& result) { return total(result, name); },
+        field.what);
+  type.def("__repr__", [](const Result& result) {
+    std::string text = "<bvlab.Result:";
+    for (const char* key : {"volume", "strategy", "query", "method"})
+      if (result.totals.contains(key))
+        text += " " + py::str(result.totals[key]).cast<std::string>();
+    for (const char* key : {"frames", "touching", "contacts", "overlaps", "seconds"})
+      if (result.totals.contains(key))
+        text += std::string(", ") + key + " " + py::str(result.totals[key]).cast<std::string>();
+    return text + ">";
+  });
+}
+
+}  // namespace
+
+void add_replaying(py::module_& module) {
+  PYBIND11_NUMPY_DTYPE(FrameCounts, n_u, n_v, n_p, front, hits);
+  add_result(module);
+  const Variant d = default_variant();
+  const BoxReplayOptions box;
+  const std::optional<std::string> none;
+  module.def(
+      "replay",
+      [](const py::object& meshes, const py::object& poses, const std::string& volume,
+         const std::string& strategy, const std::string& query,
+         std::optional<std::uint32_t> fan_out, const std::optional<std::string>& frame,
+         const std::string& kernel, const std::optional<std::string>& configuration,
+         const std::string& build, std::uint32_t leaf_size, const std::string& fit,
+         const std::string& precision, double relative_error, bool count, int threads, bool answers,
+         bool series, bool frame_seconds) {
+        return play(meshes, poses,
+                    {volume, strategy, query, fan_out, frame, kernel, configuration, build,
+                     leaf_size, fit, precision, relative_error},
+                    {count, answers, series, frame_seconds, threads});
+      },
+      "meshes"_a, "poses"_a, py::kw_only(), "volume"_a = d.volume, "strategy"_a = d.strategy,
+      "query"_a = d.query, "fan_out"_a = py::none(), "frame"_a = py::none(), "kernel"_a = d.kernel,
+      "configuration"_a = none, "build"_a = d.build, "leaf_size"_a = d.leaf_size, "fit"_a = d.fit,
+      "precision"_a = d.precision, "relative_error"_a = d.relative_error, "count"_a = false,
+      "threads"_a = 1, "answers"_a = true, "series"_a = false, "frame_seconds"_a = false,
+      R"(Plays a motion through one variant of the engine, as `bvlab replay`.
+
+meshes   a Mesh, or a list of meshes (or of anything with .vertices and .faces); object i uses mesh
+         i mod their number
+poses    (frames, objects, 7) real: x y z qw qx qy qz, object to world; see bvlab.poses
+query    result.answers is, for all pairs (0,1) (0,2) ... (1,2) ... of objects:
+         "touching"  uint8 (frames, pairs): 1 where the two surfaces share a point
+         "contacts"  uint32 (k, 5): frame, object i, object j, triangle of i, triangle of j; sorted
+         "distance"  float64 (frames, pairs), in units of the meshes: 0 where they touch
+count    fills n_u, n_v, n_p of the totals (and times that); the recursive strategy is played once
+         more, to say what was skipped
+series   fills result.series, frame_seconds fills result.frame_seconds
+
+fan_out  children a node, at most: 2, 4, 8, 16 (default: 2); frame: "world" or "body", where volumes are
+         compared (default: "world"); kernel: see bvlab.kernels()
+
+configuration="recommended" chooses volume, tree, strategy, build, fit and leaf size. Which names
+there are: bvlab.volumes(), strategies(), queries(), frames(), kernels(), builds(), precisions(),
+configurations().
+Ctrl-C ends it. ValueError: the line that the program would print.)");
+  module.def("boxes", &boxes, "trace"_a, py::kw_only(), "method"_a = box.method,
+             "coherent"_a = true, "precision"_a = box.precision, "threads"_a = box.threads,
+             "answers"_a = true,
+             R"(Finds the overlapping pairs of boxes, frame by frame, as `bvlab boxes`.
+
+trace    (frames, boxes, 6) real: lo x y z, hi x y z; touching counts as overlapping. float32 is
+         compared as float32, all else as float64. It must not be changed while this runs.
+
+The result's answers: uint32 (k, 3): frame, i, j with i < j; every overlapping pair once, sorted.
+bvlab.methods() has the names. ValueError: NaN, infinity, lo > hi, another shape.)");
+  module.def(
+      "predict",
+      [](const py::object& meshes, const py::object& poses, const std::string& volume,
+         const std::string& query, std::optional<std::uint32_t> fan_out,
+         const std::optional<std::string>& frame, const std::string& build, std::uint32_t leaf_size,
+         const std::string& fit, double relative_error, std::optional<std::size_t> stride,
+         std::optional<std::size_t> window) {
+        const Variant variant = default_variant();
+        const VariantWords words{
+            volume, variant.strategy, query, fan_out,           frame,         variant.kernel, {},
+            build,  leaf_size,        fit,   variant.precision, relative_error};
+        return predicted(meshes, poses, words, stride, window);
+      },
+      "meshes"_a, "poses"_a, py::kw_only(), "volume"_a = d.volume, "query"_a = d.query,
+      "fan_out"_a = py::none(), "frame"_a = py::none(), "build"_a = d.build,
+      "leaf_size"_a = d.leaf_size, "fit"_a = d.fit, "relative_error"_a = d.relative_error,
+      "stride"_a = py::none(), "window"_a = py::none(),
+      R"(What each strategy would cost on a motion, from windows of it, as `bvlab predict`.
+
+A dict: fastest, the strategy that takes the fewest seconds (None where intervals do not tell it from
+the next, or windows are too few); candidates, those that may be it, the likeliest first; survival, the
+part of the front that is there again a frame later (None where no pair was near another); strategies, of
+each by its name {"n_v": volume tests, "n_p": triangle tests, "seconds": s, "seconds_low", "seconds_high"}.
+How often intervals hold what a strategy then takes is said in experiments/replay/predict.hpp.
+stride and window, in frames: None for all of a short trace. meshes, poses, fan_out and frame as in replay.)");
+}
+
+}  // namespace bvlab

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// World: many bodies that are told to move, and asked which touch.
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <mutex>
+#include <optional>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/python/meshes.hpp"
+#include "experiments/python/module.hpp"
+#include "experiments/python/near_within.hpp"
+#include "experiments/python/pair_answers.hpp"
+#include "experiments/python/signals.hpp"
+#include "experiments/python/variants.hpp"
+#include "experiments/replay/worlds.hpp"
+#include "experiments/scenes/trace.hpp"
+
+namespace bvlab {
+namespace {
+
+using namespace py::literals;
+
+class PyWorld {
+ public:
+  PyWorld(const py::object& meshes, std::size_t objects, const Variant& variant, int threads)
+      : meshes_(meshes),
+        objects_(objects > 0 ? objects : meshes_.given()),
+        variant_(variant),
+        moved_to_(objects_),
+        stands_(objects_),
+        present_(objects_, 0),
+        is_new_(objects_, 0) {
+    if (objects_ > std::numeric_limits<std::uint32_t>::max())
+      throw Unusable("objects", "more than 32-bit indices can name");
+    engine_ = released([&] { return make_world(meshes_.span(), objects_, variant_, threads); });
+    for (const TriangleMesh& mesh : meshes_.span())
+      small_.push_back(std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                                   [](const auto& v) { return v.cwiseAbs().maxCoeff() < safe; }));
+  }
+
+  std::size_t objects() const { return objects_; }
+
+  void move(const py::object& which, const py::object& pose) {
+    if (PyLong_Check(which.ptr())) {
+      const auto row = array_of<double>(pose, "pose", Kind::real, {{"7", 7}});
+      const std::uint32_t object = index(which);
+      const Pose to = pose_of(row.data(), object);
+      const auto held = lock();
+      place(object, to);
+      return;
+    }
+    const auto indices = array_of<std::int64_t>(which, "objects", Kind::integer, {{"k"}});
+    const auto rows =
+        array_of<double>(pose, "poses", Kind::real, {{"k", indices.shape(0)}, {"7", 7}});
+    std::vector<std::pair<std::uint32_t, Pose>> moves;
+    for (py::ssize_t k = 0; k < indices.shape(0); ++k) {
+      const std::uint32_t object = index(indices.at(k));
+      moves.emplace_back(object, pose_of(rows.data() + 7 * k, object));
+    }
+    const auto held = lock();  // all of them or none
+    for (const auto& [object, to] : moves) place(object, to);
+  }
+
+  void remove(const py::object& which) {
+    const std::uint32_t object = index(which);
+    const auto held = lock();
+    engine_->take_out(object);
+    set(object, std::nullopt);
+  }
+
+  void update() {
+    const auto held = lock();
+    released([&] { settle(); });
+  }
+
+  py::array_t<double> timed_steps(const py::object& which, const py::object& poses) {
+    const auto indices =
+        array_of<std::int64_t>(which, "objects", Kind::integer, {{"steps"}, {"k"}});
+    const py::ssize_t steps = indices.shape(0), k = indices.shape(1);
+    const auto rows =
+        array_of<double>(poses, "poses", Kind::real, {{"steps", steps}, {"k", k}, {"7", 7}});
+    std::vector<std::pair<std::uint32_t, Pose>> moves;
+    for (py::ssize_t m = 0; m < steps * k; ++m) {
+      const std::uint32_t object = index(indices.data()[m]);
+      moves.emplace_back(object, pose_of(rows.data() + 7 * m, object));
+    }
+    std::vector<double> seconds;
+    const auto held = lock();
+    Signals signals;
+    released([&] {
+      using Clock = std::chrono::steady_clock;
+      for (py::ssize_t step = 0; step < steps; ++step) {
+        const auto start = Clock::now();
+        for (py::ssize_t m = step * k; m < (step + 1) * k; ++m)
+          place(moves[static_cast<std::size_t>(m)].first,
+                moves[static_cast<std::size_t>(m)].second);
+        settle();
+        seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+        signals();
+      }
+    });
+    return taken<double>(std::move(seconds), {steps});
+  }
+
+  py::array_t<std::uint32_t> touching() {
+    const auto held = lock();
+    return rows_of(touching_pairs());
+  }
+
+  py::array_t<std::uint32_t> contacts() {
+    const auto held = lock();
+    return taken_rows<std::uint32_t, 4>(
+        released([&] { return answers().contacts(touching_pairs(), stands_); }));
+  }
+
+  py::tuple distances(double below) {
+    if (!(below >= 0)) throw Unusable("below", "must be a number that is not negative");
+    const auto held = lock();
+    auto [pairs, distances] = released([&] {
+      if (!near_) near_.emplace(meshes_.span(), objects_);
+      const auto near = near_->pairs(stands_, present_, below);
+      const auto all = answers().distances(near, stands_);
+      std::pair<std::vector<ObjectPair>, std::vector<double>> kept;
+      for (std::size_t k = 0; k < near.size(); ++k)
+        if (all[k] <= below) kept.first.push_back(near[k]), kept.second.push_back(all[k]);
+      return kept;
+    });
+    const auto count = static_cast<py::ssize_t>(distances.size());
+    return py::make_tuple(rows_of(std::move(pairs)), taken<double>(std::move(distances), {count}));
+  }
+
+  std::size_t near() const { return engine_->near(); }
+  std::size_t asked() const { return engine_->asked(); }
+
+ private:
+  /// No component of R v + t is beyond the largest number, with numbers below this.
+  static constexpr double safe = std::numeric_limits<double>::max() / 8;
+
+  /// One thread at a time; whoever waits lets Python go on.
+  std::unique_lock<std::mutex> lock() {
+    std::unique_lock held(mutex_, std::try_to_lock);
+    if (!held.owns_lock()) {
+      const py::gil_scoped_release waiting;
+      held.lock();
+    }
+    return held;
+  }
+
+  std::uint32_t index(const py::object& given) const {
+    const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(given.ptr()));
+    if (!whole) throw py::error_already_set();
+    int beyond = 0;
+    const long long number = PyLong_AsLongLongAndOverflow(whole.ptr(), &beyond);
+    if (beyond != 0) throw py::index_error("no body of such a number");
+    return index(number);
+  }
+  std::uint32_t index(std::int64_t number) const {
+    if (number < 0 || static_cast<std::size_t>(number) >= objects_)
+      throw py::index_error("no body " + std::to_string(number) + "; there are " +
+                            std::to_string(objects_));
+    return static_cast<std::uint32_t>(number);
+  }
+
+  Pose pose_of(const double* v, std::uint32_t object) const {
+    const auto pose = pose_from({v[0], v[1], v[2]}, v[3], v[4], v[5], v[6]);
+    if (!pose) {
+      const bool finite = std::all_of(v, v + 7, [](double x) { return std::isfinite(x); });
+      throw Unusable("pose", std::string(finite ? "zero quaternion" : "not a finite number") +
+                                 " of body " + std::to_string(object));
+    }
+    const std::size_t mesh = object % meshes_.span().size();
+    const auto small = [](double x) { return std::abs(x) < safe; };
+    if (!small_[mesh] || !std::all_of(v, v + 3, small))
+      require_finite_corners(Trace{1, 1, {v, v + 7}}, "pose", meshes_.span().subspan(mesh, 1));
+    return *pose;
+  }
+
+  void place(std::uint32_t object, const Pose& pose) {
+    engine_->move(object, pose);
+    set(object, pose);
+  }
+  void settle() {
+    engine_->update();
+    for (const auto object : changed_) {
+      present_[object] = moved_to_[object].has_value();
+      if (present_[object]) stands_[object] = *moved_to_[object];
+      is_new_[object] = 0;
+    }
+    changed_.clear();
+  }
+  /// From the next update on.
+  void set(std::uint32_t object, const std::optional<Pose>& pose) {
+    moved_to_[object] = pose;
+    if (!is_new_[object]) changed_.push_back(object);
+    is_new_[object] = 1;
+  }
+
+  std::vector<ObjectPair> touching_pairs() {
+    const auto all = engine_->touching();
+    std::vector<ObjectPair> pairs(all.begin(), all.end());
+    std::sort(pairs.begin(), pairs.end(), [](const ObjectPair& a, const ObjectPair& b) {
+      return a.i != b.i ? a.i < b.i : a.j < b.j;
+    });
+    return pairs;
+  }
+
+  PairAnswers& answers() {
+    if (!answers_) answers_.emplace(meshes_.span(), objects_, variant_);
+    return *answers_;
+  }
+
+  static py::array_t<std::uint32_t> rows_of(std::vector<ObjectPair>&& pairs) {
+    static_assert(sizeof(ObjectPair) == 2 * sizeof(std::uint32_t));
+    const auto count = static_cast<py::ssize_t>(pairs.size());
+    return taken<std::uint32_t>(std::move(pairs), {count, 2});
+  }
+
+  Meshes meshes_;
+  std::size_t objects_;
+  Variant variant_;
+  std::mutex mutex_;
+  std::unique_ptr<WorldEngine> engine_;
+  std::optional<PairAnswers> answers_;
+  std::optional<NearWithin> near_;
+  std::vector<bool> small_;                    // of each mesh
+  std::vector<std::optional<Pose>> moved_to_;  // of each body: where it is from the next update on
+  std::vector<Pose> stands_;                   // where it stood in the last one
+  std::vector<std::uint8_t> present_;          // in the last one
+  std::vector<std::uint8_t> is_new_;           // whether it is among `changed_`
+  std::vector<std::uint32_t> changed_;
+};
+
+}  // namespace
+
+void add_world(py::module_& module) {
+  const Variant d = default_variant();
+  py::class_<PyWorld>(
+      module, "World", py::module_local(),
+      R"(Many bodies, of which pairs that are near each other are asked when one of the two has moved.
+
+World(meshes)            body i is meshes[i]; the same Mesh again costs nothing
+World(meshes, objects=n) n bodies: body i is meshes[i mod their number]
+
+A body is in the scene from its first `move` on. Answers are those of the last `update`: they and the
+state that makes them cheap stay in C++. Any volume and strategy by name, as in replay; without a
+name, what is recommended. Another thread may use a World; it waits its turn.)")
+      .def(py::init([](const py::object& meshes, std::size_t objects,
+                       const std::optional<std::string>& volume,
+                       const std::optional<std::string>& strategy,
+                       const std::optional<std::uint32_t>& fan_out,
+                       const std::optional<std::string>& frame,
+                       const std::optional<std::string>& kernel,
+                       const std::optional<std::string>& configuration, const std::string& build,
+                       std::uint32_t leaf_size, const std::string& fit,
+                       const std::string& precision, int threads) {
+             const Variant standard = default_variant();
+             VariantWords words{volume.value_or(standard.volume),
+                                strategy.value_or(standard.strategy),
+                                "touching",
+                                fan_out,
+                                frame,
+                                kernel.value_or(standard.kernel),
+                                configuration,
+                                build,
+                                leaf_size,
+                                fit,
+                                precision,
+                                0};
+             if (!volume && !strategy && !fan_out && !frame && !kernel && !configuration)
+               words.configuration = "recommended";
+             const Variant variant = variant_from(words);
+             check_threads(threads);
+             return std::make_unique<PyWorld>(meshes, objects, variant, threads);
+           }),
+           "meshes"_a, py::kw_only(), "objects"_a = 0, "volume"_a = py::none(),
+           "strategy"_a = py::none(), "fan_out"_a = py::none(), "frame"_a = py::none(),
+           "kernel"_a = py::none(), "configuration"_a = py::none(), "build"_a = d.build,
+           "leaf_size"_a = d.leaf_size, "fit"_a = d.fit, "precision"_a = d.precision,
+           "threads"_a = 1)
+      .def(
+          "move", &PyWorld::move, "object"_a, "pose"_a,
+          R"(Says where a body is from the next update on, or several: move(i, pose), move(indices, poses).
+
+pose     (7,) real: x y z qw qx qy qz, object to world; of k bodies (k, 7). All are moved or none.
+ValueError: not finite, a zero quaternion. IndexError: no such body.)")
+      .def("remove", &PyWorld::remove, "object"_a,
+           "Takes a body out of the scene, until it is moved again.")
+      .def("update", &PyWorld::update,
+           "Finds the answers for where bodies are now; what has not moved costs nothing.")
+      .def(
+          "timed_steps", &PyWorld::timed_steps, "objects"_a, "poses"_a,
+          R"(Moves and updates step by step in C++, and says what each took: (steps,) float64, in s.
+
+objects  (steps, k) integer: who moves in each step; poses: (steps, k, 7) real. What a loop in Python
+takes beyond that is Python's.)")
+      .def("touching", &PyWorld::touching,
+           "uint32 (k, 2): the pairs i < j whose surfaces share a point, sorted.")
+      .def(
+          "contacts", &PyWorld::contacts,
+          R"(uint32 (k, 4): body i, body j, triangle of i, triangle of j, of all triangles that share a point; sorted.
+
+Sought from the roots for each pair that touches.)")
+      .def("distances", &PyWorld::distances, "below"_a,
+           R"(The pairs no farther apart than `below`, and how far: uint32 (k, 2), float64 (k,).
+
+In units of the meshes; 0 where they touch. Sought from the roots.)")
+      .def_property_readonly("near", &PyWorld::near, "Pairs whose boxes met in the last update.")
+      .def_property_readonly("asked", &PyWorld::asked, "Pairs that the last update asked.")
+      .def("__len__", &PyWorld::objects);
+}
+
+}  // namespace bvlab

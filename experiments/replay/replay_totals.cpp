@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/replay/replay_totals.hpp"
+
+#include <algorithm>
+
+#include "experiments/files/peak_bytes.hpp"
+#include "experiments/replay/topology_of.hpp"
+
+namespace bvlab {
+namespace {
+
+/// What there would have been to do: every pair to consider and every volume to pose in every
+/// frame, and the tests of the recursive strategy. That is played once more for it, where counting
+/// was asked for. In a body's frame a volume is posed for each test, so there is no such number.
+void skipped(Totals& totals, const Variant& variant, const ReplayOptions& options,
+             std::span<const TriangleMesh> meshes, const Trace& trace, const ReplayResult& result) {
+  if (options.count != Count::on || frame_of(variant) == Frame::body) {
+    totals.set("skipped", nullptr);
+    return;
+  }
+  Variant from_roots = variant;
+  from_roots.strategy = "recursive";
+  ReplayOptions counted;
+  counted.count = Count::on;
+  counted.keep_answers = false;
+  counted.after_frame = options.after_frame;
+  const ReplayResult recursive =
+      variant.strategy == "recursive" ? result : replay(meshes, trace, from_roots, counted);
+  std::uint64_t volumes = 0;
+  for (std::size_t m = 0; m < std::min(meshes.size(), trace.objects); ++m) {
+    const std::size_t alike = (trace.objects - m - 1) / meshes.size() + 1;
+    volumes += alike * nodes_of(meshes[m], from_roots);
+  }
+  Totals parts;
+  const auto part = [&](const char* key, std::uint64_t done, std::uint64_t all) {
+    Totals pair;
+    pair.set("done", done).set("of", all);
+    parts.set(key, pair);
+  };
+  part("pairs_considered", result.considered, trace.pairs() * trace.frames);
+  part("volumes_posed", result.n_u, volumes * trace.frames);
+  part("volume_tests", result.n_v, recursive.n_v);
+  part("triangle_tests", result.n_p, recursive.n_p);
+  totals.set("skipped", parts);
+}
+
+/// What every kind of replay begins its totals with.
+template <class Result>
+Totals times_of(const Trace& trace, const Result& result) {
+  Totals totals;
+  totals.set("seconds", result.seconds)
+      .set("build_seconds", result.build_seconds)
+      .set("first_seconds", result.first_seconds)
+      .set("peak_bytes", peak_bytes())
+      .set("frames", trace.frames)
+      .set("objects", trace.objects)
+      .set("pairs", trace.pairs());
+  return totals;
+}
+
+template <class Result>
+void set_counts(Totals& totals, Count count, const Result& result) {
+  for (const auto& [key, value] :
+       {std::pair{"n_u", result.n_u}, {"n_v", result.n_v}, {"n_p", result.n_p}})
+    if (count == Count::on)
+      totals.set(key, value);
+    else
+      totals.set(key, nullptr);
+}
+
+}  // namespace
+
+Totals totals_of(const ReplayResult& result, std::span<const TriangleMesh> meshes,
+                 const Trace& trace, const Variant& variant, const ReplayOptions& options) {
+  Totals totals = times_of(trace, result);
+  totals.set(variant.query == "contacts" ? "contacts" : "touching", result.hits);
+  set_counts(totals, options.count, result);
+  totals.set("front", result.front)
+      .set("fan_out", variant.fan_out)
+      .set("frame", variant.frame)
+      .set("kernel", variant.kernel)
+      .set("volume", variant.volume)
+      .set("strategy", variant.strategy)
+      .set("query", variant.query)
+      .set("build", variant.build)
+      .set("leaf_size", variant.leaf_size)
+      .set("fit", variant.fit)
+      .set("precision", variant.precision)
+      .set("threads", options.threads);
+  skipped(totals, variant, options, meshes, trace, result);
+  return totals;
+}
+
+Totals totals_of(const BudgetedResult& result, const Trace& trace, const Variant& variant,
+                 std::uint64_t budget, Count count) {
+  Totals totals = times_of(trace, result);
+  totals.set("budget", budget)
+      .set("touching", result.touching)
+      .set("apart", result.apart)
+      .set("unknown", result.unknown)
+      .set("deepest", result.deepest)
+      .set("mean_deepest", result.mean_deepest);
+  set_counts(totals, count, result);
+  totals.set("volume", variant.volume)
+      .set("query", variant.query)
+      .set("build", variant.build)
+      .set("leaf_size", variant.leaf_size)
+      .set("fit", variant.fit)
+      .set("precision", variant.precision);
+  return totals;
+}
+
+}  // namespace bvlab

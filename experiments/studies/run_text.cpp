@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/studies/run_text.hpp"
+
+#include <charconv>
+#include <optional>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/recorder/record.hpp"
+#include "experiments/studies/study.hpp"
+
+namespace bvlab {
+namespace {
+
+/// "3/8"; the whole where nothing was said.
+Part part_from(const std::string& text, std::size_t traces) {
+  if (text.empty()) return {};
+  Part part;
+  const char* const last = text.data() + text.size();
+  const auto [slash, error] = std::from_chars(text.data(), last, part.number);
+  if (error == std::errc{} && slash != last && *slash == '/')
+    if (const auto [end, fault] = std::from_chars(slash + 1, last, part.of);
+        fault == std::errc{} && end == last && part.number >= 1 && part.number <= part.of &&
+        part.of <= traces)
+      return part;
+  throw Unusable("--part " + text + ": K/N is needed, K from 1 to N, and N at most " +
+                 std::to_string(traces) + ", as many as there are traces");
+}
+
+/// The folder of the record, with what is known of it before anything is run.
+std::filesystem::path opened(const RunRequest& request, const Extends& extends) {
+  const std::filesystem::path folder = request.record.empty()
+                                           ? fresh_record("experiments/record")
+                                           : std::filesystem::path(request.record);
+  std::string command = "bvlab run " + request.file + " --record " + folder.string();
+  if (!request.part.empty()) command += " --part " + request.part;
+  if (request.options.measured == Measured::counts) command += " --counts";
+  open_record(folder, request.text, command, extends);
+  return folder;
+}
+
+[[noreturn]] void refuse_parts(const RunRequest& request) {
+  throw Unusable(request.file, "a study has no parts: it is run as a whole");
+}
+
+/// Nothing where it is an experiment.
+std::optional<StudyDefinition> checked_study(const RunRequest& request) {
+  auto study = study_from(request.text, request.file);
+  if (!study) return study;
+  check(*study);
+  if (request.options.measured == Measured::counts || !request.part.empty()) refuse_parts(request);
+  return study;
+}
+
+Definition checked_definition(const RunRequest& request) {
+  Definition definition = parse_definition(request.text, request.file);
+  check(definition);
+  return definition;
+}
+
+}  // namespace
+
+std::filesystem::path run_text(RunRequest request, const Progress& progress) {
+  if (const auto study = checked_study(request)) {
+    const auto folder = opened(request, [&](const std::string& held, const std::string&) {
+      const auto before = study_from(held, "its definition");
+      if (!before) throw Unusable("it is none of a study");
+      check_extends(*before, *study);
+    });
+    run_study(*study, folder, progress);
+    return folder;
+  }
+  const Definition definition = checked_definition(request);
+  if (!request.part.empty())
+    request.options.part = part_from(request.part, size_of(definition).traces);
+  const auto folder = opened(request, [&](const std::string& held, const std::string&) {
+    check_extends(parse_definition(held, "its definition"), definition);
+  });
+  run_experiment(definition, folder, request.options, progress);
+  return folder;
+}
+
+NamedSize size_of(const RunRequest& request) {
+  if (checked_study(request)) refuse_parts(request);
+  const Definition definition = checked_definition(request);
+  const NamedSize size{size_of(definition), definition.name};
+  part_from(request.part, size.traces);
+  return size;
+}
+
+}  // namespace bvlab
