@@ -5,17 +5,18 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import NullLocator
 
-import style
-from words import number
+from bvlab_plots import style
+from bvlab_plots.words import number
 
 COLUMN = 3.3  # inches
+PAGE = 6.85
 LETTERS = {
-    "font.size": 7,
-    "axes.titlesize": 7,
-    "axes.labelsize": 7,
-    "legend.fontsize": 6.5,
-    "xtick.labelsize": 6.5,
-    "ytick.labelsize": 6.5,
+    "font.size": 8,
+    "axes.titlesize": 8,
+    "axes.labelsize": 8,
+    "legend.fontsize": 8,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
     "lines.linewidth": 0.9,
     "lines.markersize": 2.8,
     "axes.linewidth": 0.6,

@@ -1,96 +1,77 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Numbers, tables and figures of the paper, from records.
+"""The paper's text and figures, from records.
 
 usage: generate.py RECORDS OUT
 
-RECORDS has a folder for each experiment, of its name; one that is absent leaves its part out. OUT gets numbers.tex,
-tables/, figures/, and have/<name>.tex for every experiment of which there is a record.
-
-    import generate
-    generate.numbers_of("experiments/record")        # {"publishedList": 1.40, ...}: the numbers, nothing written
-    generate.texts_of("experiments/record")          # the same as they stand in the paper, as LaTeX
+main.tex is a template: a number stands in it as <<function.key:format>>, as in the pages of plots/texts, and is computed by
+the same function (plots/quotes). OUT gets main.tex with the numbers in place, and figures/.
 """
 
+import re
 import sys
 from pathlib import Path
-
-import matplotlib
 
 sys.dont_write_bytecode = True
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "plots")]
-import boxes_parts as boxes  # noqa: E402
-import bunnies_parts as bunnies  # noqa: E402
-import exactness_parts as exactness  # noqa: E402
-import law_parts as law  # noqa: E402
-import libraries_parts as libraries  # noqa: E402
-import machine_part as machine  # noqa: E402
-import strategies_parts as strategies  # noqa: E402
-import volumes_parts as volumes  # noqa: E402
-import worlds_parts as worlds  # noqa: E402
-from sheet import Paper  # noqa: E402
+import quotes  # noqa: E402, F401
+import quoting  # noqa: E402
+from bvlab_plots.refused import Refused  # noqa: E402
 
-# The law is fitted in one part and tried on others.
-PARTS = (
-    machine.write_machine,
-    bunnies.write_nine_bunnies,
-    bunnies.write_talk,
-    bunnies.write_talk_scalar,
-    law.write_coherence,
-    strategies.write_best_rebuilds,
-    strategies.write_winners,
-    strategies.write_workloads,
-    law.write_sweep,
-    law.write_law_unseen,
-    law.write_law_bullet,
-    law.write_predict,
-    volumes.write_tightness,
-    volumes.write_fits,
-    volumes.write_posing,
-    volumes.write_cost_model,
-    libraries.write_hierarchies,
-    libraries.write_narrow_phase,
-    libraries.write_tournament,
-    libraries.write_tori,
-    libraries.write_peers_cgal,
-    libraries.write_closest_features,
-    exactness.write_triangles,
-    exactness.write_stability,
-    exactness.write_precision,
-    exactness.write_distance_error,
-    exactness.write_budget,
-    boxes.write_boxes,
-    boxes.write_boxes_motions,
-    boxes.write_boxes_sorts,
-    boxes.write_boxes_fast,
-    boxes.write_boxes_peers,
-    boxes.write_boxes_displacement,
-    worlds.write_worlds,
-)
+MARKS = [
+    (r"\[([^]]*)\]\([^)]*\)", r"\1"),
+    (r"&kappa;", r"$\\kappa$"),
+    (r"N<sub>v</sub>", r"$N_v$"),
+    (r"`([^`]*)`", r"\\emph{\1}"),
+    (r"([%&_#])", r"\\\1"),
+    (r"(\d) (\d{3})\b", r"\1\\,\2"),
+]
 
 
-def filled(records, out=None):
-    paper = Paper(records, out)
-    with matplotlib.rc_context():  # letters of print are for the paper's figures alone
-        for part in PARTS:
-            part(paper)
-    return paper
+def latex(text):
+    """What a page says, as LaTeX."""
+    for mark, instead in MARKS:
+        text = re.sub(mark, instead, text)
+    return text
 
 
-def numbers_of(records):
-    """Every number of the paper, by the name of its macro."""
-    return filled(records).values
+class Paper(quoting.Page):
+    """The template, with what functions give written as LaTeX."""
+
+    def filled(self, place):
+        name, key, _ = place.groups()
+        text = super().filled(place)
+        if text == place[0]:
+            return text
+        value = quoting.numbers(name, self.records)[0][key]
+        if not quoting.is_table(value):
+            return latex(text)
+        return "\n".join(" & ".join(latex(str(cell)) for cell in row) + r" \\" for row in value)
 
 
-def texts_of(records):
-    return filled(records).numbers
+def text(records=quoting.RECORDS):
+    return Paper("paper/main.tex", quoting.PAPER.read_text(), Path(records))
 
 
 def main():
     if len(sys.argv) != 3:
         sys.exit("usage: generate.py RECORDS OUT")
-    filled(*sys.argv[1:]).write_numbers()
+    records, out = map(Path, sys.argv[1:])
+    paper = text(records)
+    written = paper.written()
+    for fault in paper.faults:
+        print(f"generate.py: {fault}", file=sys.stderr)
+    if paper.faults:
+        sys.exit(2)
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "main.tex").write_text(written)
+    import drawings  # pylint: disable=import-outside-toplevel
+
+    try:
+        drawings.draw(records, out / "figures")
+    except Refused as fault:
+        sys.exit(f"generate.py: {fault}")
 
 
 if __name__ == "__main__":
