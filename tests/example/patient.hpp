@@ -24,7 +24,7 @@ class PatientFront : public Front {
   /// What rests is farther apart than what the query asks for.
   template <class Traversal>
   bool sweep(Traversal& traversal) {
-    auto& due = traversal.workspace().template room<std::vector<std::size_t>>();
+    auto& due = traversal.workspace().template scratch<std::vector<std::size_t>>();
     due.clear();
     for (std::size_t slot = 0; slot < size(); ++slot)
       if (!(rests_until_[slot] > displacement_ + traversal.query().limit())) due.push_back(slot);
@@ -32,12 +32,12 @@ class PatientFront : public Front {
     return traversal.look_at(due.size(), [&](std::size_t i) { return due[i]; });
   }
 
-  void stays(std::size_t slot, Seen seen, double gap) { rests_until_[slot] = until(seen, gap); }
+  void keep(std::size_t slot, Seen seen, double gap) { rests_until_[slot] = until(seen, gap); }
 
   std::size_t add(const NodePair& pair, Seen seen, double gap) {
     const std::size_t slot = Front::add(pair);
     rests_until_.resize(size());
-    stays(slot, seen, gap);
+    keep(slot, seen, gap);
     return slot;
   }
 

@@ -19,6 +19,8 @@ struct Fake {
 };
 static_assert(BroadPhaseMethod<Fake>);
 static_assert(!ReportsChanges<Fake>);
+static_assert(!TakesMoved<Fake>);
+static_assert(TakesMoved<Blocks<float, Closed>> && TakesMoved<Auto<double, HalfOpen>>);
 
 template <class List>
 struct AsTypes;
@@ -52,8 +54,17 @@ class BoxMethod : public ::testing::Test {
   /// Compares one frame with the definition, and the changes with the difference of two frames.
   static void check(M& method, const Frame<T>& frame, std::vector<Pair>& before,
                     const std::string& what) {
+    check(method, frame, before, what, method.overlapping(frame));
+  }
+  /// The same, where it is told which boxes moved.
+  static void check_told(M& method, const Frame<T>& frame, std::span<const std::uint32_t> moved,
+                         std::vector<Pair>& before, const std::string& what) {
+    if constexpr (TakesMoved<M>)
+      check(method, frame, before, what + ", told", method.update(frame, moved));
+  }
+  static void check(M& method, const Frame<T>& frame, std::vector<Pair>& before,
+                    const std::string& what, std::span<const Pair> found) {
     const auto right = pairs_by_definition<Contact>(frame);
-    const auto found = method.overlapping(frame);
     ASSERT_EQ(sorted(found), right) << M::name << ", " << what << ", " << frame.size() << " boxes";
     if constexpr (ReportsChanges<M>) {
       std::vector<Pair> began, ended;
@@ -170,8 +181,81 @@ TYPED_TEST_P(BoxMethod, FiveThousandBoxes) {
   }
 }
 
+/// Motions made to break what is kept from frame to frame, each for some frames, on one set; and
+/// told which boxes moved.
+TYPED_TEST_P(BoxMethod, HostileMotions) {
+  using T = typename TypeParam::Scalar;
+  for (const T largest : {T(0.06), T(0.3)}) {
+    BoxMaker<T> random(13);
+    const Frame<T> start = random.boxes(700, 0, 1, T(0.01), largest);
+    Frame<T> boxes = start;
+    TypeParam method(this->settings(Coherence::on)), told(this->settings(Coherence::on));
+    std::vector<Pair> before, told_before;
+    const auto move = [&](std::size_t k, T by, int axis) {
+      boxes[k].lo[axis] += by, boxes[k].hi[axis] += by;
+    };
+    for (int frame = 0; frame < 160; ++frame) {
+      const int motion = frame / 20, step = frame % 20;
+      const Frame<T> last = boxes;
+      switch (motion) {
+        case 0:  // one through all others, and back
+          boxes[3] = {{T(step) / 20, 0, 0}, {T(step) / 20 + T(0.2), 1, 1}};
+          break;
+        case 1:  // some to one point and out again
+          for (std::size_t k = 0; k < 60; ++k)
+            for (int axis = 0; axis < 3; ++axis) {
+              const T way = (T(0.5) - start[k].lo[axis]) * T(step < 10 ? step + 1 : 20 - step) / 10;
+              move(k, start[k].lo[axis] + way - boxes[k].lo[axis], axis);
+            }
+          break;
+        case 2:  // growing beyond the scene, and shrinking to points
+          for (std::size_t k = step % 2; k < 700; k += 31)
+            for (int axis = 0; axis < 3; ++axis) {
+              const T middle = (boxes[k].lo[axis] + boxes[k].hi[axis]) / 2,
+                      half = step < 10 ? (boxes[k].hi[axis] - middle) * T(1.5) : T(0);
+              boxes[k].lo[axis] = middle - half, boxes[k].hi[axis] = middle + half;
+            }
+          break;
+        case 3:  // teleports of a half, then of a few
+          for (std::size_t k = 0; k < 700; k += step < 5 ? 2 : 97)
+            boxes[k] = random.box(0, 1, T(0.01), largest);
+          break;
+        case 4:  // a part drifts; the others come and go, more and less than leaves have room for
+          for (std::size_t k = 0; k < boxes.size(); k += 40) move(k, T(0.003), step % 3);
+          if (step % 3 == 0) boxes.resize(boxes.size() - 1 - random.below(9));
+          if (step % 3 == 1)
+            for (unsigned k = random.below(30); k > 0; --k)
+              boxes.push_back(random.box(0, 1, T(0.01), largest));
+          break;
+        case 5:  // few and all in turn
+          for (std::size_t k = 0; k < boxes.size(); k += step % 4 == 0 ? 1 : 50)
+            move(k, T(step % 2 ? 0.002 : -0.002), step % 3);
+          break;
+        case 6:  // two take each other's places, together with their neighbours in the frame
+          for (std::size_t k = 0; k < 6; ++k)
+            std::swap(boxes[10 * k + static_cast<std::size_t>(step)], boxes[300 + 11 * k]);
+          break;
+        default:  // out of the scene, one by one, and all to one place
+          for (std::size_t k = 30 * static_cast<std::size_t>(step);
+               k < std::min(boxes.size(), 30 * static_cast<std::size_t>(step) + 30); ++k)
+            boxes[k] = step % 2 ? random.box(50, 51, 0, 1) : Box<T>{{5, 5, 5}, {6, 6, 6}};
+      }
+      std::vector<std::uint32_t> moved{0, 0};  // twice, and though it did not move
+      for (std::size_t k = 0; k < std::min(boxes.size(), last.size()); ++k)
+        if (!(boxes[k] == last[k])) moved.push_back(static_cast<std::uint32_t>(k));
+      const std::string what = "motion " + std::to_string(motion) + ", " + std::to_string(step);
+      this->check(method, boxes, before, what);
+      if (frame % 50 == 49 && TakesMoved<TypeParam>)
+        this->check(told, boxes, told_before, what);
+      else
+        this->check_told(told, boxes, moved, told_before, what);
+      if (this->HasFatalFailure()) return;
+    }
+  }
+}
+
 REGISTER_TYPED_TEST_SUITE_P(BoxMethod, EveryCaseFromScratch, OneMethodThroughEveryCase,
-                            MovedForManyFrames, BoxesComeAndGo, FiveThousandBoxes);
+                            MovedForManyFrames, BoxesComeAndGo, FiveThousandBoxes, HostileMotions);
 
 using Types = AsTypes<Methods<BVLAB_TEST_SCALAR, BVLAB_TEST_CONTACT>>::type;
 INSTANTIATE_TYPED_TEST_SUITE_P(List, BoxMethod, Types);

@@ -9,6 +9,7 @@
 #include "broadphase/methods/blocks.hpp"
 #include "broadphase/methods/sweep.hpp"
 #include "broadphase/structures/pair_difference.hpp"
+#include "broadphase/structures/pair_places.hpp"
 #include "broadphase/structures/pair_slots.hpp"
 #include "broadphase/structures/sorted_ends.hpp"
 #include "tests/laws/boxes_for_test.hpp"
@@ -98,8 +99,7 @@ TEST(PairSlots, RemembersWhatItWasTold) {
   }
 }
 
-/// Boxes that move, all of them or a few, against the definition: the list, and what it says
-/// changed.
+/// Boxes that move against the definition: the list, and what it says changed.
 template <class T>
 class CandidateLists : public ::testing::Test {};
 using Scalars = ::testing::Types<float, double>;
@@ -107,10 +107,9 @@ TYPED_TEST_SUITE(CandidateLists, Scalars);
 
 TYPED_TEST(CandidateLists, HoldsWhatOverlaps) {
   using T = TypeParam;
-  using Candidates = CandidatePairs<T, Closed>;
   BoxMaker<T> random(2);
   Frame<T> boxes = random.boxes(60, 0, 1, T(0.1), T(0.3));
-  Candidates candidates;
+  CandidatePairs<T, Closed> candidates;
   std::vector<std::uint32_t> ids(boxes.size());
   for (std::uint32_t k = 0; k < ids.size(); ++k) ids[k] = (7 * k) % 60;  // slot to box
   candidates.rows().resize(boxes.size());
@@ -120,26 +119,18 @@ TYPED_TEST(CandidateLists, HoldsWhatOverlaps) {
   std::vector<Pair> before;
   PairList list, began, ended;
   std::fill(candidates.rows().begin(), candidates.rows().end(), nowhere_row<T>());
-  candidates.compare_all(ids.data(), list, Candidates::Keep::places, began, ended);
+  candidates.compare_all(ids.data(), list, began, ended);
   for (int step = 0; step < 200; ++step) {
-    const bool few = step % 3 != 0;
     if (step == 50)
       for (std::uint32_t a = 0; a < 60; ++a)
         for (std::uint32_t b = std::max(a + 1, 50u); b < 60; ++b)
           candidates.add(a, ids[a], b, ids[b]);
-    std::vector<std::uint32_t> moved;
-    for (std::uint32_t slot = 0; slot < 60; ++slot) {
-      if (few && step != 50 && random.below(10) > 0) continue;
-      boxes[ids[slot]] = random.box(0, 1, T(0.1), T(0.3));
-      moved.push_back(slot);
-    }
+    for (auto& box : boxes)
+      if (step % 3 == 0 || random.below(10) == 0) box = random.box(0, 1, T(0.1), T(0.3));
     for (std::uint32_t slot = 0; slot < 60; ++slot)
       candidates.rows()[slot] = row_of(boxes[ids[slot]]);
     began.clear(), ended.clear();
-    if (few)
-      candidates.compare_some(moved, ids.data(), list, began, ended);
-    else
-      candidates.compare_all(ids.data(), list, Candidates::Keep::changes, began, ended);
+    candidates.compare_all(ids.data(), list, began, ended);
     std::vector<Pair> right = pairs_by_definition<Closed>(boxes);
     if (step < 50)
       std::erase_if(right, [&](Pair p) {
@@ -156,6 +147,31 @@ TYPED_TEST(CandidateLists, HoldsWhatOverlaps) {
     ASSERT_EQ(sorted(began.view()), right_began) << "step " << step;
     ASSERT_EQ(sorted(ended.view()), right_ended) << "step " << step;
     before = right;
+  }
+}
+
+/// Pairs put in and taken out at random, against a set.
+TEST(PairPlaces, ChangeTheListInPlace) {
+  BoxMaker<float> random(6);
+  PairPlaces places;
+  PairList list;
+  std::set<Pair> right;
+  std::vector<std::uint32_t> order;  // with slots that are empty
+  for (std::uint32_t k = 0; k < 60; ++k) order.insert(order.end(), {(7 * k) % 60, no_box});
+  unsigned boxes = 50;
+  for (int step = 0; step < 20000; ++step) {
+    if (step == 10000) places.resize(boxes = 60);
+    if (step % 4000 == 0 || places.sparse(list)) places.build(list, boxes, order);
+    const Pair pair{random.below(boxes), 60 + random.below(20)};
+    if (right.insert(pair).second) {
+      places.insert(pair, list);
+    } else {
+      places.erase(pair, list);
+      right.erase(pair);
+    }
+    if (step % 100 == 0) {
+      ASSERT_EQ(sorted(list.view()), std::vector<Pair>(right.begin(), right.end()));
+    }
   }
 }
 
@@ -201,8 +217,8 @@ TEST(PairDifference, IsTheDifferenceOfSets) {
   }
 }
 
-/// Any number of threads gives the lists of one, pair for pair: from scratch, followed, refitted
-/// and where a few boxes jump, with changes and without.
+/// Any number of threads gives the lists of one, pair for pair: from scratch, followed, and
+/// where a few boxes jump, with changes and without.
 TEST(Blocks, ThreadsChangeNothing) {
   const auto expect_same = [](std::span<const Pair> a, std::span<const Pair> b, const char* what,
                               int frame) {
@@ -236,6 +252,66 @@ TEST(Blocks, ThreadsChangeNothing) {
       EXPECT_GT(followed, 8u);
       EXPECT_EQ(began > 0, changes == Changes::reported);
     }
+}
+
+/// Candidates that take over from others, prepared while boxes go on, a few of which turn, jump or
+/// rest meanwhile; with a new order and without. The pairs are those from scratch in every frame.
+TEST(Blocks, FollowsThroughManyCandidates) {
+  for (const int threads : {1, 3})
+    for (const Changes changes : {Changes::unreported, Changes::reported}) {
+      BoxMaker<float> random(21);
+      auto boxes = random.boxes(4000, 0, 1, 0.01f, 0.05f);
+      std::vector<std::array<float, 3>> velocity;
+      for (std::size_t k = 0; k < boxes.size(); ++k)
+        velocity.push_back({random.uniform(-6e-4f, 6e-4f), random.uniform(-6e-4f, 6e-4f),
+                            random.uniform(-6e-4f, 6e-4f)});
+      MethodSettings settings, fresh;
+      settings.threads = threads, settings.changes = changes, fresh.coherence = Coherence::off;
+      Blocks<float, Closed> blocks(settings), scratch(fresh);
+      std::size_t followed = 0, taken_over = 0;
+      std::vector<Pair> before;
+      for (int frame = 0; frame < 150; ++frame) {
+        const auto right = sorted(scratch.overlapping(boxes));
+        ASSERT_EQ(sorted(blocks.overlapping(boxes)), right) << "frame " << frame;
+        if (changes == Changes::reported) {
+          std::vector<Pair> began, ended;
+          std::set_difference(right.begin(), right.end(), before.begin(), before.end(),
+                              std::back_inserter(began));
+          std::set_difference(before.begin(), before.end(), right.begin(), right.end(),
+                              std::back_inserter(ended));
+          ASSERT_EQ(sorted(blocks.changes().began), began) << "frame " << frame;
+          ASSERT_EQ(sorted(blocks.changes().ended), ended) << "frame " << frame;
+        }
+        before = right;
+        followed += blocks.reason().starts_with("followed");
+        taken_over += blocks.reason().find("took over") != std::string_view::npos;
+        for (std::size_t k = 0; k < boxes.size(); ++k) {
+          if (frame % 7 == 3 && k % 400 == 9) velocity[k][1] *= -2;
+          if (frame % 50 == 40 && k == 1234) velocity[k][0] = 0.5f;
+          if (frame > 80 && k % 3 == 0) continue;
+          for (int axis = 0; axis < 3; ++axis) {
+            const float by = velocity[k][static_cast<std::size_t>(axis)];
+            boxes[k].lo[axis] += by, boxes[k].hi[axis] += by;
+          }
+          if (velocity[k][0] == 0.5f) velocity[k][0] = 0;
+        }
+      }
+      EXPECT_GT(followed, 100u);
+      EXPECT_GT(taken_over, 0u);
+    }
+}
+
+/// Boxes that jump spoil the order of the others: where more than a few do, every frame is from
+/// scratch.
+TEST(Blocks, IsNotKeptByJumps) {
+  BoxMaker<float> random(4);
+  Frame<float> boxes = random.boxes(10000, 0, 1, 0.005f, 0.04f);
+  Blocks<float, Closed> blocks(MethodSettings{});
+  for (int frame = 0; frame < 20; ++frame) {
+    for (int k = 0; k < 1000; ++k) boxes[random.below(10000)] = random.box(0, 1, 0.005f, 0.04f);
+    blocks.overlapping(boxes);
+    EXPECT_TRUE(blocks.reason().starts_with("from scratch")) << "frame " << frame;
+  }
 }
 
 }  // namespace

@@ -62,6 +62,68 @@ TEST(Builds, ThreadsChangeNoTopologyFromBelow) {
     }
 }
 
+/// How many levels are below the root.
+std::size_t depth(const Topology& topology) {
+  std::size_t deepest = 0;
+  std::vector<std::pair<std::uint32_t, std::size_t>> open{{0, 0}};
+  while (!open.empty()) {
+    const auto [node, level] = open.back();
+    open.pop_back();
+    deepest = std::max(deepest, level);
+    if (topology.nodes[node].count > 0) continue;
+    for (const std::uint32_t k : {0u, 1u})
+      open.emplace_back(topology.nodes[node].first + k, level + 1);
+  }
+  return deepest;
+}
+
+void expect_each_once(Topology topology, std::size_t triangles) {
+  std::ranges::sort(topology.primitives);
+  ASSERT_EQ(topology.primitives.size(), triangles);
+  for (std::uint32_t i = 0; i < triangles; ++i) ASSERT_EQ(topology.primitives[i], i);
+}
+
+/// Triangles in a row: the next one starts `step(i)` after the i-th.
+template <class Step>
+TriangleMesh row_of(std::uint32_t count, const Step& step) {
+  TriangleMesh mesh;
+  double x = 0;
+  for (std::uint32_t i = 0; i < count; ++i, x += step(i)) {
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    for (const Vec3<double>& corner : {Vec3<double>(x, 0, 0), {x + 1, 0, 0}, {x, 1, 0}})
+      mesh.vertices.push_back(corner);
+  }
+  return mesh;
+}
+
+/// A round in which one pair merges leaves a list, and takes as long as all the rest.
+TEST(Builds, EqualCostsMakeNoList) {
+  constexpr std::uint32_t count = 20000;
+  const auto look = [](const TriangleMesh& mesh, std::size_t levels) {
+    const Topology topology = BottomUp{}(mesh);
+    expect_each_once(topology, count);
+    EXPECT_LE(depth(topology), levels);
+    Threads threads(3);
+    expect_same(topology, BottomUp{}(mesh, threads));
+  };
+  look(row_of(count, [](auto) { return 0.0; }), 64);                // one place
+  look(row_of(count, [](auto) { return 2.0; }), 64);                // evenly spaced
+  look(row_of(count, [](auto i) { return 4.0 - i * 1e-4; }), 400);  // each nearer to the next
+  look(row_of(count, [](auto i) { return i % 2 ? 1e200 : 1e190; }), 400);  // costs that overflow
+}
+
+/// Ranges whose inverse, or which themselves, overflow.
+TEST(Builds, RangesBeyondNumbersAreSplit) {
+  for (const double scale : {4.9e-324, 1e-310, 1e307, 1.7e308}) {
+    TriangleMesh mesh = formula_mesh("icosphere", 320);
+    for (auto& vertex : mesh.vertices) vertex *= scale;
+    for (const SplitAt at :
+         {SplitAt::median, SplitAt::mean, SplitAt::middle, SplitAt::surface_area})
+      expect_each_once(TopDown{SplitAxis::longest, at, 1}(mesh), mesh.triangles.size());
+    expect_each_once(BottomUp{1}(mesh), mesh.triangles.size());
+  }
+}
+
 /// Bits, so that not even a zero changes its sign.
 template <class T>
 bool same_bits(const T& a, const T& b) {
@@ -79,7 +141,7 @@ void expect_threads_change_no_volume(const TriangleMesh& mesh, Fit fit) {
     for (std::uint32_t i = 0; i < one.size(); ++i) {
       EXPECT_TRUE(same_bits(one.volume(i), more.volume(i))) << V::name << ' ' << i;
       EXPECT_EQ(one.node(i).size, more.node(i).size);
-      EXPECT_EQ(one.least_above(i), more.least_above(i));
+      EXPECT_EQ(one.above(i).least, more.above(i).least);
     }
     EXPECT_EQ(one.extent().reach, more.extent().reach);
   }

@@ -21,7 +21,7 @@
 #include "traversal/counters.hpp"
 #include "traversal/primitives/triangle_distance.hpp"
 #include "traversal/primitives/triangle_intersection.hpp"
-#include "traversal/wide/frames.hpp"
+#include "traversal/wide/relative_frame.hpp"
 
 namespace bvlab {
 
@@ -119,20 +119,18 @@ void collect(const Hierarchy& hierarchy, std::uint32_t node, std::vector<std::ui
     for (const auto triangle : below(hierarchy, node, lane)) found.push_back(triangle);
 }
 
-template <BoundingVolume V, int F, class FrameOfComparison>
+template <BoundingVolume V, int F>
 class Law {
-  using Body = typename FrameOfComparison::template Body<V, F>;
-  using Between = typename FrameOfComparison::template Between<V, F>;
+  using Body = WideBody<WideHierarchy<V, F>>;
+  using PairFrame = RelativeFrame<V, F>;
 
  public:
   explicit Law(const Meeting& meeting)
       : meeting_(meeting),
         hierarchies_{made(meeting.mesh[0]), made(meeting.mesh[1])},
         bodies_{Body(meeting.mesh[0], hierarchies_[0]), Body(meeting.mesh[1], hierarchies_[1])} {
-    const Vec3<double> origin =
-        0.5 * meeting.pose[0].translation + 0.5 * meeting.pose[1].translation;
-    for (int side = 0; side < 2; ++side) place(bodies_[side], meeting.pose[side], origin);
-    between_.begin(bodies_[0], bodies_[1]);
+    for (int side = 0; side < 2; ++side) bodies_[side].set_pose(meeting.pose[side]);
+    pair_frame_.begin(bodies_[0], bodies_[1]);
   }
 
   void expect() {
@@ -141,9 +139,9 @@ class Law {
         for (std::uint32_t one = 0; one < hierarchies_[1 - side].size(); ++one) {
           std::vector<std::uint32_t> triangles;
           collect(hierarchies_[1 - side], one, triangles);
-          expect(side, many, between_.one(1 - side, one, counter_), triangles);
+          expect(side, many, pair_frame_.posed_node(1 - side, one, counter_), triangles);
           for (int lane = 0; lane < std::popcount(hierarchies_[1 - side].node(one).lanes); ++lane)
-            expect(side, many, between_.one_child(1 - side, one, lane, counter_),
+            expect(side, many, pair_frame_.posed_child(1 - side, one, lane, counter_),
                    below(hierarchies_[1 - side], one, lane));
         }
   }
@@ -155,12 +153,12 @@ class Law {
     return {mesh, builds::TopDownMedian::topology(mesh, 1), Fit::published, 4};
   }
 
-  void expect(std::size_t side, std::uint32_t many, const typename Between::One& one,
+  void expect(std::size_t side, std::uint32_t many, const typename PairFrame::PosedNode& one,
               const std::vector<std::uint32_t>& triangles) {
-    const auto compared = between_.compared(side, many, one, counter_);
-    const auto gaps = between_.gaps(side, many, one, counter_);
-    const auto separated = between_.separated(side, many, one, counter_);
-    const auto told_apart = bits(compared.apart);
+    const auto overlap = pair_frame_.overlap(side, many, one);
+    const auto gaps = pair_frame_.gaps(side, many, one);
+    const auto separation = pair_frame_.separation(side, many, one);
+    const auto told_apart = bits(overlap.apart);
     for (int lane = 0; lane < std::popcount(hierarchies_[side].node(many).lanes); ++lane) {
       const double truth = distance_of(side, below(hierarchies_[side], many, lane), triangles);
       const auto k = static_cast<std::size_t>(lane);
@@ -168,7 +166,7 @@ class Law {
       ++tested, apart += is_apart, touching += truth == Meeting::nothing;
       EXPECT_FALSE(is_apart && truth == Meeting::nothing) << many << ' ' << lane;
       EXPECT_LE(static_cast<double>(gaps[k]), truth * (1 + 1e-12)) << many << ' ' << lane;
-      EXPECT_LE(static_cast<double>(separated.gap[k]), truth * (1 + 1e-12)) << many << ' ' << lane;
+      EXPECT_LE(static_cast<double>(separation.gap[k]), truth * (1 + 1e-12)) << many << ' ' << lane;
     }
   }
 
@@ -184,23 +182,22 @@ class Law {
   const Meeting& meeting_;
   WideHierarchy<V, F> hierarchies_[2];
   Body bodies_[2];
-  Between between_;
+  PairFrame pair_frame_;
   Counting counter_;
 };
 
 }  // namespace frame_laws
 
-template <BoundingVolume V, int F, class FrameOfComparison>
+template <BoundingVolume V, int F>
 void expect_frame_laws() {
   std::size_t tested = 0, apart = 0, touching = 0;
   const auto& meetings = frame_laws::meetings();
   for (std::size_t i = 0; i < meetings.size(); ++i) {
     const auto& setting = frame_laws::settings()[i];
-    SCOPED_TRACE(testing::Message()
-                 << V::name << ' ' << F << ' ' << FrameOfComparison::name << ": scale "
-                 << setting.scale << ", offset " << setting.offset << ", far " << setting.far
-                 << ", drift " << setting.drift << ", apart " << setting.apart);
-    frame_laws::Law<V, F, FrameOfComparison> law(meetings[i]);
+    SCOPED_TRACE(testing::Message() << V::name << ' ' << F << ": scale " << setting.scale
+                                    << ", offset " << setting.offset << ", far " << setting.far
+                                    << ", drift " << setting.drift << ", apart " << setting.apart);
+    frame_laws::Law<V, F> law(meetings[i]);
     law.expect();
     tested += law.tested, apart += law.apart, touching += law.touching;
     if (testing::Test::HasFailure()) return;

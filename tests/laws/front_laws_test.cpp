@@ -32,6 +32,13 @@ class FrontLaws : public ::testing::Test {
     return {a_, b_, query, counter, workspace_};
   }
 
+  /// Of the same mesh, from now on.
+  void use(std::uint32_t fan_out, Frame frame) {
+    hierarchy_ = Hierarchy<V>(
+        mesh_, collapsed(mesh_, builds::TopDownPrincipal::topology(mesh_, 1), fan_out, 1));
+    a_ = Body<V>(mesh_, hierarchy_, frame), b_ = Body<V>(mesh_, hierarchy_, frame);
+  }
+
   void place(const Pose& a, const Pose& b) {
     a_.move(a, Vec3<double>::Zero());
     b_.move(b, Vec3<double>::Zero());
@@ -40,10 +47,8 @@ class FrontLaws : public ::testing::Test {
   /// Leaves below a node, by their primitives' places.
   void leaves(std::uint32_t node, std::vector<std::uint32_t>& places) const {
     const auto& n = hierarchy_.node(node);
-    if (n.count)
-      places.push_back(n.first);
-    else
-      leaves(n.first, places), leaves(n.first + 1, places);
+    if (n.count) places.push_back(n.first);
+    for (std::uint32_t k = 0; k < n.children; ++k) leaves(n.first + k, places);
   }
 
   /// Every pair of leaves below exactly one entry.
@@ -103,6 +108,74 @@ TYPED_TEST(FrontLaws, DeferringByKSpreadsARebuildOverKPlusTwoRuns) {
     for (unsigned run = 0; run < 10 * (k + 2); ++run) deferred.run(this->pair(query, counter));
     const std::uint64_t n = deferred.front_size();
     EXPECT_EQ(counter.n_v, 10 * ((2 * n - 1) + (k + 1) * n));
+  }
+}
+
+/// A recursion over a front of n entries opens pairs, each into at most F: the entries are what is
+/// not opened, so it makes between n + (n - 1) / (F - 1) and 2n - 1 tests, and a list saves
+/// bodies that stay all but n.
+TYPED_TEST(FrontLaws, AListSavesLessTheWiderTheTree) {
+  for (const std::uint32_t fan_out : {2u, 4u, 16u})
+    for (const Frame frame : {Frame::world, Frame::body}) {
+      this->use(fan_out, frame);
+      ASSERT_LE(this->hierarchy_.fan_out(), fan_out);
+      this->place(Pose{}, at(1.3, 0.7));
+      std::vector<Contact> found;
+      Contacts query(found);
+      Counting recursive, first, still;
+      Recursive().run(this->pair(query, recursive));
+      Deferred deferred(1);
+      deferred.run(this->pair(query, first));
+      deferred.run(this->pair(query, still));
+      const std::uint64_t n = deferred.front_size();
+      EXPECT_EQ(first.n_v, recursive.n_v);
+      EXPECT_EQ(still.n_v, n);
+      EXPECT_EQ(still.n_p, first.n_p);
+      EXPECT_GE(recursive.n_v, n + (n - 1) / (fan_out - 1));
+      EXPECT_LE(recursive.n_v, 2 * n - 1);
+      EXPECT_EQ(still.n_u, frame == Frame::body ? n : 0);
+      this->expect_partition(deferred.front(), "deferred");
+    }
+}
+
+TYPED_TEST(FrontLaws, EveryFrontIsAPartitionOnTreesOfEveryFanOut) {
+  for (const std::uint32_t fan_out : {4u, 8u, 16u}) {
+    this->use(fan_out, fan_out == 8 ? Frame::world : Frame::body);
+    Strategies::for_each([&]<class Strategy>(std::type_identity<Strategy>) {
+      if constexpr (requires(const Strategy& strategy) { strategy.front().entries(); }) {
+        std::mt19937_64 random(fan_out);
+        std::uniform_real_distribution<double> anywhere(-2, 2), step(-0.05, 0.05);
+        Strategy strategy;
+        NotCounting counter;
+        double x = 0, angle = 0;
+        for (int frame = 0; frame < 100; ++frame) {
+          x = frame % 20 ? x + step(random) : anywhere(random);
+          angle += step(random);
+          this->place(Pose{}, at(x, angle));
+          Touching query;
+          strategy.run(this->pair(query, counter));
+          if (strategy.front_size() > 0) this->expect_partition(strategy.front(), Strategy::name);
+        }
+      }
+    });
+  }
+}
+
+TYPED_TEST(FrontLaws, AFrontRisesOnTreesOfEveryFanOut) {
+  for (const std::uint32_t fan_out : {4u, 16u}) {
+    this->use(fan_out, Frame::world);
+    NotCounting counter;
+    std::vector<Contact> found;
+    Contacts query(found);
+    Raise raise;
+    this->place(Pose{}, at(1.3, 0.7));
+    for (int run = 0; run < 10; ++run) raise.run(this->pair(query, counter));
+    EXPECT_GT(raise.front_size(), 10u);
+    for (int run = 0; run < 400; ++run) {
+      this->place(Pose{}, at(1.3 + 0.02 * run, 0.7));
+      raise.run(this->pair(query, counter));
+    }
+    EXPECT_EQ(raise.front_size(), 1u);
   }
 }
 
@@ -230,14 +303,14 @@ TEST(RisingFronts, WitnessesComeAndGo) {
   const std::size_t n = front.size();
   std::mt19937_64 random(3);
   for (int i = 0; i < 20000; ++i) front.bring_forward(random() % n);
-  std::vector<SiblingPair> sibling_pairs;
-  front.propose(hierarchy, hierarchy, sibling_pairs);
+  Proposals proposals;
+  front.propose(hierarchy, hierarchy, proposals);
   std::size_t siblings = 0;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i + 1; j < n; ++j)
       siblings += (front[i].b + 1) / 2 == (front[j].b + 1) / 2;
   EXPECT_GT(siblings, 50u);
-  EXPECT_EQ(sibling_pairs.size(), siblings);
+  EXPECT_EQ(proposals.all.size(), siblings);
 }
 
 /// Every slot once and no other, however full the last register is: also where all are due for

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "broadphase/broadphase.hpp"
-#include "experiments/peers/boxes_peers.hpp"
+#include "experiments/peers/box_peers.hpp"
 #include "experiments/replay/box_methods.hpp"
 #include "experiments/scenes/boxes.hpp"
 #include "tests/laws/boxes_for_test.hpp"
@@ -35,6 +35,21 @@ void expect_right(Method& method, const Frames& frames, const std::vector<std::v
     ASSERT_EQ(sorted(method.overlapping(frames[f])), right[f]) << what << ", frame " << f;
 }
 
+/// A peer that finds out what moved, and, where it can be told, one that is.
+void check_peer(const std::string& name, const Frames& frames,
+                const std::vector<std::vector<Pair>>& right, const std::string& set) {
+  expect_right(*make_box_peer(name), frames, right, set + ", " + name);
+  const auto told = make_box_peer(name);
+  if (!told->takes_moved()) return;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    std::vector<std::uint32_t> moved;
+    for (std::uint32_t k = 0; k < frames[f].size(); ++k)
+      if (f == 0 || !(frames[f][k] == frames[f - 1][k])) moved.push_back(k);
+    ASSERT_EQ(sorted(told->update(frames[f], moved)), right[f])
+        << set << ", " << name << ", told, frame " << f;
+  }
+}
+
 void check_set(const std::string& set, std::size_t count, int frame_count) {
   const Frames frames = frames_of(set, count, frame_count);
   std::vector<std::vector<Pair>> right;
@@ -49,7 +64,9 @@ void check_set(const std::string& set, std::size_t count, int frame_count) {
     }
   for (const std::string name :
        {"cgal", "cgal-1000", "fcl-tree", "fcl-ssap", "bullet-dbvt", "embree"})
-    expect_right(*make_box_peer(name), frames, right, set + ", " + name);
+    check_peer(name, frames, right, set);
+  for (const std::string name : {"physx-abp", "physx-pabp", "box3d"})
+    if (make_box_peer(name)) check_peer(name, frames, right, set);
 }
 
 class BoxSet : public ::testing::TestWithParam<std::string> {};

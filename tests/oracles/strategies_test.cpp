@@ -204,10 +204,13 @@ TEST(Strategies, ThreadsChangeNothing) {
         Variant variant;
         variant.volume = volume, variant.strategy = strategy.name, variant.query = query;
         expect_threads_change_nothing(scene, variant);
+        variant.fan_out = 4, variant.frame = "body";
+        expect_threads_change_nothing(scene, variant);
       }
     for (const char* strategy : {"recursive", "margins"}) {
       Variant variant;
-      variant.tree = "wide", variant.volume = "slab-box";
+      set_tree(variant, "wide");
+      variant.volume = "slab-box";
       variant.strategy = strategy, variant.query = query;
       expect_threads_change_nothing(scene, variant);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The program's replays over wide trees find what recursion over binary ones finds.
+/// The program's replays by the kernel over siblings find what recursion over binary trees finds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,9 +17,10 @@ Variant binary(const std::string& query) {
   return variant;
 }
 
-Variant wide(const std::string& query) {
+Variant wide(const std::string& query, const char* kernel = "siblings") {
   Variant variant = binary(query);
-  variant.tree = "wide", variant.volume = "slab-box";
+  set_kernel(variant, kernel);
+  variant.volume = variant.kernel == "mixed" ? "obb" : "slab-box";
   return variant;
 }
 
@@ -52,7 +53,7 @@ TEST_P(WideReplay, IsRecursionOverBinaryTrees) {
     hits += truth.hits;
     for (const unsigned threads : {1u, 2u})
       for (const std::uint32_t leaf_size : {1u, 3u, 1000u}) {
-        Variant variant = wide(query);
+        Variant variant = wide(query, (leaf_size == 3) != (threads == 2) ? "mixed" : "siblings");
         if (threads == 2) variant.strategy = "margins";
         variant.leaf_size = leaf_size;
         variant.build = leaf_size == 3 ? "bottom-up" : "top-down-surface-area";
@@ -80,9 +81,10 @@ TEST_P(WideReplay, FewObjectsAndFrames) {
     for (std::size_t i = 0; i < frames * objects; ++i)
       trace.values.insert(trace.values.end(), {0.1 * static_cast<double>(i), 0, 0, 1, 0, 0, 0});
     const auto truth = replay(meshes, trace, binary(GetParam()), {});
-    for (const unsigned threads : {1u, 2u})
-      expect_same(replay(meshes, trace, wide(GetParam()), options(threads)), truth,
-                  std::to_string(frames) + " of " + std::to_string(objects));
+    for (const char* kernel : {"siblings", "mixed"})
+      for (const unsigned threads : {1u, 2u})
+        expect_same(replay(meshes, trace, wide(GetParam(), kernel), options(threads)), truth,
+                    std::to_string(frames) + " of " + std::to_string(objects));
   }
 }
 
@@ -117,8 +119,11 @@ TEST(WideReplays, RefuseWhatThereIsNot) {
   };
   refused([](Variant& v) { v.volume = "sphere"; });
   refused([](Variant& v) { v.strategy = "deferred"; });
-  refused([](Variant& v) { v.tree = "binary"; });
-  refused([](Variant& v) { v.tree = "tall"; });
+  refused([](Variant& v) { v.fan_out = 2; });
+  refused([](Variant& v) { v.frame = "world"; });
+  refused([](Variant& v) { v.kernel = "tall"; });
+  refused([](Variant& v) { v.kernel = "gathered", v.fan_out = 3; });
+  refused([](Variant& v) { v.kernel = "gathered", v.frame = "mine"; });
   EXPECT_THROW(configured(Variant{}, "best"), Unusable);
 }
 

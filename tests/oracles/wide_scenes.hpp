@@ -14,16 +14,17 @@
 #include "hierarchies/builds.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
+#include "traversal/wide/kernels.hpp"
 #include "traversal/wide/wide_pairs.hpp"
 
 namespace bvlab {
 
-using Frame = std::vector<Pose>;
+using PosesOfFrame = std::vector<Pose>;
 
 struct Scene {
   const char* name;
   std::vector<TriangleMesh> meshes;
-  std::vector<Frame> frames;
+  std::vector<PosesOfFrame> frames;
 };
 
 struct Truth {
@@ -46,10 +47,10 @@ inline TriangleMesh degenerate_mesh() {
 
 inline TriangleMesh single_triangle() { return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}; }
 
-inline Frame random_frame(std::mt19937& random, std::size_t bodies, double side, double drift,
-                          const Vec3<double>& origin) {
+inline PosesOfFrame random_frame(std::mt19937& random, std::size_t bodies, double side,
+                                 double drift, const Vec3<double>& origin) {
   std::uniform_real_distribution<double> at(-side, side), unit(-1, 1);
-  Frame frame;
+  PosesOfFrame frame;
   for (std::size_t i = 0; i < bodies; ++i) {
     Pose pose = *pose_from(Vec3<double>(at(random), at(random), at(random)) + origin, unit(random),
                            unit(random), unit(random), unit(random) + 2);
@@ -60,9 +61,9 @@ inline Frame random_frame(std::mt19937& random, std::size_t bodies, double side,
 }
 
 /// Turns by right angles and shifts by whole numbers: faces in common planes, edges on edges.
-inline Frame grid_frame(std::mt19937& random, std::size_t bodies) {
+inline PosesOfFrame grid_frame(std::mt19937& random, std::size_t bodies) {
   std::uniform_int_distribution<int> shift(-1, 1), turn(0, 3);
-  Frame frame;
+  PosesOfFrame frame;
   for (std::size_t i = 0; i < bodies; ++i) {
     Pose pose;
     for (int k = turn(random); k > 0; --k)
@@ -111,8 +112,8 @@ inline Scene in_motion(const Scene& scene) {
     return pose;
   };
   Scene result{scene.name, scene.meshes, {}};
-  for (const Frame& start : scene.frames) {
-    Frame frame = start;
+  for (const PosesOfFrame& start : scene.frames) {
+    PosesOfFrame frame = start;
     const auto add = [&] { result.frames.push_back(frame); };
     add(), add();
     for (const double by : {1e-9, 1e-4, 3e-3, 3e-3, 3e-2}) {
@@ -135,10 +136,10 @@ inline Scene passing_by(const Scene& scene, int frames) {
   std::uniform_real_distribution<double> unit(-1, 1);
   Scene result{scene.name, scene.meshes, {}};
   for (std::size_t s = 0; s < 2; ++s) {
-    const Frame& start = scene.frames[s];
+    const PosesOfFrame& start = scene.frames[s];
     const Vec3<double> middle = start[0].translation;
     const Vec3<double> from = Vec3<double>(unit(random), unit(random), unit(random)).normalized();
-    Frame frame{start[0], start[1]};
+    PosesOfFrame frame{start[0], start[1]};
     for (int k = 0; k < frames; ++k) {
       const double along = 2.4 * (0.5 - (k + 0.5) / frames);
       const Pose turn = *pose_from(Vec3<double>::Zero(), 0.002, 0.005 * unit(random), 0, 1);
@@ -152,7 +153,7 @@ inline Scene passing_by(const Scene& scene, int frames) {
 
 inline Truth truth_of(const Scene& scene) {
   Truth truth;
-  for (const Frame& frame : scene.frames) {
+  for (const PosesOfFrame& frame : scene.frames) {
     std::vector<std::vector<Triangle>> world;
     for (std::size_t i = 0; i < frame.size(); ++i) {
       const TriangleMesh& mesh = scene.meshes[i % scene.meshes.size()];
@@ -203,19 +204,19 @@ inline const std::vector<std::pair<Scene, Truth>>& motions_with_truth() {
   return all;
 }
 
-template <class V, int F, class FrameOfComparison, class Memory = Forgetful>
+template <class V, int F, class Memory = NoMemory, class Kernel = SiblingsKernel>
 class PlayedWide {
  public:
   PlayedWide(const Scene& scene, std::uint32_t leaf_size) : scene_(scene) {
     for (const auto& mesh : scene.meshes)
       hierarchies_.emplace_back(mesh, builds::BottomUpLocal::topology(mesh, 1), Fit::published,
                                 leaf_size);
-    std::vector<WideShape<V, F>> shapes;
+    std::vector<WideShape<V, F, Kernel>> shapes;
     for (std::size_t i = 0; i < scene.frames[0].size(); ++i) {
       const std::size_t k = i % scene.meshes.size();
       shapes.push_back({&scene.meshes[k], &hierarchies_[k]});
     }
-    engine_ = std::make_unique<WidePairs<V, F, FrameOfComparison, Memory>>(
+    engine_ = std::make_unique<WidePairs<V, F, Memory, Kernel>>(
         shapes, all_object_pairs(static_cast<std::uint32_t>(shapes.size())));
   }
 
@@ -262,32 +263,32 @@ class PlayedWide {
  private:
   std::string where() const {
     return std::string(scene_.name) + ' ' + std::string(V::name) + ' ' + std::to_string(F) + ' ' +
-           std::string(FrameOfComparison::name) + ' ' + std::string(Memory::name);
+           std::string(Memory::name) + ' ' + std::string(Kernel::name);
   }
 
   const Scene& scene_;
-  std::vector<WideHierarchy<V, F>> hierarchies_;
-  std::unique_ptr<WidePairs<V, F, FrameOfComparison, Memory>> engine_;
+  std::vector<typename Kernel::template Hierarchy<V, F>> hierarchies_;
+  std::unique_ptr<WidePairs<V, F, Memory, Kernel>> engine_;
 };
 
-template <class V, int F, class FrameOfComparison, class Expect>
+template <class V, int F, class Kernel, class Expect>
 void for_each_scene(Expect&& expect) {
   for (const auto& [scene, truth] : scenes_with_truth())
     for (const std::uint32_t leaf_size : {1u, static_cast<std::uint32_t>(F)}) {
-      PlayedWide<V, F, FrameOfComparison> played(scene, leaf_size);
+      PlayedWide<V, F, NoMemory, Kernel> played(scene, leaf_size);
       expect(played, truth);
     }
 }
 
-template <class V, int F, class FrameOfComparison>
+template <class V, int F, class Kernel = SiblingsKernel>
 void expect_touching() {
-  for_each_scene<V, F, FrameOfComparison>(
+  for_each_scene<V, F, Kernel>(
       [](auto& played, const Truth& truth) { played.expect_touching(truth); });
 }
 
-template <class V, int F, class FrameOfComparison>
+template <class V, int F, class Kernel = SiblingsKernel>
 void expect_truth() {
-  for_each_scene<V, F, FrameOfComparison>([](auto& played, const Truth& truth) {
+  for_each_scene<V, F, Kernel>([](auto& played, const Truth& truth) {
     played.expect_touching(truth);
     played.expect_contacts(truth);
     played.expect_distances(truth);
@@ -295,10 +296,10 @@ void expect_truth() {
 }
 
 /// One engine for all queries, one after the other, so that each begins with another's memory.
-template <class V, int F, class FrameOfComparison, class Memory>
+template <class V, int F, class Memory, class Kernel = SiblingsKernel>
 void expect_truth_in_motion() {
   for (const auto& [scene, truth] : motions_with_truth()) {
-    PlayedWide<V, F, FrameOfComparison, Memory> played(scene, static_cast<std::uint32_t>(F));
+    PlayedWide<V, F, Memory, Kernel> played(scene, static_cast<std::uint32_t>(F));
     played.expect_touching(truth);
     played.expect_contacts(truth);
     played.expect_touching(truth);

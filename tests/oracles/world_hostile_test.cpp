@@ -59,7 +59,7 @@ Script hostile_script(std::size_t bodies, int frames) {
 Truth truth_of(const Script& script, const std::vector<TriangleMesh>& meshes) {
   Scene scene{"hostile", meshes, {}};
   for (const auto& each : script) {
-    Frame frame;
+    PosesOfFrame frame;
     for (std::size_t i = 0; i < each.size(); ++i) {
       Pose far;
       far.translation = Vec3<double>(1e6 * (1.0 + static_cast<double>(i)), 0, 0);
@@ -150,7 +150,7 @@ auto binary_world(int threads) {
 }
 World<> wide_world(int threads) { return World<>(wide_shapes(), threads); }
 auto forgetful_world(int threads) {
-  using Pairs = WidePairs<Recommended::Volume, Recommended::fan_out, RelativeFrame, Forgetful>;
+  using Pairs = WidePairs<Recommended::Volume, Recommended::fan_out, NoMemory>;
   return World<Pairs>(Pairs(wide_shapes()), threads);
 }
 

@@ -26,7 +26,8 @@ std::vector<std::uint8_t> touching(const WorldRun& run, const Trace& trace) {
 
 Variant variant_of(const char* tree, const char* volume, const char* strategy) {
   Variant variant;
-  variant.tree = tree, variant.volume = volume, variant.strategy = strategy;
+  set_tree(variant, tree);
+  variant.volume = volume, variant.strategy = strategy;
   return variant;
 }
 

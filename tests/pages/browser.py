@@ -29,11 +29,11 @@ def require_browser():
 class Browser:
     """Opens pages from files; `errors` are what the console held since it was asked last."""
 
-    def __init__(self, width=1280, height=860, dark=False):
+    def __init__(self, width=1280, height=860, dark=False, more_options=()):
         options = webdriver.ChromeOptions()
         options.binary_location = os.environ.get("CHROMIUM", "/usr/bin/chromium")
         self.profile = tempfile.mkdtemp(prefix="bvlab-browser-")
-        for option in [*OPTIONS, f"--user-data-dir={self.profile}", f"--window-size={width},{height}"]:
+        for option in [*OPTIONS, f"--user-data-dir={self.profile}", f"--window-size={width},{height}", *more_options]:
             options.add_argument(option)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         service = Service(os.environ.get("CHROMEDRIVER", "/usr/bin/chromedriver"))

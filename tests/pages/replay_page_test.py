@@ -94,6 +94,15 @@ class ReplayPage(unittest.TestCase):
             self.assertRegex(browser.text("#frame-number"), r"^frame 4\d of 90$")
             self.assertEqual(browser.errors(), [])
 
+    def test_says_that_there_is_no_webgl(self):
+        with Browser(more_options=["--disable-3d-apis"]) as browser:
+            browser.open(self.page("--strategy", "separation-list"))
+            self.assertIn("WebGL", browser.text("#no-webgl"))
+            browser.click("#play")
+            self.assertTrue(browser.wait_for("return document.getElementById('frame').value >= 3"))
+            browser.click("#pairs button")
+            self.assertEqual(browser.errors(), [])
+
     def test_says_what_the_program_says(self):
         page = self.page("--strategy", "separation-list", "--count", "on", "--out", self.folder / "touching.npy")
         touching = np.load(self.folder / "touching.npy")

@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """plots/report: the page of records opens from a file, its tables sort, its search finds."""
 
+import html
+import re
+import shutil
 import subprocess
 import tempfile
 import unittest
 from pathlib import Path
+from urllib.parse import unquote, urlsplit
 
 from browser import ROOT, Browser, require_browser
 
-COLUMN = "return [...document.querySelector('table').tBodies[0].rows].map(row => row.cells[arguments[0]].textContent)"
+COLUMN = "return [...document.querySelector('.experiment table').tBodies[0].rows].map(row => row.cells[arguments[0]].textContent)"
 
 
 def record_of(name):
@@ -43,9 +47,9 @@ class Report(unittest.TestCase):
             self.assertIn("best peer", browser.text(".says"))
 
             browser.click(".table summary")
-            column = browser.run("return document.querySelector('tbody tr td.n:last-child').cellIndex")
+            column = browser.run("return document.querySelector('.experiment tbody tr td.n:last-child').cellIndex")
             for direction in ("ascending", "descending"):
-                browser.run("document.querySelectorAll('table:first-of-type th button')[arguments[0]].click()", column)
+                browser.run("document.querySelector('.experiment').querySelectorAll('table th button')[arguments[0]].click()", column)
                 shown = [float(x.replace(",", "")) for x in browser.run(COLUMN, column) if x]
                 self.assertGreater(len(set(shown)), 1)
                 self.assertEqual(shown, sorted(shown, reverse=direction == "descending"))
@@ -71,6 +75,21 @@ class Report(unittest.TestCase):
         page = self.page.read_text()
         self.assertNotRegex(page, r'(src|href)="(https?:)?//')
         self.assertNotIn("<!--links-->", page)
+
+    def test_links_of_any_name(self):
+        name, out = "a,b %20#?&", Path(self.temporary.name) / "named"
+        record = Path(self.temporary.name) / name
+        shutil.copytree(record_of("peers-cgal"), record)
+        figure = next((record / "figures").glob("*.png"))
+        figure.rename(figure.with_name(f"{name}.png"))
+        done = subprocess.run([ROOT / "plots" / "report", record, "--out", out, "--no-scenes"], capture_output=True,
+                              text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        links = re.findall(r' (?:href|src)="(figures/[^"]*)"', (out / "index.html").read_text())
+        shown = [unquote(urlsplit(html.unescape(link)).path) for link in links]
+        self.assertTrue(any(name in link for link in shown), links)
+        for link in shown:
+            self.assertTrue((out / link).is_file(), link)
 
     def test_refused(self):
         done = subprocess.run([ROOT / "plots" / "report", self.out, "--out", self.out], capture_output=True, text=True,

@@ -2,22 +2,16 @@
 """plots/draw: every record in the repository, names that nobody has heard of, and what it refuses."""
 
 import contextlib
-import importlib.machinery
-import importlib.util
+import csv
 import io
 import tempfile
 import unittest
 from pathlib import Path
 
-from drawing import PLOTS, Seen
+from drawing import Seen
 from small_records import COUNTS, ROOT, STRATEGIES, names_added, own_record, small_record, stranger
 
-import figures
-import records
-
-loader = importlib.machinery.SourceFileLoader("draw", str(PLOTS / "draw"))
-draw = importlib.util.module_from_spec(importlib.util.spec_from_loader("draw", loader))
-loader.exec_module(draw)
+from bvlab_plots import draw, figures, records
 
 
 def winning(name, rows):
@@ -94,8 +88,8 @@ class Draws(unittest.TestCase):
             seen = Seen(self, lambda: draw.main([str(record)]), formats=("pdf", "png"))
             self.assertEqual(seen.paths, [record / "figures" / "mine.png"])
             self.assertIn("time a pair over recursive's", " ".join(seen.texts).replace("\n", " "))
-            for words in (["--x", "degrees", "--y", "n_v / pairs", "--series", "volume"],
-                          ["--x", "volume, strategy", "--kind", "bars", "--over", "best"],
+            for words in (["--x", "degrees", "--y", "n_v / pairs", "--series", "volume", "--pool", "strategy"],
+                          ["--x", "volume, strategy", "--kind", "bars", "--over", "best", "--panels", "degrees"],
                           ["--x", "degrees", "--y", "volume", "--kind", "map", "--series", "strategy"],
                           ["--x", "n_v", "--panels", "volume, strategy", "--where", "degrees!=1"]):
                 seen = Seen(self, lambda: draw.main([str(record), "--out", folder, *words]))
@@ -111,7 +105,7 @@ class Draws(unittest.TestCase):
             record = own_record(folder, change=lambda rows: rows.replace(names))
             for words in ([], ["--x", "volume, degrees", "--y", "strategy", "--kind", "map"],
                           ["--x", "degrees", "--y", "n_v", "--kind", "map", "--series", "variant", "--over", "best"],
-                          ["--x", "variant", "--series", "variant", "--kind", "bars"]):
+                          ["--x", "variant", "--series", "variant", "--kind", "bars", "--pool", "degrees"]):
                 seen = Seen(self, lambda: draw.main([str(record), "--out", folder, *words]))
                 self.assertEqual(seen.result, 0)
                 self.assertIn("x\\$y_", " ".join(seen.texts))
@@ -159,6 +153,10 @@ class Refuses(unittest.TestCase):
                     (["--x", "degrees", "--over", "best peer"], ["best peer"]),
                     (["--x", "degrees", "--where", "volume=frob"], ["'frob'", "'sphere'"]),
                     (["--x", "degrees", "--where", "frob=1"], ["frob"]),
+                    (["--x", "degrees", "--series", "strategy"], ["'volume' is neither named nor fixed"]),
+                    (["--x", "degrees", "--pool", "frob"], ["pool", "'frob'"]),
+                    (["--x", "degrees", "--formats", "gif"], ["'gif'", "csv"]),
+                    (["--x", "volume", "--y", "n_v", "--kind", "scatter"], ["holds names"]),
                     (["--x", "degrees", "--where", "pairs"], ["no condition"]),
                     (["--x", "degrees", "--where", "pairs>1000000"], ["no row is left"]),
                     (["--x", "degrees", "--kind", "pie"], ["'pie'", "line, bars, map"]),
@@ -174,11 +172,69 @@ class Refuses(unittest.TestCase):
                                ('name = "a"\nx = 3\n', "x must be a string"),
                                ('name = "a"\nx = "degrees"\nwhere = "volume=obb"\n', "list of strings"),
                                ('name = "a"\nx = "degrees"\nfrob = "1"\n', "'frob'"),
-                               ('name = "a"\nx = "degrees"\n[[figure]]\nname = "a"\nx = "degrees"\n', "second"),
-                               # The first would do: none is drawn where one is refused.
-                               ('name = "a"\nx = "degrees"\n[[figure]]\nname = "b"\nx = "frob"\n', "'frob'")):
+                               ('name = "a"\nx = "degrees"\nkind = "scatter"\n', "needs a y"),
+                               ('name = "a"\nx = "degrees"\nfit = "power"\n', "through a scatter"),
+                               ('name = "a"\nx = "degrees"\nstatistic = "mode"\n', "median, mean")):
             with self.subTest(table), tempfile.TemporaryDirectory() as folder:
                 self.refuse(own_record(folder, more="[[figure]]\n" + table), mentions=[mention])
+
+    def test_a_figure_that_cannot_be_drawn_stops_no_other(self):
+        table = ('[[figure]]\nname = "{0}"\nx = "{1}"\nseries = "strategy"\npanels = "volume"\n')
+        tables = "".join(table.format(*each) for each in (("a", "degrees"), ("b", "frob"), ("a", "degrees"),
+                                                          ("c", "degrees")))
+        with tempfile.TemporaryDirectory() as folder:
+            record, said = own_record(folder, more=tables), io.StringIO()
+            with contextlib.redirect_stderr(said):
+                seen = Seen(self, lambda: draw.main([str(record)]))
+            self.assertEqual(({path.stem for path in seen.paths}, seen.result), ({"a", "c"}, 2))
+            self.assertEqual(said.getvalue().count("\n"), 2)
+            for mention in ("figure b: 'frob': no column 'frob'", "second figure 'a'"):
+                self.assertIn(mention, said.getvalue())
+
+    def test_of_counts_alone_counts_are_drawn(self):
+        tables = "".join(f'[[figure]]\nname = "{y}"\nx = "degrees"\ny = "{y} / pairs"\nseries = "variant"\n'
+                         for y in ("time_ns", "n_v"))
+        with tempfile.TemporaryDirectory() as folder:
+            record = own_record(folder, more=tables, change=lambda rows: rows.assign(time_ns=""))
+            said = io.StringIO()
+            with contextlib.redirect_stderr(said):
+                seen = Seen(self, lambda: draw.main([str(record)]))
+            self.assertEqual([path.stem for path in seen.paths], ["n_v"])
+            self.assertIn("time_ns", said.getvalue())
+
+    def test_answers_that_nobody_compared(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.refuse(own_record(folder, change=lambda rows: rows.drop(columns="differing")), mentions=["differing"])
+        with tempfile.TemporaryDirectory() as folder:
+            self.refuse(own_record(folder, change=lambda rows: rows.assign(differing="")), mentions=["36 of 36 rows"])
+
+    def test_a_table_that_is_cut_off(self):
+        with tempfile.TemporaryDirectory() as folder:
+            record = own_record(folder)
+            text = (record / "own.csv").read_text()
+            (record / "own.csv").write_text(text[:-4])
+            self.refuse(record, mentions=["own.csv", "cut off"])
+
+    def test_an_unfinished_record_says_so_in_its_figures(self):
+        with tempfile.TemporaryDirectory() as folder:
+            record = own_record(folder)
+            (record / "unfinished.json").write_text('{"what": "rows", "done": 0, "all": 72}')
+            seen = Seen(self, lambda: draw.main([str(record), "--out", folder]))
+            self.assertIn("unfinished: 36 of 72 rows", seen.printed)
+            self.assertIn("UNFINISHED: 36 of 72 rows", " ".join(seen.texts).replace("\n", " "))
+
+    def test_marks_and_breaks(self):
+        """A mark of the byte order before definition and table, and a carriage return in a name."""
+        odd = {"deferred": "defer\rred", "recursive": 'recur\r\n"sive'}
+        with tempfile.TemporaryDirectory() as folder:
+            record = own_record(folder)
+            rows = records.read_table(record / "own.csv").replace(odd)
+            rows.to_csv(record / "own.csv", index=False, quoting=csv.QUOTE_NONNUMERIC)  # as bvlab quotes them
+            for file in ("own.csv", "definition.toml"):
+                content = (record / file).read_bytes()
+                (record / file).write_bytes(b"\xef\xbb\xbf" + content)
+            self.assertEqual(set(records.read(record).strategy), set(odd.values()))
+            self.assertEqual(Seen(self, lambda: draw.main([str(record), "--out", folder])).result, 0)
 
     def test_answers_that_differ(self):
         def differing(rows):

@@ -8,7 +8,7 @@ from unittest import mock
 
 from small_records import PLOTS, names_added, stranger  # noqa: F401
 
-import style
+from bvlab_plots import style
 
 
 def looks_drawn(axis):

@@ -6,7 +6,7 @@ import unittest
 import pandas as pd
 from drawing import PLOTS  # noqa: F401  (makes plots/ importable)
 
-import findings
+from bvlab_plots import findings
 
 
 def rows_of(lines, **settings):

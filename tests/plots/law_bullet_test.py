@@ -13,7 +13,8 @@ import numpy as np
 import pandas as pd
 from small_records import small_record
 
-import law_bullet
+from bvlab_scripts import law_bullet
+from bvlab_plots.arguments import exit_status
 
 
 class LawBullet(unittest.TestCase):
@@ -30,12 +31,12 @@ class LawBullet(unittest.TestCase):
             rows = pd.read_csv(record / "law-unseen.csv")
             rows.assign(time_ns=np.nan).to_csv(record / "law-unseen.csv", index=False)
             with contextlib.redirect_stderr(io.StringIO()), mock.patch.object(sys, "argv", ["law_bullet.py", str(record)]):
-                self.assertEqual(law_bullet.main(), 2, "counts alone are refused")
+                self.assertEqual(exit_status(law_bullet.main), 2, "counts alone are refused")
             rows["time_ns"] = (rows[law_bullet.COSTS].to_numpy() @ [3, 2, 40]).astype(int)
             rows.to_csv(record / "law-unseen.csv", index=False)
             said = io.StringIO()
             with mock.patch.object(sys, "argv", ["law_bullet.py", str(record)]), contextlib.redirect_stdout(said):
-                self.assertEqual(law_bullet.main(), 0)
+                self.assertEqual(exit_status(law_bullet.main), 0)
         for number in range(1, 6):
             self.assertRegex(said.getvalue(), rf"\n  {number}: (holds|fails): \d")
         self.assertIn("time   prefix", said.getvalue())

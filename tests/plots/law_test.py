@@ -13,9 +13,8 @@ import pandas as pd
 
 from small_records import small_record
 
-import law
-import law_unseen
-import records
+from bvlab_scripts import law, law_unseen
+from bvlab_plots import records
 
 
 def runs_of(**changes):

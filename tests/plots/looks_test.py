@@ -8,8 +8,7 @@ import unittest
 
 from small_records import PLOTS
 
-import looks
-import style
+from bvlab_plots import looks, style
 
 STRANGERS = ["capsule", "periodic:2", "periodic:4", "periodic:8", "deferred:2", "deferred:4", "a library"]
 
@@ -31,7 +30,7 @@ class Looks(unittest.TestCase):
         self.assertEqual(looks.looks(STRANGERS), looks.looks(reversed(STRANGERS)))
 
     def test_the_same_in_another_run_and_another_figure(self):
-        program = f"import looks; print([looks.looks([n])[n] for n in {STRANGERS}])"
+        program = f"from bvlab_plots import looks; print([looks.looks([n])[n] for n in {STRANGERS}])"
         for seed in ("1", "2"):
             run = subprocess.run([sys.executable, "-B", "-c", program], cwd=PLOTS, text=True, check=True,
                                  env={**os.environ, "PYTHONHASHSEED": seed}, capture_output=True)

@@ -9,10 +9,11 @@ import unittest
 import pandas as pd
 from small_records import committed, own_record
 
-import records
-from figures import Figure
-from points import points_of
-from refused import Refused
+from bvlab_plots import kinds, records
+from bvlab_plots.captions import note_of
+from bvlab_plots.figures import Figure
+from bvlab_plots.points import points_of
+from bvlab_plots.refused import Refused
 
 
 def with_peers(rows):
@@ -28,7 +29,7 @@ def with_peers(rows):
 class Points(unittest.TestCase):
     def points(self, change=None, **keys):
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()) as self.printed:
-            return points_of(records.read(own_record(folder, change=change)), Figure(name="test", **keys))
+            return points_of(records.read(own_record(folder, change=change), clock="processor"), Figure(name="test", **keys))
 
     def at(self, points, x, series):
         (row,) = points[(points.x == x) & (points.series == series)].itertuples()
@@ -42,9 +43,19 @@ class Points(unittest.TestCase):
         self.assertAlmostEqual(row.high, 115)
 
     def test_what_is_not_shown_goes_into_them(self):
-        points = self.points(x="degrees", y="time_ns / pairs", series="strategy")
+        points = self.points(x="degrees", y="time_ns / pairs", series="strategy", pool="volume")
         # Boxes take twice as long as spheres: 100, 110, 120 and 200, 220, 240.
         self.assertAlmostEqual(self.at(points, 1, "recursive").middle, 160)
+        self.assertEqual(points.attrs["pooled"], {"volume": 2, "repetition": 3})
+
+    def test_an_axis_that_is_neither_named_nor_fixed_is_refused_by_name(self):
+        with self.assertRaisesRegex(Refused, "'volume' is neither named nor fixed: 2 of its values"):
+            self.points(x="degrees", y="time_ns / pairs", series="strategy")
+        with self.assertRaisesRegex(Refused, "'strategy' is neither"):
+            self.points(kind="map", x="degrees", y="volume", value="time_ns")
+        for named in (dict(panels="volume"), dict(panel_rows="volume"), dict(where=["volume=obb"])):
+            points = self.points(x="degrees", y="time_ns / pairs", series="strategy", **named)
+            self.assertEqual(points.attrs["pooled"], {"repetition": 3})
 
     def test_over_a_variant_in_the_same_cell(self):
         points = self.points(x="degrees", y="time_ns", over="strategy=recursive", series="variant")
@@ -88,7 +99,103 @@ class Points(unittest.TestCase):
                              over="volume=sphere, strategy=recursive")
         (row,) = points[(points.x == 1) & (points.y == "obb") & (points.series == "deferred")].itertuples()
         self.assertAlmostEqual(row.middle, 1650)
-        self.assertAlmostEqual(row.ratio, 1 / 1.5, places=6)
+        self.assertAlmostEqual(row.ratio, 1.5, places=6)
+
+    def test_bars_and_maps_say_the_same(self):
+        """What the issue found: a map over recursive's drew 0.064 where bars drew 15.6."""
+        keys = dict(over="strategy=recursive", where=["strategy=deferred", "volume=obb"])
+        rows = dict(x="degrees", y="volume", value="time_ns", kind="map", **keys)
+        drawn = {}
+        for figure in (dict(x="degrees", y="time_ns", kind="bars", **keys), rows):
+            with tempfile.TemporaryDirectory() as folder:
+                record = records.read(own_record(folder))
+                figure = Figure(name="test", **figure)
+                drawing = kinds.drawing_of(figure, kinds.points_of(record, figure))
+            drawn[figure.kind] = [text.get_text() for axis in drawing.axes for text in axis.texts]
+            if figure.kind == "bars":
+                self.assertEqual({round(patch.get_height(), 6) for patch in drawing.axes[0].patches}, {0.75})
+        self.assertEqual(drawn["map"], ["0.75"] * 3)  # 1.33 were the inverse
+        self.assertIn("over recursive's", drawing._suptitle.get_text().replace("\n", " "))
+
+    def test_a_speedup_is_the_inverse_of_a_cost(self):
+        points = self.points(x="degrees", y="time_ns", over="strategy=recursive", ratio="speedup", series="variant")
+        self.assertAlmostEqual(self.at(points, 10, "obb deferred").middle, 1 / 0.75)
+
+    def test_several_values_stand_beside_each_other(self):
+        points = self.points(lambda rows: rows.assign(p99_ns=3 * rows.time_ns, worst_ns=5 * rows.time_ns), x="degrees",
+                             y="time_ns, p99_ns, worst_ns", series="variant")
+        self.assertEqual(len(points), 3 * 4 * 3)
+        self.assertAlmostEqual(self.at(points, 1, "sphere recursive, worst frame's time").middle, 5500)
+        with self.assertRaisesRegex(Refused, "same unit"):
+            self.points(x="degrees", y="time_ns, n_v", series="variant")
+
+    def test_statistics_and_intervals(self):
+        keys = dict(x="degrees", y="time_ns / pairs", series="variant")
+        for statistic, middle in (("mean", 110), ("worst", 120), ("least", 100), ("p99", 119.8)):
+            row = self.at(self.points(statistic=statistic, **keys), 1, "sphere recursive")
+            self.assertAlmostEqual(row.middle, middle)
+        row = self.at(self.points(interval="range", **keys), 1, "sphere recursive")
+        self.assertEqual((row.low, row.high), (100, 120))
+        row = self.at(self.points(statistic="mean", **keys), 1, "sphere recursive")
+        self.assertAlmostEqual(row.high - row.middle, 4.302652730 * 10 / 3**0.5)  # Student's t, two degrees of freedom
+        row = self.at(self.points(interval="95%", **keys), 1, "sphere recursive")
+        self.assertEqual((row.low, row.high), (100, 120))  # three are too few for more
+
+    def test_over_another_record(self):
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+            other = own_record(folder, change=lambda rows: rows[rows.degrees != 10].assign(time_ns=2 * rows.time_ns))
+            points = self.points(x="degrees", y="time_ns", series="variant", over=f"record={other}")
+            self.assertEqual(set(points.x), {0.1, 1})
+            self.assertTrue((abs(points.middle - 0.5) < 1e-9).all())
+            self.assertEqual(len(points), 2 * 4)
+
+    def test_times_are_processor_times(self):
+        """What the issue found: wall times of 135, 362 and 169 us for processor times of 80, 90 and 85."""
+        def disturbed(rows):
+            longer = 1 + rows.repetition
+            return rows.assign(time_ns=rows.time_ns * longer, wall_per_processor=longer, alone="no")
+
+        points = self.points(disturbed, x="degrees", y="time_ns / pairs", series="variant")
+        self.assertAlmostEqual(self.at(points, 1, "sphere recursive").middle, 110)
+        self.assertIn("36 of 36 rows measured beside other work", note_of(Figure("a", "degrees"), points))
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+            rows = records.read(own_record(folder, change=disturbed), clock="wall")
+            figure = Figure("a", "degrees", y="time_ns / pairs", series="variant")
+            points = points_of(rows, figure)
+        self.assertAlmostEqual(self.at(points, 1, "sphere recursive").middle, 220)
+        self.assertIn("Wall time", note_of(figure, points))
+
+    def test_means_and_worst_frames_are_of_one_clock(self):
+        """Of single frames only wall times are known: a mean of the processor's beside them was another clock's."""
+        def disturbed(rows):
+            longer = 1 + rows.repetition
+            return rows.assign(time_ns=rows.time_ns * longer, worst_ns=7 * rows.time_ns, wall_per_processor=longer, alone="no")
+
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+            record = kinds.Rows(own_record(folder, change=disturbed))
+            for y, clock, middle, said in (("time_ns, worst_ns", "", 220, "Wall time"), ("time_ns", "", 110, "Processor time"),
+                                           ("worst_ns", "processor", 770, "(wall time: worst_ns)")):
+                figure = Figure("a", "degrees", y=y, series="variant", clock=clock)
+                points = points_of(record.of(figure), figure)
+                drawn = points[(points.x == 1) & points.series.str.startswith("sphere recursive")].middle.iloc[0]
+                self.assertAlmostEqual(drawn / 10 if drawn > 1000 else drawn, middle)
+                self.assertIn(said, note_of(figure, points))
+
+    def test_a_note_stands_below_the_legend(self):
+        """Whatever the resolution: of six lines it covered the last."""
+        keys = dict(x="degrees", y="time_ns, p99_ns, worst_ns", series="strategy", where=["volume=obb"], width="column")
+        points = self.points(lambda rows: rows.assign(p99_ns=3 * rows.time_ns, worst_ns=5 * rows.time_ns), **keys)
+        drawing = kinds.drawing_of(Figure("a", **keys), points)
+        for drawing.dpi in (72, 150, 200):
+            drawing.draw_without_rendering()
+            self.assertLessEqual(drawing.texts[-1].get_window_extent().y1, drawing.legends[0].get_window_extent().y0 + 0.03 * drawing.dpi)
+
+    def test_a_figure_says_what_is_drawn(self):
+        points = self.points(x="degrees", y="time_ns / pairs", series="strategy", pool="volume")
+        self.assertEqual(note_of(Figure("a", "degrees"), points),
+                         "Medians of 2 volume values × 3 repetitions; bars: quartiles. Wall time.")
+        once = self.points(lambda rows: rows[rows.repetition == 0], x="degrees", y="n_v", series="variant")
+        self.assertEqual(note_of(Figure("a", "degrees"), once), "Single runs, no interval.")
 
     def test_times_beside_other_work_are_left_out(self):
         def beside(rows):

@@ -34,6 +34,7 @@ SPECS = {
     "triangles_error": ("triangles-error", dict(set=2), dict(test="moller", set="random"), None),
 }
 ELSEWHERE = {"tournament", "law_bullet"}  # have tests of their own
+BY_THEMSELVES = {"fan_outs"}  # as has this one, which says otherwise what is no record of its own
 PRINTS = {"hierarchies"}  # and draws nothing
 # Drawn together with others, without a name of their own; or on one line with all that are the same.
 POOLED = {"cost_model": ["strategy"], "stability_map": ["volume"]}
@@ -41,14 +42,14 @@ POOLED = {"cost_model": ["strategy"], "stability_map": ["volume"]}
 
 class Scripts(unittest.TestCase):
     def test_every_script(self):
-        scripts = {path.stem for path in PLOTS.glob("*.py") if "def main(" in path.read_text()} - ELSEWHERE
+        scripts = {path.stem for path in (PLOTS / "bvlab_scripts").glob("*.py") if "def main(" in path.read_text()} - ELSEWHERE - BY_THEMSELVES
         self.assertEqual(scripts, set(SPECS), "a script that is not tested, or is no more")
         for script, (name, keep, strangers, peer_like) in SPECS.items():
             with self.subTest(script), tempfile.TemporaryDirectory() as folder:
                 record = small_record(name, Path(folder) / "record", keep, strangers, peer_like)
                 words = [f"{script}.py", str(record)] + ([] if script in PRINTS else ["--out", folder])
                 with mock.patch.object(sys, "argv", words):
-                    seen = Seen(self, importlib.import_module(script).main)
+                    seen = Seen(self, importlib.import_module(f"bvlab_scripts.{script}").main)
                 self.assertEqual(bool(seen.paths), script not in PRINTS)
                 seen.said += seen.printed if script in PRINTS else ""
                 pooled = [stranger(column) for column in POOLED.get(script, [])]
@@ -59,10 +60,11 @@ class Scripts(unittest.TestCase):
             other = own_record(folder)
             for script in sorted(set(SPECS) | ELSEWHERE):
                 for record, mention in ((other, "has"), (Path(folder) / "none", "no record")):
-                    done = subprocess.run([PLOTS / f"{script}.py", record], capture_output=True, text=True)
+                    name = script.replace("_", "-")
+                    done = subprocess.run([PLOTS / "script", name, record], capture_output=True, text=True)
                     with self.subTest(script=script, record=record):
                         self.assertEqual(done.returncode, 2, done.stderr)
-                        self.assertRegex(done.stderr, rf"\A{script}.py: {record}: [^\n]*{mention}[^\n]*\n\Z")
+                        self.assertRegex(done.stderr, rf"\A{name}: {record}: [^\n]*{mention}[^\n]*\n\Z")
 
 
 if __name__ == "__main__":

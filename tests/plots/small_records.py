@@ -11,7 +11,7 @@ import pandas as pd
 ROOT = Path(__file__).resolve().parents[2]
 PLOTS = ROOT / "plots"
 sys.path.insert(0, str(PLOTS))
-import records  # noqa: E402
+from bvlab_plots import records  # noqa: E402
 
 STRATEGIES = ["unheard-of-strategy", "deferred:4", "deferred:8"]
 COUNTS = ["n_u", "n_v", "n_p", "front"]

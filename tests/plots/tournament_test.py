@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 from small_records import PLOTS  # noqa: F401  puts plots/ on the path
 
-import tournament
+from bvlab_scripts import tournament
 
 
 def rows(times):
@@ -46,6 +46,13 @@ class Tournament(unittest.TestCase):
         runs = rows({("ours", ""): lambda seed: 100 * seed, ("A", "a"): lambda seed: 300 * seed})
         runs = runs[(runs.method == "ours") | (runs.seed != 6)]
         self.assertAlmostEqual(tournament.tournament(runs, "ours", ["A"]).ratio[0], 3, delta=0.1)
+
+    def test_who_answers_otherwise_stays_in_with_the_number(self):
+        runs = rows({("ours", ""): 100, ("A", "a"): 300})
+        runs["differing"] = np.where(runs.method == "A", runs.seed, 0)
+        (line,) = tournament.tournament(runs, "ours", ["A"]).itertuples()
+        self.assertEqual((line.fastest, line.differing), ("A", sum(range(1, 7))))
+        self.assertEqual(tournament.named(line), "A (21 differ)")
 
     def test_a_cell_without_peers_is_left_out(self):
         self.assertEqual(len(tournament.tournament(rows({("ours", ""): 100}), "ours", ["A"])), 0)

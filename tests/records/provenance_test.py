@@ -9,7 +9,7 @@ from pathlib import Path
 
 from repository import RECORDS, ROOT, skip
 
-import provenance
+from bvlab_plots import provenance
 
 NOBODY = ["-c", "user.name=nobody", "-c", "user.email=nobody@example.org", "-c", "commit.gpgsign=false"]
 

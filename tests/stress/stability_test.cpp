@@ -25,7 +25,8 @@ TEST_P(Stressed, NobodyIsWrong) {
       ASSERT_EQ(said.size(), truth.size());
       for (std::size_t i = 0; i < truth.size(); ++i) {
         const auto where = [&] {
-          return variant.tree + ' ' + variant.volume + ' ' + variant.strategy + ' ' +
+          return variant.kernel + ' ' + std::to_string(variant.fan_out) + ' ' + variant.frame +
+                 ' ' + variant.volume + ' ' + variant.strategy + ' ' +
                  variant.precision + " level " + std::to_string(level);
         };
         ASSERT_GE(said[i], truth[i]) << where();

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "hierarchies/bounding_volume.hpp"
-#include "hierarchies/wide/facing.hpp"
+#include "hierarchies/wide/sibling_test.hpp"
 #include "traversal/primitives/triangle_distance.hpp"
 #include "traversal/primitives/triangle_intersection.hpp"
 
@@ -158,13 +158,22 @@ struct SeenFromTheOther {
   SeenFromTheOther(const Hunted<V>& a, const Pose& pose_a, const Hunted<V>& b, const Pose& pose_b) {
     using T = typename V::scalar;
     using S = Batch<T, 8>;
-    using Facing = FacingOf<V>;
+    using SiblingTest = SiblingTestOf<V>;
     const RelativePose pose(OrthonormalPose(pose_a, a.reach), OrthonormalPose(pose_b, b.reach));
-    const auto change = Facing::frame_change(pose, a.reach, b.reach);
-    const auto one = Facing::one(a.local, T(1), change);
+    const auto change = SiblingTest::frame_change(pose, a.reach, b.reach);
+    const auto one = SiblingTest::posed_node(a.local, T(1), change);
     const auto lanes = in_all_lanes<S>(b.local);
-    apart = any_of(Facing::template compared<S>(one, change, lanes, S(T(1))).apart);
-    gap = static_cast<double>(Facing::template gaps<S>(one, change, lanes)[0]);
+    apart = any_of(SiblingTest::template overlap<S>(one, change, lanes, S(T(1))).apart);
+    gap = static_cast<double>(SiblingTest::template gaps<S>(one, change, lanes)[0]);
+    // The same, turned as lanes are.
+    if constexpr (requires { SiblingTest::in_lanes(lanes, change); }) {
+      const auto turned = SiblingTest::in_lanes(in_all_lanes<S>(a.local), change);
+      apart |= any_of(SiblingTest::template overlap<S>(turned, change, lanes, S(T(1))).apart);
+      gap = std::max(gap,
+                     static_cast<double>(SiblingTest::template gaps<S>(turned, change, lanes)[0]));
+      const S separation = SiblingTest::template separation<S>(turned, change, lanes);
+      gap = std::max(gap, static_cast<double>(separation[0]));
+    }
   }
 };
 

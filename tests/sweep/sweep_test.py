@@ -5,6 +5,7 @@ import platform
 import shutil
 import signal
 import subprocess
+import time
 import unittest
 
 from sweeping import BVLAB, PARTS, SweepTest, skip
@@ -50,6 +51,64 @@ class Sweeps(SweepTest):
         self.assert_same_record(timed=False)
         again = {part for part, _ in self.diary("begins")[before:]}
         self.assertEqual(again, set(range(1, PARTS + 1)) - set(finished))
+
+    def alive(self):
+        """The processes that work on the record."""
+        found = subprocess.run(["pgrep", "-f", f"{self.folder}/swept/parts"], capture_output=True, text=True)
+        return found.stdout.split()
+
+    def test_killed_alone_it_leaves_nobody_behind(self):
+        (self.folder / "lasts").write_text("100")
+        process = self.begin("--counts", "--jobs", 2)
+        self.wait_for(lambda: len(self.diary("begins")) >= 2)
+        self.assertTrue(self.alive())
+        process.kill()
+        process.communicate()
+        end = time.monotonic() + 20
+        while self.alive() and time.monotonic() < end:
+            time.sleep(0.1)
+        self.assertEqual(self.alive(), [])
+
+    def test_who_is_at_work_is_named(self):
+        (self.folder / "lasts").write_text("100")
+        process = self.begin("--counts", "--jobs", 2)
+        self.wait_for(lambda: len(self.diary("begins")) >= 2)
+        done = subprocess.run(self.command("--counts"), cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, rf"another sweep is at work on it: .*process {process.pid} \(")
+        self.kill(process)
+
+    def test_every_table_is_merged(self):
+        """Predictions were lost: the merge had a list of its own."""
+        definition = self.folder / "small.toml"
+        definition.write_text(definition.read_text().replace('["coherence"]', '["coherence", "predictions"]'))
+        self.run_whole("--counts")
+        self.sweep("--counts", "--jobs", 2)
+        self.assert_same_record(timed=False)
+        tables = [(self.folder / record / "small.predictions.csv").read_bytes() for record in ("whole", "swept")]
+        self.assertEqual(*tables)
+
+    def test_names_and_marks(self):
+        """A carriage return in a name, and a mark of the byte order before the definition."""
+        definition = self.folder / "small.toml"
+        text = definition.read_text().replace("dense, of course", "dense\\rof course")
+        definition.write_bytes(b"\xef\xbb\xbf" + text.encode())
+        self.run_whole("--counts")
+        self.sweep("--counts", "--jobs", 2)
+        self.assert_same_record(timed=False)
+        self.assertEqual({row["density"] for row in self.rows("swept")}, {"dense\rof course", '"sparse"'})
+        self.sweep("--counts")  # finished, and seen to be
+
+    def test_a_spoiled_plan(self):
+        """What is no plan is named, in one line, and stays."""
+        plan = self.folder / "swept" / "parts" / "plan.json"
+        plan.parent.mkdir(parents=True)
+        for spoiled in ("{", "[]", '{"measured": "counts"}', '{"measured": "counts", "parts": "many"}'):
+            plan.write_text(spoiled)
+            done = subprocess.run(self.command("--counts"), cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), (spoiled, done.stderr))
+            self.assertIn("plan.json: is no plan of a sweep", done.stderr)
+            self.assertEqual(plan.read_text(), spoiled)
 
     def test_what_fails_is_tried_again(self):
         self.run_whole("--counts")
@@ -115,7 +174,7 @@ class Sweeps(SweepTest):
 
     def test_another_definition_is_refused(self):
         self.run_whole("--counts")
-        (self.folder / "other.toml").write_text((self.folder / "small.toml").read_text() + "\n")
+        (self.folder / "other.toml").write_text((self.folder / "small.toml").read_text() + "until = 9\n")
         self.refuse(self.command()[0], "other.toml", "--record", "whole", "--counts", "--bvlab", BVLAB,
                     mentions="another definition")
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tests of experiments/sweep stand on: a definition, a program that keeps a diary, and records to compare."""
 
+import contextlib
 import csv
 import os
 import pathlib
@@ -81,7 +82,7 @@ class SweepTest(unittest.TestCase):
         program.chmod(0o755)
 
     def command(self, *more):
-        words = [SWEEP, "small.toml", "--record", "swept", "--parts", PARTS, "--bvlab", "diarist", *more]
+        words = [SWEEP, "small.toml", "--record", "swept", "--parts", PARTS, "--bvlab", "diarist", "--progress", 100000, *more]
         return list(map(str, words))
 
     def sweep(self, *more):
@@ -114,7 +115,8 @@ class SweepTest(unittest.TestCase):
         """It and its engine, at once."""
         children = subprocess.run(["ps", "-o", "pgid=", "--ppid", str(process.pid)], capture_output=True, text=True)
         for group in {process.pid, *map(int, children.stdout.split())}:
-            os.killpg(group, signal.SIGKILL)
+            with contextlib.suppress(ProcessLookupError):  # its guard may have been faster
+                os.killpg(group, signal.SIGKILL)
         process.communicate()
 
     def run_whole(self, *more):

@@ -4,10 +4,12 @@ promised type, shape and order."""
 
 import json
 import os
+import shutil
 import unittest
+import xml.etree.ElementTree
 
 import numpy as np
-from program import TETRAHEDRON, TRIANGLE, ProgramTest, names_of, poses, volumes_of, ways
+from program import TETRAHEDRON, TRIANGLE, ProgramTest, names_of, poses, ways
 
 # More than one only where the program was built with TBB.
 THREADS = os.environ.get("BVLAB_THREADS", "1")
@@ -52,6 +54,19 @@ class Replay(ProgramTest):
             self.assertTrue(np.all(found >= 0))
         return found
 
+    def test_names_that_are_no_utf8(self):
+        """What is written about them is: JSON, a page and X3D name them with U+FFFD in place of a byte."""
+        mesh, trace = os.fsdecode(b"a\xff,b %20#?.off"), os.fsdecode(b"p\xfe&<.npy")
+        shutil.copyfile(self.folder / "tetrahedron.off", self.folder / mesh)
+        self.write(trace, poses(3, 2))
+        self.take("replay", "--mesh", mesh, "--trace", trace, "--page", "page.html", "--x3d", "scene.x3d", "--json",
+                  "out.json")
+        json.loads((self.folder / "out.json").read_bytes().decode("utf-8"))
+        self.assertIn("a\ufffd,b %20#?.off", (self.folder / "page.html").read_bytes().decode("utf-8"))
+        (title,) = [meta.get("content") for meta in xml.etree.ElementTree.parse(self.folder / "scene.x3d").iter()
+                    if meta.get("name") == "title"]
+        self.assertEqual(title, "p\ufffd&<.npy")
+
     def test_every_mesh_in_every_way(self):
         trace = np.concatenate([poses(1, 3, 0), poses(1, 3, 0.5), poses(1, 3, 5)])
         for mesh, count in TRIANGLES.items():
@@ -85,7 +100,7 @@ class Replay(ProgramTest):
     def test_every_volume_fitted_tightly(self):
         trace = np.concatenate([poses(2, 4, 0), poses(2, 4, 0.5)])
         for query in names_of("queries"):
-            for volume in volumes_of("binary"):
+            for volume in {"obb", "rss", "shell"} & set(names_of("volumes")):
                 way = ["--volume", volume, "--leaf-size", 2]
                 expected = self.replay(list(MESHES), trace, query, *way)
                 found = self.replay(list(MESHES), trace, query, *way, "--fit", "tight")
@@ -118,6 +133,32 @@ class Replay(ProgramTest):
             for way in ways():
                 touching = self.replay(["size.off"], trace, "touching", *way)
                 self.assertEqual(touching.tolist(), [[1], [0]], (size, way))
+
+    def test_meshes_too_small_or_large_for_volumes_are_told(self):
+        """Answers are right; that volumes are of no use for them is said, once a mesh, and only then."""
+        for size, told in (("1e-18", True), ("1e-12", False), ("1e12", False), ("1e19", True)):
+            self.write("size.off", "OFF\n4 2 0\n0 0 0\nS 0 0\n0 S 0\n0 0 S\n3 0 2 1\n3 0 1 3\n".replace("S", size))
+            self.write("poses.npy", np.concatenate([poses(1, 2, 0), poses(1, 2, 3 * float(size))]))
+            for command in ("replay", "predict"):
+                to = ["--out", "out.npy", "--json", "out.json"] if command == "replay" else ["--json", "out.json"]
+                done = self.run_bvlab(command, "--mesh", "size.off", "--trace", "poses.npy", "--query", "touching", *to)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                if command == "replay":
+                    self.assertEqual(self.array("out.npy", "u1", (2, 1)).tolist(), [[1], [0]])
+                lines = [line for line in done.stderr.splitlines() if "every pair of triangles" in line]
+                self.assertEqual([("size.off" in line) for line in lines], [True] * told, done.stderr)
+
+    def test_files_named_with_commas_in_definitions(self):
+        """A mesh's file may be named as it likes; several names have commas between."""
+        for name in ("a,b %20#?.off", "b.off"):
+            self.write(name, TETRAHEDRON)
+        text = ('name = "commas"\nrepetitions = 1\n[parameters]\nframes = 2\nobjects = 2\n'
+                '[[axis]]\nname = "mesh"\nvalues = ["./a,b %20#?.off", "./b.off,./b.off"]\n')
+        self.write("commas.toml", text)
+        done = self.run_bvlab("run", "commas.toml", "--record", "record")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = (self.folder / "record" / "commas.csv").read_text().splitlines()
+        self.assertEqual(len(rows), 3)
 
     def test_skipped_work_is_told(self):
         """Of what a strategy need not do, by counting what it did and what recursion does."""

@@ -127,7 +127,8 @@ class Runs(ProgramTest):
             self.assertEqual(complaint, "")
             rows = self.record("killed")[0]
             # What was finished stands as it stood, times and all: it has not been run again.
-            self.assertEqual(rows[: len(before)], before)
+            known = {tuple(row.items()) for row in rows}
+            self.assertEqual([row for row in before if tuple(row.items()) not in known], [])
             before = rows
             if process.returncode == 0:
                 break
@@ -135,8 +136,10 @@ class Runs(ProgramTest):
         self.assertEqual(process.returncode, 0)
         self.assertGreater(killed, 2)
         _, keys_after, frames_after = self.record("killed")
+        # Rows stand as in a run that was never killed but for the order within a repetition, which is drawn.
         self.assertEqual(sorted(keys_after), sorted(keys))
-        self.assertEqual(sorted(frames_after), sorted(frames))
+        self.assertEqual([(key[0], key[-1]) for key in keys_after], [(key[0], key[-1]) for key in keys])
+        self.assertEqual(frames_after, frames)
         names = {path.name for path in (self.folder / "killed").iterdir()}
         self.assertEqual(names, {path.name for path in (self.folder / "undisturbed").iterdir()})
 

@@ -21,20 +21,29 @@ def lines_of(kind):
 
 
 def names_of(kind):
-    """The names that `bvlab list KIND` lists."""
-    return [line.split()[0] for line in lines_of(kind)]
+    """The names that `bvlab list KIND` lists, but for scenes that have to be brought from elsewhere first."""
+    names = [line.split()[0] for line in lines_of(kind)]
+    return [name for name in names if not name.startswith("public:")]
 
 
-def volumes_of(tree):
-    """The volumes that there are in binary trees, or in wide ones."""
-    return [line.split()[0] for line in lines_of("volumes") if line.endswith("--tree wide alone") == (tree == "wide")]
+WIDE_KERNELS = ("siblings", "mixed")
+
+
+def wide_volumes(kernel):
+    """The volumes that a kernel is compiled for, as `bvlab list kernels` says."""
+    (line,) = [line for line in lines_of("kernels") if line.startswith(kernel)]
+    return line.split("--volume ")[1].split(", --strategy")[0].split(", ")
 
 
 def ways():
-    """Arguments for every volume under every strategy that there is for its tree."""
-    binary = [["--volume", volume, "--strategy", strategy]
-              for volume in volumes_of("binary") for strategy in names_of("strategies")]
-    return binary + [["--tree", "wide", "--volume", volume] for volume in volumes_of("wide")]
+    """Arguments for every volume under every strategy, on trees of every fan-out and in both frames in turn; and for
+    the kernels that are compiled for some volumes alone."""
+    trees = [[], ["--fan-out", "4", "--frame", "body"], ["--fan-out", "16"], ["--frame", "body"],
+             ["--fan-out", "8", "--frame", "body"]]
+    pairs = [(volume, strategy) for volume in names_of("volumes") for strategy in names_of("strategies")]
+    return [["--volume", volume, "--strategy", strategy, *trees[k % len(trees)]]
+            for k, (volume, strategy) in enumerate(pairs)] + \
+        [["--kernel", kernel, "--volume", volume] for kernel in WIDE_KERNELS for volume in wide_volumes(kernel)]
 
 
 def poses(frames, objects, step=0.1):

@@ -9,7 +9,7 @@ import subprocess
 import unittest
 
 import numpy as np
-from program import BVLAB, TETRAHEDRON, TRIANGLE, ProgramTest, names_of, poses, volumes_of
+from program import BVLAB, TETRAHEDRON, TRIANGLE, ProgramTest, names_of, poses, WIDE_KERNELS, wide_volumes
 
 METHOD = names_of("methods")[0]
 NOT_NUMBERS = ("x", "1x", "0x10", "1.5", "1e1000000", "", "-0x1", "٣")
@@ -219,25 +219,31 @@ class Names(ProgramTest):
         self.refuse(*self.replay, "--configuration", "frob",
                     mentions=["--configuration", *names_of("configurations")])
         self.refuse(*self.replay, "--configuration", "", mentions=names_of("configurations"))
-        self.refuse(*self.replay, "--tree", "frob", mentions=["--tree", *names_of("trees")])
+        self.refuse(*self.replay, "--frame", "frob", mentions=["--frame", *names_of("frames")])
+        self.refuse(*self.replay, "--kernel", "frob", mentions=["--kernel", *names_of("kernels")])
+        for value in ("3", "0", "32", "-2", "x", ""):
+            self.refuse(*self.replay, "--fan-out", value, mentions="--fan-out")
         self.refuse(*self.replay, "--count", "maybe", mentions=["--count", "on", "off"])
 
-    def test_of_wide_trees(self):
+    def test_of_kernels_of_some_volumes(self):
         """What nobody compares is not compiled, and is refused by what there is."""
-        for volume in volumes_of("wide"):
-            self.refuse(*self.replay, "--volume", volume, mentions=["--tree wide", *volumes_of("binary")])
-            wide = [*self.replay, "--tree", "wide", "--volume", volume]
-            for strategy in set(names_of("strategies")) - {"recursive", "margins"} | {"recursive:1", "margins:1", "frob", ""}:
-                self.refuse(*wide, "--strategy", strategy, mentions=["--strategy", strategy, "recursive"])
-            self.refuse(*wide, "--query", "frob", mentions=["--query", *names_of("queries")])
-            self.refuse(*wide, "--budget", "10", mentions=["--budget", "wide"])
-        for volume in (*volumes_of("binary"), "frob", ""):
-            self.refuse(*self.replay, "--tree", "wide", "--volume", volume,
-                        mentions=["--volume " + volume, *volumes_of("wide")])
+        for kernel in WIDE_KERNELS:
+            for volume in wide_volumes(kernel):
+                wide = [*self.replay, "--kernel", kernel, "--volume", volume]
+                for strategy in set(names_of("strategies")) - {"recursive", "margins"} | {"recursive:1", "margins:1", "frob", ""}:
+                    self.refuse(*wide, "--strategy", strategy, mentions=["--strategy", strategy, "recursive"])
+                self.refuse(*wide, "--query", "frob", mentions=["--query", *names_of("queries")])
+                self.refuse(*wide, "--frame", "world", mentions=["--frame world", "body"])
+                self.refuse(*wide, "--fan-out", "3", mentions=["--fan-out"])
+                self.refuse(*wide, "--budget", "10", mentions=["--budget", kernel])
+            for volume in (*(set(names_of("volumes")) - set(wide_volumes(kernel))), "frob", ""):
+                self.refuse(*self.replay, "--kernel", kernel, "--volume", volume,
+                            mentions=["--volume " + volume, *wide_volumes(kernel)])
 
     def test_of_configurations(self):
         for configuration in (["--recommended"], ["--configuration", "as-published"]):
-            for part in (["--volume", "obb"], ["--tree", "wide"], ["--strategy", "recursive"],
+            for part in (["--volume", "obb"], ["--fan-out", "4"], ["--frame", "body"], ["--kernel", "siblings"],
+                         ["--strategy", "recursive"],
                          ["--build", "bottom-up"], ["--fit", "tight"], ["--leaf-size", "2"]):
                 self.refuse(*self.replay, *configuration, *part, mentions=[configuration[0], part[0]])
         self.refuse(*self.replay, "--recommended", "--configuration", "as-published",
@@ -246,8 +252,9 @@ class Names(ProgramTest):
     def test_of_configurations_in_their_own_words(self):
         self.refuse(*self.replay, "--recommended", "--page", "page.html", mentions=["--page", "--configuration recommended"])
         self.refuse(*self.replay, "--recommended", "--budget", "10", mentions=["--budget", "--configuration recommended"])
-        self.refuse(*self.replay, "--tree", "wide", "--volume", volumes_of("wide")[0], "--page", "page.html",
-                    mentions=["--page", "--tree wide"])
+        self.refuse(*self.replay, "--kernel", "siblings", "--volume", wide_volumes("siblings")[0], "--page", "page.html",
+                    mentions=["--page", "--kernel siblings"])
+        self.refuse(*self.replay, "--fan-out", "8", "--page", "page.html", mentions=["--page", "--fan-out 8"])
 
     def test_of_a_budget(self):
         for value in ("-1", "x", "1.5", ""):
@@ -317,6 +324,11 @@ class Values(ProgramTest):
         self.write("poses.npy", poses(2, 3))
         self.write("boxes.npy", boxes())
         self.replay = ["replay", "--mesh", "mesh.off", "--trace", "poses.npy", "--out", "out.npy"]
+
+    def test_a_fit_that_a_volume_has_not(self):
+        for volume in names_of("volumes"):
+            if volume in ("sphere", "aabb") or volume.startswith("kdop"):
+                self.refuse(*self.replay, "--volume", volume, "--fit", "tight", mentions=["--fit tight", volume])
 
     def test_whole_numbers(self):
         wrong = ("0", "-1", "-4294967295", "-18446744073709551615", *NOT_NUMBERS)
@@ -424,7 +436,7 @@ class Definitions(ProgramTest):
         way = "name = 'way'\n[[axis.value]]\nname = 'a'\nseed = 1\n"
         for other in ("name = 'seed'\nvalues = [2]\n", way.replace("'way'", "'road'")):
             self.refuse_definition(axis(way) + "[[axis]]\n" + other, "line 12", "sets 'seed'", "'way'")
-        for name in ("time_ns", "differing", "repetition", "pairs", "frame", "kept", "n_v"):
+        for name in ("time_ns", "differing", "repetition", "pairs", "kept", "n_v"):
             self.refuse_definition(axis(way.replace("way", name)), f"axis '{name}'", "a column of that name")
         self.refuse_definition(axis(way.replace("way", "")), "line 8", "name is empty")
         self.refuse_definition(axis(way.replace("'way'", '"a\\nb"')), "line 8", "control character")
@@ -452,7 +464,7 @@ class Definitions(ProgramTest):
     def test_names_and_numbers(self):
         kinds = {"scene": "scenes", "volume": "volumes", "strategy": "strategies",
                  "query": "queries", "build": "builds", "precision": "precisions", "peer": "peers",
-                 "tree": "trees", "configuration": "configurations"}
+                 "frame": "frames", "kernel": "kernels", "configuration": "configurations"}
         for parameter, kind in kinds.items():
             self.refuse_definition(self.START + f"{parameter} = 'frob'\n", "frob", *names_of(kind))
             self.refuse_definition(self.START + f"[[axis]]\nname = '{parameter}'\n"
@@ -512,8 +524,7 @@ class Definitions(ProgramTest):
         whole = table.read_text()
         lines = whole.splitlines(keepends=True)
         for text, said in ((whole[:-10], "is cut off"), (whole + '"', "is cut off"),
-                           ("".join(lines[:-1]), "row 3 is of a cell that has 1 rows, not 2"),
-                           (whole + lines[-1], "row 3 is of a cell that has 3 rows, not 2"),
+                           (whole + lines[-1], "row 5 is a second one of its cell and repetition"),
                            (whole.replace(",sphere,", ",cube,"), "row 1 is of no cell"),
                            (lines[0] + "1,2\n", "line 2 has 2 fields")):
             table.write_text(text)

@@ -52,7 +52,8 @@ class SoakOfVolumes : public ::testing::Test {
   }
 
   static void expect_fresh(Variant variant) {
-    const std::string where = variant.tree + ' ' + variant.volume + ' ' + variant.strategy;
+    const std::string where = variant.kernel + ' ' + std::to_string(variant.fan_out) + ' ' +
+                              variant.frame + ' ' + variant.volume + ' ' + variant.strategy;
     variant.query = "touching";
     EXPECT_EQ(played(variant).touching, fresh("touching").touching) << where;
     variant.query = "contacts";
@@ -92,7 +93,8 @@ TEST_F(SoakOfVolumes, ThreadsEqualFresh) {
          {std::array{"binary", "obb", "margins"}, std::array{"binary", "sphere", "adaptive"},
           std::array{"binary", "sphere", "deferred"}, std::array{"wide", "slab-box", "recursive"},
           std::array{"wide", "slab-box", "margins"}}) {
-      variant.tree = tree, variant.volume = volume, variant.strategy = strategy;
+      set_tree(variant, tree);
+      variant.volume = volume, variant.strategy = strategy;
       const ReplayResult found = replay(meshes(), four, variant, options);
       EXPECT_EQ(found.touching, truth.touching) << tree << ' ' << volume << ' ' << strategy;
       EXPECT_EQ(found.contacts, truth.contacts) << tree << ' ' << volume << ' ' << strategy;
@@ -101,13 +103,15 @@ TEST_F(SoakOfVolumes, ThreadsEqualFresh) {
 }
 
 TEST_F(SoakOfVolumes, WideTreesEqualFresh) {
-  for (const auto& volume : wide_volumes())
-    for (const char* strategy : {"recursive", "margins"}) {
-      Variant variant;
-      variant.tree = "wide", variant.volume = volume.name, variant.strategy = strategy;
-      variant.leaf_size = 16;
-      expect_fresh(variant);
-    }
+  for (const char* kernel : {"siblings", "mixed"})
+    for (const auto& volume : wide_volumes(kernel))
+      for (const char* strategy : {"recursive", "margins"}) {
+        Variant variant;
+        set_kernel(variant, kernel);
+        variant.volume = volume.name, variant.strategy = strategy;
+        variant.leaf_size = 16;
+        expect_fresh(variant);
+      }
 }
 
 struct OfVolume : SoakOfVolumes, ::testing::WithParamInterface<std::string> {};
@@ -116,6 +120,8 @@ TEST_P(OfVolume, CoherentEqualsFresh) {
   for (const auto& strategy : strategies()) {
     Variant variant;
     variant.volume = GetParam(), variant.strategy = strategy.name;
+    this->expect_fresh(variant);
+    variant.fan_out = 8, variant.frame = "body";
     this->expect_fresh(variant);
   }
 }

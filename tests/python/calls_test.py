@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Calls of the module: they let other threads go on, Ctrl-C ends them, and their help is a page to start from."""
+
+import ast
+import os
+import pydoc
+import signal
+import threading
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import bvlab
+import bvlab._running
+import scenes
+
+PACKAGE = Path(os.environ["BVLAB_SOURCE"]) / "experiments" / "python" / "bvlab"
+
+
+class Calls(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.mesh = bvlab.Mesh(*scenes.torus(60, 40))
+        # Long, since it stands for work that nobody wants to wait for.
+        cls.long = np.tile(scenes.walk(frames=100, objects=6, side=1), (1000, 1, 1))
+
+    def interrupted(self, call):
+        def press():
+            time.sleep(0.3)
+            signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+        threading.Thread(target=press).start()
+        start = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            call()
+        self.assertLess(time.monotonic() - start, 5)
+
+    def test_ctrl_c_ends_a_replay(self):
+        self.interrupted(lambda: bvlab.replay(self.mesh, self.long, query="contacts"))
+        self.interrupted(lambda: bvlab.replay(self.mesh, self.long, kernel="siblings", volume="slab-box"))
+
+    def test_ctrl_c_ends_boxes(self):
+        trace = np.random.default_rng(1).random((300, 20000, 6), dtype=np.float32)
+        trace[..., 3:] = trace[..., :3] + 0.1
+        self.interrupted(lambda: bvlab.boxes(trace, answers=False))
+
+    def test_other_threads_go_on(self):
+        ticks, done = [], threading.Event()
+
+        def tick():
+            while not done.is_set():
+                ticks.append(time.monotonic())
+                time.sleep(0.002)
+        threading.Thread(target=tick).start()
+        start = time.monotonic()
+        bvlab.replay(self.mesh, self.long[:1000], query="contacts", answers=False)
+        end = time.monotonic()
+        done.set()
+        inside = sum(start < each < end for each in ticks)
+        self.assertGreater(inside, (end - start) / 0.002 / 20)
+
+    def test_a_world_of_several_threads(self):
+        world = bvlab.World([self.mesh] * 6, volume="obb", strategy="deferred")
+        faults = []
+
+        def work(i):
+            try:
+                for frame in range(30):
+                    world.move(i, self.long[frame, i])
+                    world.update()
+                    world.touching(), world.contacts(), world.distances(0.1)
+            except Exception as fault:  # noqa: BLE001
+                faults.append(fault)
+        threads = [threading.Thread(target=work, args=[i]) for i in range(6)]
+        for each in threads:
+            each.start()
+        for each in threads:
+            each.join()
+        self.assertEqual(faults, [])
+        wanted = bvlab.replay(self.mesh, self.long[29:30]).answers[0]
+        np.testing.assert_array_equal(world.touching(), bvlab.pairs_of(6)[wanted == 1])
+
+    def test_what_progress_raises_ends_a_run(self):
+        import tempfile
+
+        def stop(done, of):
+            raise RuntimeError("enough")
+        with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(RuntimeError, "enough"):
+            bvlab.run({"name": "x", "parameters": {"mesh": "torus", "frames": 2}}, f"{folder}/x", counts=True,
+                      progress=stop)
+
+    def test_definitions_that_are_none(self):
+        for bad in ({"name": "x", "parameters": {"cube": 1}}, {}, {"name": None}, {"name": "x", 3: 4},
+                    {"name": "x", "parameters": {"mesh": object()}}, "none.toml", os.curdir):
+            with self.assertRaises(ValueError) as caught:
+                bvlab.run(bad, "/nowhere/at/all")
+            self.assertNotIn("\n", str(caught.exception))
+
+    def test_definitions_as_dictionaries(self):
+        import tomllib
+        given = {"name": "a \"quoted\" \\ name\n\x7f ü", "repetitions": 3, "x": 0.1, "y": 1e-300, "whole": 1.0, "no": False,
+                 "parameters": {"list": [1, "two", 3.5], "degrees": np.float64(0.25), "range": [0, 1, 2]},
+                 "axis": [{"name": "reading", "value": [{"name": "a", "moving": 1}, {"name": "b"}]},
+                          {"name": "seed", "values": [1, 2]}], "a key": {"b.c": 1}}
+        self.assertEqual(tomllib.loads(bvlab._running.toml_of(given)), given)
+
+    def test_help(self):
+        text = pydoc.render_doc(bvlab, renderer=pydoc.plaintext)
+        for name in bvlab.__all__:
+            self.assertIn(name, text)
+            self.assertTrue(getattr(bvlab, name).__doc__.strip(), name)
+
+    def test_stubs_name_what_there_is(self):
+        stubs = ast.parse((PACKAGE / "_bvlab.pyi").read_text())
+        private = bvlab._bvlab
+        for node in stubs.body:
+            if isinstance(node, ast.FunctionDef):
+                self.same_arguments(node, getattr(private, node.name).__doc__)
+            elif isinstance(node, ast.ClassDef) and node.name != "HasFaces":
+                kind = getattr(private, node.name)
+                own = {each.name: each for each in node.body if isinstance(each, ast.FunctionDef)}
+                there = {name for name in vars(kind) if not name.startswith("_")}
+                self.assertEqual(there, {name for name in own if not name.startswith("_")}, node.name)
+                for name, each in own.items():
+                    if not each.decorator_list and name != "__len__":
+                        self.same_arguments(each, getattr(kind, name).__doc__)
+        public = {name for name in vars(private) if not name.startswith("_")}
+        self.assertLessEqual(public, {node.name for node in stubs.body if hasattr(node, "name")})
+
+    def same_arguments(self, node, text):
+        """The first line of pybind11's help is the signature."""
+        line = (text or "").splitlines()[0]
+        arguments = [each.arg for each in node.args.args + node.args.kwonlyargs if each.arg != "self"]
+        for name in arguments:
+            self.assertIn(f"{name}: ", line, node.name)
+        self.assertEqual(line.count(": "), len(arguments) + ("self: " in line), line)
+
+
+if __name__ == "__main__":
+    unittest.main()

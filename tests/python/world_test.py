@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""World against replay: pairs that touch, contacts and distances, of any volume and strategy, some bodies moving."""
+
+import unittest
+
+import numpy as np
+
+import bvlab
+import scenes
+
+
+def compiled():
+    """Every strategy once, and what is recommended."""
+    yield {}
+    for strategy in bvlab.strategies():
+        yield {"strategy": strategy}
+    for volume in bvlab.volumes():
+        yield {"volume": volume}
+
+
+class Worlds(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.meshes = [bvlab.Mesh(*scenes.torus()), bvlab.Mesh(*scenes.torus(8, 6, 0.5))]
+        poses = scenes.walk(frames=10, objects=7, side=2.5, step=0.3)
+        # In most frames few bodies move.
+        stays = np.random.default_rng(5).random((10, 7)) < 0.5
+        for frame in range(1, 10):
+            poses[frame, stays[frame]] = poses[frame - 1, stays[frame]]
+        cls.poses = poses
+        replay = {query: bvlab.replay(cls.meshes, poses, query=query).answers
+                  for query in ("touching", "contacts", "distance")}
+        cls.pairs = bvlab.pairs_of(7)
+        cls.replay = replay
+
+    def check(self, world, frame):
+        touching = self.pairs[self.replay["touching"][frame] == 1]
+        np.testing.assert_array_equal(world.touching(), touching)
+
+    def test_any_volume_and_strategy(self):
+        for options in compiled():
+            with self.subTest(**options):
+                try:
+                    world = bvlab.World(self.meshes, objects=7, **options)
+                except ValueError as fault:
+                    self.assertRegex(str(fault), "unknown; there are")
+                    continue
+                for frame, poses in enumerate(self.poses):
+                    for i in range(7):
+                        world.move(i, poses[i])
+                    world.update()
+                    self.check(world, frame)
+
+    def test_contacts_and_distances(self):
+        for options in ({"volume": "obb"}, {"kernel": "siblings", "volume": "slab-box"},
+                        {"fan_out": 8, "frame": "body", "volume": "obb"}):
+            world = bvlab.World(self.meshes, objects=7, **options)
+            for frame, poses in enumerate(self.poses):
+                world.move(np.arange(7), poses)
+                world.update()
+                self.check(world, frame)
+                contacts = self.replay["contacts"]
+                np.testing.assert_array_equal(world.contacts(), contacts[contacts[:, 0] == frame][:, 1:])
+                for below in (0, 0.3, 1.0, np.inf):
+                    pairs, distances = world.distances(below)
+                    all_of_them = self.replay["distance"][frame]
+                    np.testing.assert_array_equal(pairs, self.pairs[all_of_them <= below])
+                    # By other volumes: as near as distances are promised, see traversal/queries/distance.hpp.
+                    np.testing.assert_allclose(distances, all_of_them[all_of_them <= below], rtol=2**-44, atol=0)
+
+    def test_answers_are_those_of_the_last_update(self):
+        mesh = bvlab.Mesh(*scenes.torus())
+        world = bvlab.World([mesh, mesh, mesh])
+        at = np.array([0, 0, 0, 1, 0, 0, 0.0])
+        world.move([0, 1], [at, at])
+        self.assertEqual(len(world.touching()), 0)
+        world.update()
+        self.assertEqual(world.touching().tolist(), [[0, 1]])
+        contacts = world.contacts()
+        world.move(1, at + [9, 0, 0, 0, 0, 0, 0])
+        np.testing.assert_array_equal(world.contacts(), contacts)
+        self.assertEqual(world.touching().tolist(), [[0, 1]])
+        world.update()
+        self.assertEqual(world.touching().tolist(), [])
+        self.assertEqual(len(world.contacts()), 0)
+        world.move(2, at)
+        world.update()
+        self.assertEqual(world.touching().tolist(), [[0, 2]])
+        self.assertEqual(world.distances(9)[0].tolist(), [[0, 1], [0, 2], [1, 2]])
+        world.remove(2)
+        world.update()
+        self.assertEqual(world.touching().tolist(), [])
+        self.assertEqual(world.distances(9)[0].tolist(), [[0, 1]])
+        self.assertEqual(len(world), 3)
+
+    def test_meshes_and_arrays_may_be_freed(self):
+        vertices, faces = scenes.torus()
+        mesh = bvlab.Mesh(vertices, faces)
+        seen = mesh.vertices
+        world = bvlab.World([mesh, bvlab.Mesh(vertices, faces)], volume="obb")
+        del mesh, vertices, faces
+        world.move([0, 1], np.array([[0, 0, 0, 1, 0, 0, 0], [0.1, 0, 0, 1, 0, 0, 0]]))
+        world.update()
+        self.assertEqual(world.touching().tolist(), [[0, 1]])
+        self.assertTrue(np.isfinite(seen).all())
+        contacts = world.contacts()
+        del world
+        self.assertGreater(contacts.sum(), 0)
+
+    def test_a_list_that_repeats_itself_is_its_first_part(self):
+        a, b = self.meshes
+        poses = self.poses[:, :6]
+        once = bvlab.replay([a, b], poses, count=True)
+        again = bvlab.replay([a, b, a, b, a, b], poses, count=True)
+        np.testing.assert_array_equal(once.answers, again.answers)
+        self.assertEqual(once.n_v, again.n_v)
+        world = bvlab.World([a, b] * 3)
+        self.assertEqual(len(world), 6)
+
+
+if __name__ == "__main__":
+    unittest.main()
