@@ -11,10 +11,12 @@
 #include <cassert>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "hierarchies/bounding_volume.hpp"
 #include "hierarchies/build/topology.hpp"
+#include "hierarchies/fitting.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 #include "hierarchies/geometry/written_out.hpp"
@@ -48,7 +50,7 @@ class Hierarchy {
       : primitives_(topology.primitives), volumes_(topology.nodes.size()) {
     take_nodes(topology);
     number_siblings();
-    std::vector<Fitting> fitting(threads.count());
+    std::vector<Fitting<V>> fitting(threads.count());
     // The first nodes enclose most triangles.
     threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
       enclose(i, begin_[i], end_[i], mesh, fit, fitting[worker]);
@@ -67,7 +69,7 @@ class Hierarchy {
   /// volumes are the looser the more the mesh has changed its shape. Bodies over the hierarchy, and
   /// strategies that have run on them, must be made anew.
   void refit(const TriangleMesh& mesh) {
-    Fitting fitting;
+    Fitting<V> fitting;
     for (std::size_t i = nodes_.size(); i-- > 0;) {
       if (const Node& node = nodes_[i]; node.count > 0) {
         enclose(i, node.first, node.first + node.count, mesh, Fit::published, fitting);
@@ -196,36 +198,10 @@ class Hierarchy {
     }
   }
 
-  /// What one thread needs for itself while volumes are fitted.
-  struct alignas(128) Fitting {
-    std::vector<std::uint32_t> corners;
-    std::vector<Vec3<double>> points;
-    std::vector<Triangle> triangles;
-  };
   void enclose(std::size_t i, std::uint32_t begin, std::uint32_t end, const TriangleMesh& mesh,
-               Fit fit, Fitting& own) {
-    auto& [corners, points, triangles] = own;
-    corners.clear();
-    for (std::uint32_t k = begin; k < end; ++k)
-      for (const auto vertex : mesh.triangles[primitives_[k]]) corners.push_back(vertex);
-    std::sort(corners.begin(), corners.end());
-    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-    points.clear();
-    for (const auto vertex : corners) points.push_back(mesh.vertices[vertex]);
-    if constexpr (FittedToTriangles<V> || FittedTightly<V>) {
-      triangles.clear();
-      for (std::uint32_t k = begin; k < end; ++k) triangles.push_back(mesh.corners(primitives_[k]));
-    }
-    if constexpr (FittedTightly<V>) {
-      if (fit == Fit::tight) {
-        volumes_[i] = V::tight(points, triangles);
-        return;
-      }
-    }
-    if constexpr (FittedToTriangles<V>)
-      volumes_[i] = V::enclosing(points, triangles);
-    else
-      volumes_[i] = V::enclosing(points);
+               Fit fit, Fitting<V>& own) {
+    own.take_vertices(mesh, std::span(primitives_).subspan(begin, end - begin));
+    volumes_[i] = own.volume(fit);
   }
 
   void take_smaller(std::size_t i, const V& other) {

@@ -2,12 +2,13 @@
 /// The recommended configuration for the queries touching and contacts, where triangles are about
 /// as long as wide, as in scans and simulations: slab-boxes in wide trees, as many children per
 /// node as a register has lanes, tested in the bodies' own frames, with margins from frame to
-/// frame. `bvlab replay --recommended` chooses the same for such meshes. For distances, swept
-/// rectangles in binary trees are best (see rss.hpp).
+/// frame. For meshes of long triangles see recommended_for.hpp; `bvlab replay --recommended`
+/// chooses between the two. For distances, swept rectangles in binary trees are best (see rss.hpp).
 #pragma once
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <span>
 
@@ -40,20 +41,28 @@ inline double elongation(std::span<const TriangleMesh> meshes) {
 /// The elongation above which triangles count as long.
 inline constexpr double long_triangles = 3.5;
 
-struct Recommended {
-  using Volume = SlabBox<float>;
-  /// A wider node would be tested in several steps; none is narrower than two.
-  static constexpr int fan_out = std::clamp(native_width<float>, 2, 16);
-  using Hierarchy = WideHierarchy<Volume, fan_out>;
-  using Shape = WideShape<Volume, fan_out>;
-  using Pairs = WidePairs<Volume, fan_out, WideMargins>;
+/// Margins over wide trees of one volume. Build is an entry of builds.hpp; at most `leaf_size`
+/// triangles a leaf.
+template <BoundingVolume V, int F, class KernelType, class Build, Fit fit, std::uint32_t leaf_size>
+struct MarginsOver {
+  using Volume = V;
+  using Kernel = KernelType;
+  static constexpr int fan_out = F;
+  using Hierarchy = typename Kernel::template Hierarchy<Volume, fan_out>;
+  using Shape = WideShape<Volume, fan_out, Kernel>;
+  using Pairs = WidePairs<Volume, fan_out, WideMargins, Kernel>;
 
   /// The hierarchy of a mesh. One serves all bodies of that mesh.
   static Hierarchy hierarchy(const TriangleMesh& mesh, int threads = 1) {
     Threads several(threads);
-    return Hierarchy(mesh, builds::TopDownSurfaceArea::topology(mesh, 1, several), Fit::published,
-                     fan_out, several);
+    return Hierarchy(mesh, Build::topology(mesh, 1, several), fit, leaf_size, several);
   }
 };
+
+/// A wider node would be tested in several steps; none is narrower than two.
+inline constexpr int recommended_fan_out = std::clamp(native_width<float>, 2, 16);
+
+using Recommended = MarginsOver<SlabBox<float>, recommended_fan_out, SiblingsKernel,
+                                builds::TopDownSurfaceArea, Fit::published, recommended_fan_out>;
 
 }  // namespace bvlab

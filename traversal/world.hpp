@@ -14,7 +14,8 @@
 namespace bvlab {
 
 /// `World(shapes)`, of `Recommended::Shape`, is the recommended configuration; meshes and
-/// hierarchies must outlive it. Any other is named by the type of its pairs:
+/// hierarchies must outlive it. recommended_for.hpp has another for meshes of long triangles, and
+/// chooses. Any other is named by the type of its pairs:
 /// `World<StrategyPairs<Bodies<B, V>, Strategy>>({shapes, strategy})`.
 template <class Pairs = Recommended::Pairs, class Method = Auto<float, Closed>>
 class World : public WorldOf<Pairs, Method> {
@@ -22,12 +23,12 @@ class World : public WorldOf<Pairs, Method> {
   /// The scene is empty at first. Bodies enter it when they are moved, and can be taken out again.
   explicit World(std::type_identity_t<Pairs> pairs, int threads = 1)
       : WorldOf<Pairs, Method>(std::move(pairs), threads) {}
-  explicit World(std::span<const Recommended::Shape> shapes,
-                 int threads = 1) requires std::is_same_v<Pairs, Recommended::Pairs>
+  explicit World(std::span<const Recommended::Shape> shapes, int threads = 1)
+    requires std::is_same_v<Pairs, Recommended::Pairs>
       : World(Pairs(shapes), threads) {}
 };
 
-World(std::span<const Recommended::Shape>)->World<>;
-World(std::span<const Recommended::Shape>, int)->World<>;
+World(std::span<const Recommended::Shape>) -> World<>;
+World(std::span<const Recommended::Shape>, int) -> World<>;
 
 }  // namespace bvlab

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Many bodies, of which few move: which touch? Pairs that nothing has happened to are not asked.
+/// Many bodies, of which few move: which touch? Pairs of which no body has moved are not queried.
 #include <cstdio>
 
 #include "ring.hpp"
@@ -23,14 +23,14 @@ int main() {
   for (int frame = 0; frame < 3; ++frame) {
     // Body 0 goes along the row, into one after the other.
     world.move(0, *pose_from({3.0 * frame + 1, 0, 0}, 1, 0, 0, 0));
-    int asked = 0;
+    int queried = 0;
     world.update(
         counter, [](const ObjectPair&) { return Touching(); },
         [&](std::uint32_t slot, const ObjectPair& pair, const Touching& query) {
-          touching.put(slot, pair, query.touching()), ++asked;
+          touching.put(slot, pair, query.touching()), ++queried;
         },
         [&](std::uint32_t slot) { touching.drop(slot); });
-    std::printf("frame %d, %d pairs asked:", frame, asked);
+    std::printf("frame %d, %d pairs queried:", frame, queried);
     for (const auto& [i, j] : touching.pairs()) std::printf(" %u-%u", i, j);
     std::printf("\n");
   }

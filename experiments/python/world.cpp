@@ -15,6 +15,7 @@
 #include "experiments/python/pair_answers.hpp"
 #include "experiments/python/signals.hpp"
 #include "experiments/python/variants.hpp"
+#include "experiments/replay/configurations.hpp"
 #include "experiments/replay/worlds.hpp"
 #include "experiments/scenes/trace.hpp"
 
@@ -25,10 +26,12 @@ using namespace py::literals;
 
 class PyWorld {
  public:
-  PyWorld(const py::object& meshes, std::size_t objects, const Variant& variant, int threads)
+  PyWorld(const py::object& meshes, std::size_t objects, const VariantWords& words, int threads)
       : meshes_(meshes),
         objects_(objects > 0 ? objects : meshes_.given()),
-        variant_(variant),
+        variant_(words.configuration
+                     ? configured(variant_from(words), *words.configuration, meshes_.span()).variant
+                     : variant_from(words)),
         moved_to_(objects_),
         stands_(objects_),
         present_(objects_, 0),
@@ -271,9 +274,9 @@ name, what is recommended. Another thread may use a World; it waits its turn.)")
                                 0};
              if (!volume && !strategy && !fan_out && !frame && !kernel && !configuration)
                words.configuration = "recommended";
-             const Variant variant = variant_from(words);
+             check(variant_from(words));
              check_threads(threads);
-             return std::make_unique<PyWorld>(meshes, objects, variant, threads);
+             return std::make_unique<PyWorld>(meshes, objects, words, threads);
            }),
            "meshes"_a, py::kw_only(), "objects"_a = 0, "volume"_a = py::none(),
            "strategy"_a = py::none(), "fan_out"_a = py::none(), "frame"_a = py::none(),

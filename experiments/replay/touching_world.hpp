@@ -27,6 +27,9 @@ class NearBoxes {
   explicit NearBoxes(const MethodSettings& settings)
       : method_(make_method<float>("auto", settings)) {}
   std::span<const Pair> overlapping(Boxes<float> boxes) { return method_->overlapping(boxes); }
+  std::span<const Pair> update(Boxes<float> boxes, std::span<const std::uint32_t> moved) {
+    return method_->update(boxes, moved);
+  }
   PairChanges changes() const { return method_->changes(); }
 
  private:

@@ -148,7 +148,7 @@ std::string nanoseconds(double seconds) {
 
 void run(const StudyDefinition& definition, const std::filesystem::path& folder,
          const Progress& progress) {
-  const Settings settings = settings_of(definition);
+  Settings settings = settings_of(definition);
   for (const auto& who : settings.contestants)
     if (static_cast<std::size_t>(who.threads) > cores_allowed())
       throw Unusable(definition.file, "threads: " + std::to_string(who.threads) +
@@ -161,6 +161,9 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
                       "build_ns",      "moved",  "near",    "asked",      "touching", "differing"},
                      9, progress);
   const TriangleMesh mesh = named_mesh(settings.mesh, settings.polygons).mesh;
+  for (auto& who : settings.contestants)
+    if (!who.configuration.empty())
+      who.variant = configured({}, who.configuration, std::span(&mesh, 1)).variant;
   std::mt19937_64 random(20260101);
   std::size_t done = 0;
   for (const Scene& scene : settings.scenes) {

@@ -20,6 +20,7 @@
 #include "hierarchies/wide/fitting.hpp"
 #include "hierarchies/wide/lanes.hpp"
 #include "hierarchies/wide/support_map.hpp"
+#include "hierarchies/wide/triangle_lanes.hpp"
 
 namespace bvlab {
 
@@ -53,11 +54,6 @@ class BlockHierarchy {
   using Row = Lanes<4>;
   using Block = Lanes<16>;
 
-  /// The corners of up to four triangles, rounded: corner, coordinate, lane.
-  struct alignas(16) FourTriangles {
-    std::array<std::array<std::array<scalar, 4>, 3>, 3> corner;
-  };
-
   BlockHierarchy(const TriangleMesh& mesh, const Topology& binary, Fit fit = Fit::published,
                  std::uint32_t leaf_size = fan_out, Threads&& threads = Threads())
       : BlockHierarchy(mesh, binary, fit, leaf_size, threads) {}
@@ -72,7 +68,7 @@ class BlockHierarchy {
     threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
       const auto& node = topology.nodes[i];
       assert(node.count <= fan_out);
-      const V volume = fitting[worker].volume(mesh, topology, node.begin, node.end, fit);
+      const V volume = volume_around(mesh, topology, node.begin, node.end, fit, fitting[worker]);
       const auto children = static_cast<std::uint8_t>((1u << node.count) - 1);
       nodes_[i] = {volume, size_of(volume), 0, 0, children, node.leaf};
       node_spheres_[i] = NodeSphere(fitting[worker].points);
@@ -93,7 +89,9 @@ class BlockHierarchy {
   /// A root that is a leaf, as a row.
   const Row& root_alone() const { return rows_.back(); }
   /// The corners of a leaf, by its `first`.
-  const FourTriangles& corners(std::uint32_t first) const { return corners_[first / fan_out]; }
+  const TriangleLanes<scalar, 4>& corners(std::uint32_t first) const {
+    return corners_[first / fan_out];
+  }
   /// The mesh's index of the triangle in lane `k - first` of a leaf.
   std::uint32_t triangle(std::uint32_t k) const { return triangles_[k]; }
   std::uint32_t root() const { return nodes_[0].leaf ? leaf_flag : 0; }
@@ -106,7 +104,7 @@ class BlockHierarchy {
 
   std::size_t bytes() const {
     return nodes_.size() * (sizeof(Node) + sizeof(NodeSphere)) + blocks_.size() * sizeof(Block) +
-           rows_.size() * sizeof(Row) + corners_.size() * sizeof(FourTriangles) +
+           rows_.size() * sizeof(Row) + corners_.size() * sizeof(TriangleLanes<scalar, 4>) +
            triangles_.size() * 4 + supports_.bytes();
   }
 
@@ -152,13 +150,10 @@ class BlockHierarchy {
       const auto& node = topology.nodes[i];
       if (!node.leaf) continue;
       nodes_[i].first = static_cast<std::uint32_t>(triangles_.size());
-      FourTriangles& lanes = corners_.emplace_back();
+      TriangleLanes<scalar, 4>& lanes = corners_.emplace_back();
       for (std::uint32_t k = 0; k < 4; ++k) {
         triangles_.push_back(topology.primitives[node.first + std::min(k, node.count - 1)]);
-        const Triangle corners = mesh.corners(triangles_.back());
-        for (std::size_t c = 0; c < 3; ++c)
-          for (std::size_t j = 0; j < 3; ++j)
-            lanes.corner[c][j][k] = static_cast<scalar>(corners[c][static_cast<int>(j)]);
+        lanes.put(k, mesh.corners(triangles_.back()));
       }
     }
   }
@@ -167,7 +162,7 @@ class BlockHierarchy {
   std::vector<NodeSphere> node_spheres_;
   std::vector<Row> rows_;
   std::vector<Block> blocks_;
-  std::vector<FourTriangles> corners_;
+  std::vector<TriangleLanes<scalar, 4>> corners_;
   std::vector<std::uint32_t> triangles_;
   double reach_ = 0;
   MeshSphere sphere_;

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "hierarchies/bounding_volume.hpp"
+#include "hierarchies/fitting.hpp"
 #include "hierarchies/geometry/enclosing_sphere.hpp"
 #include "hierarchies/geometry/written_out.hpp"
-#include "hierarchies/hierarchy.hpp"
 #include "hierarchies/wide/collapse.hpp"
 
 namespace bvlab {
@@ -53,29 +54,13 @@ struct alignas(16) NodeSphere {
   }
 };
 
-/// What one thread needs for itself while volumes are fitted.
+/// The volume around primitives `begin` to `end` of the topology.
 template <BoundingVolume V>
-struct alignas(128) Fitting {
-  std::vector<Vec3<double>> points;
-  std::vector<Triangle> triangles;
-  double reach = 0;
-
-  /// The volume around primitives `begin` to `end` of the topology.
-  V volume(const TriangleMesh& mesh, const WideTopology& topology, std::uint32_t begin,
-           std::uint32_t end, Fit fit) {
-    points.clear(), triangles.clear();
-    for (std::uint32_t k = begin; k < end; ++k) {
-      triangles.push_back(mesh.corners(topology.primitives[k]));
-      for (const auto& corner : triangles.back()) points.push_back(corner);
-    }
-    if constexpr (FittedTightly<V>)
-      if (fit == Fit::tight) return V::tight(points, triangles);
-    if constexpr (FittedToTriangles<V>)
-      return V::enclosing(points, triangles);
-    else
-      return V::enclosing(points);
-  }
-};
+V volume_around(const TriangleMesh& mesh, const WideTopology& topology, std::uint32_t begin,
+                std::uint32_t end, Fit fit, Fitting<V>& own) {
+  own.take_corners(mesh, std::span(topology.primitives).subspan(begin, end - begin));
+  return own.volume(fit);
+}
 
 /// The largest distance of any vertex and of any fitted volume from the mesh's own origin.
 template <BoundingVolume V>

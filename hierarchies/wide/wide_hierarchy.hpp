@@ -7,7 +7,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cstdint>
 #include <vector>
@@ -16,15 +15,9 @@
 #include "hierarchies/wide/fitting.hpp"
 #include "hierarchies/wide/lanes.hpp"
 #include "hierarchies/wide/support_map.hpp"
+#include "hierarchies/wide/triangle_lanes.hpp"
 
 namespace bvlab {
-
-/// The corners of the triangles of a leaf, rounded: corner, coordinate, lane. Lanes beyond its
-/// triangles repeat one.
-template <class T, int F>
-struct alignas(sizeof(T) * F) TriangleLanes {
-  std::array<std::array<std::array<T, F>, 3>, 3> corner;
-};
 
 template <BoundingVolume V, int F>
 class WideHierarchy {
@@ -76,7 +69,7 @@ class WideHierarchy {
     threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
       const auto& node = topology.nodes[i];
       assert(node.count <= F);
-      const V volume = fitting[worker].volume(mesh, topology, node.begin, node.end, fit);
+      const V volume = volume_around(mesh, topology, node.begin, node.end, fit, fitting[worker]);
       const auto lanes = static_cast<std::uint16_t>((1u << node.count) - 1);
       nodes_[i] = {volume, size_of(volume), node.first, lanes, node.leaf};
       node_spheres_[i] = NodeSphere(fitting[worker].points);
@@ -122,7 +115,8 @@ class WideHierarchy {
     const auto& node = topology.nodes[i];
     for (int lane = 0; lane < F; ++lane) {
       const std::uint32_t k = node.first + std::min<std::uint32_t>(lane, node.count - 1);
-      const V volume = node.leaf ? own.volume(mesh, topology, k, k + 1, fit) : nodes_[k].volume;
+      const V volume =
+          node.leaf ? volume_around(mesh, topology, k, k + 1, fit, own) : nodes_[k].volume;
       put_lane(siblings_[i].volumes, lane, volume);
       siblings_[i].size[lane] = size_of(volume);
       own.reach = std::max(own.reach, static_cast<double>(reach_of(volume)));
@@ -136,10 +130,7 @@ class WideHierarchy {
     for (int lane = 0; lane < F; ++lane) {
       const std::uint32_t k = node.first + std::min<std::uint32_t>(lane, node.count - 1);
       triangles_[leaf * F + static_cast<std::size_t>(lane)] = topology.primitives[k];
-      const Triangle corners = mesh.corners(topology.primitives[k]);
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-          corners_[leaf].corner[i][j][lane] = static_cast<scalar>(corners[i][j]);
+      corners_[leaf].put(static_cast<std::size_t>(lane), mesh.corners(topology.primitives[k]));
     }
   }
 

@@ -5,11 +5,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <type_traits>
+#include <vector>
+
 #include "broadphase/broadphase.hpp"
 #include "experiments/replay/configurations.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/worlds.hpp"
 #include "tests/oracles/settings.hpp"
+#include "traversal/counters.hpp"
+#include "traversal/queries.hpp"
+#include "traversal/recommended_for.hpp"
 
 namespace bvlab {
 namespace {
@@ -107,6 +114,45 @@ TEST(World, FarFromTheOriginAndWithoutBodies) {
   none.trace = {3, 0, {}};
   const auto world = make_world(none.meshes, 0, {});
   EXPECT_EQ(play_frames(*world, none.trace, Answers::kept).answers.size(), 3u);
+}
+
+/// In C++, chosen by the meshes: by their triangles, as long as wide, or twenty times as long.
+TEST(World, RecommendedForItsMeshesGivesTheAnswersOfAllPairs) {
+  for (const double stretch : {1.0, 20.0}) {
+    Played scene = played(more_settings()[1]);
+    for (auto& mesh : scene.meshes)
+      for (auto& vertex : mesh.vertices) vertex[0] *= stretch;
+    const auto truth = replay(scene.meshes, scene.trace, {}, {}).touching;
+    with_recommended(scene.meshes, [&]<class Best>(std::type_identity<Best>) {
+      EXPECT_EQ((std::is_same_v<Best, RecommendedForLongTriangles>), stretch > 1);
+      std::vector<typename Best::Hierarchy> trees;
+      for (const auto& mesh : scene.meshes) trees.push_back(Best::hierarchy(mesh));
+      std::vector<typename Best::Shape> shapes;
+      for (std::size_t i = 0; i < scene.trace.objects; ++i)
+        shapes.push_back({&scene.meshes[i % trees.size()], &trees[i % trees.size()]});
+      World<typename Best::Pairs> world{typename Best::Pairs(shapes)};
+      TouchingPairs touching;
+      NotCounting counter;
+      std::vector<Pose> poses(scene.trace.objects);
+      std::vector<std::uint8_t> found;
+      for (std::size_t frame = 0; frame < scene.trace.frames; ++frame) {
+        scene.trace.poses(frame, poses);
+        for (std::uint32_t i = 0; i < poses.size(); ++i) world.move(i, poses[i]);
+        world.update(
+            counter, [](const ObjectPair&) { return Touching(); },
+            [&](std::uint32_t slot, const ObjectPair& pair, const Touching& query) {
+              touching.put(slot, pair, query.touching());
+            },
+            [&](std::uint32_t slot) { touching.drop(slot); });
+        const std::size_t n = scene.trace.objects, first = found.size();
+        found.resize(first + scene.trace.pairs());
+        for (const auto& [i, j] : touching.pairs())
+          ++found[first + i * n - i * (i + 1) / 2 + (j - i - 1)];
+      }
+      EXPECT_EQ(found, truth);
+      EXPECT_GT(std::count(found.begin(), found.end(), 1), 0);
+    });
+  }
 }
 
 /// Bodies worlds apart: boxes that no float holds are boxes everywhere.

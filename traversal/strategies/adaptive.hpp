@@ -27,6 +27,7 @@
 #include "traversal/fronts.hpp"
 #include "traversal/strategies/adaptive_prices.hpp"
 #include "traversal/strategies/last_answer.hpp"
+#include "traversal/strategies/longest_list.hpp"
 #include "traversal/strategies/margins.hpp"
 #include "traversal/strategies/sphere_test.hpp"
 
@@ -109,10 +110,7 @@ class Adaptive : public AdaptivePrices {
 
   bool is_due() const { return owed_ <= 0 || step_ < failed_at_ / 2; }
   bool list_is_due() const { return is_due() && !jumped(); }
-  void failed(double lost) {
-    owed_ = patience * lost;
-    failed_at_ = step_;
-  }
+  void failed(double lost) { owed_ = patience * lost, failed_at_ = step_; }
 
   template <class Pair>
   void run_roots(const Pair& pair, Start start) {
@@ -145,8 +143,7 @@ class Adaptive : public AdaptivePrices {
                 : statistics.everything ? price({true, list_.size(), statistics.triangles}, plain)
                                         : price({false, 1, 1}, plain);
     account_list(price(statistics, plain), rebuild);
-    const std::size_t longest = room * (pair.a().extent().nodes + pair.b().extent().nodes);
-    worn_out_ = worn_out_ || list_.size() > longest;
+    worn_out_ = worn_out_ || list_.size() > longest_list(pair);
   }
 
   /// Whether the witness is one still: with a margin of its own, unless bodies are fast.
@@ -183,8 +180,7 @@ class Adaptive : public AdaptivePrices {
       rebuild_ = cost;
       balance_ = std::max(balance_ + spent_ - runs_ * recursion, -recursions_to_lose * cost);
       if (balance_ > recursions_to_lose * cost) return fail_list();
-      spent_ = runs_ = 0;
-      swept_ = 0;
+      spent_ = runs_ = swept_ = 0;
     }
     spend(cost);
     swept_ += everything_;

@@ -46,8 +46,6 @@ class AdaptivePrices {
   /// A vain trial, and the rebuild of a list that stays long because bodies part, may cost one part
   /// in so many.
   static constexpr double patience = 32;
-  /// Entries of a list for each node, at most (see by_cost.hpp).
-  static constexpr std::size_t room = 16;
 
   /// Of a surface of so many leaves, about as wide as long, in units of the mesh.
   static double leaf_size(const HierarchyExtent& extent) {

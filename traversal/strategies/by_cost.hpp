@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "traversal/front.hpp"
+#include "traversal/strategies/longest_list.hpp"
 
 namespace bvlab {
 
@@ -22,8 +23,7 @@ class ByCost {
 
   template <class Pair>
   TraversalStatistics run(const Pair& pair) {
-    const std::size_t longest = room * (pair.a().extent().nodes + pair.b().extent().nodes);
-    if (front_.empty() || worn_out_ || front_.size() > longest) {
+    if (front_.empty() || worn_out_ || front_.size() > longest_list(pair)) {
       front_.restart();
       cost_ = runs_ = 0;
     }
@@ -42,10 +42,6 @@ class ByCost {
   std::size_t front_size() const { return front_.size(); }
 
  private:
-  /// The most entries for each node of the two hierarchies: runs that a hit cuts short cost little
-  /// and can let the list grow.
-  static constexpr std::size_t room = 16;
-
   Front front_;
   double cost_ = 0, runs_ = 0;  // since the last rebuild, including it
   bool worn_out_ = false;

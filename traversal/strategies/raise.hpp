@@ -28,6 +28,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "traversal/strategies/longest_list.hpp"
 #include "traversal/strategies/rising_front.hpp"
 
 namespace bvlab {
@@ -44,8 +45,7 @@ class Raise {
       --recursions_;
       return pair.from_roots();
     }
-    const std::size_t longest = room * (pair.a().extent().nodes + pair.b().extent().nodes);
-    const bool rebuild = front_.empty() || front_.size() > longest;
+    const bool rebuild = front_.empty() || front_.size() > longest_list(pair);
     if (rebuild) {
       front_.restart();
       paid_ = false;
@@ -59,9 +59,6 @@ class Raise {
   std::size_t front_size() const { return front_.size(); }
 
  private:
-  /// The most entries for each node of the two hierarchies: runs that hits cut short can let the
-  /// list grow.
-  static constexpr std::size_t room = 16;
   static constexpr unsigned longest_pause = 16;
   static constexpr double surplus = 1.2;
   static constexpr std::size_t few = 8;  // entries that are not worth a judgement

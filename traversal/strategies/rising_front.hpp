@@ -12,7 +12,6 @@
 /// after j failures in the next run whose number 2^j divides, j up to `most_failures`. A pair just
 /// raised is tried with its siblings in the same run, so that a front can rise all the way at once.
 /// An entry that lacks a sibling costs nothing: it is idle until that sibling is added.
-/// once. An entry of which a sibling is not there costs nothing: it is idle until that comes.
 #pragma once
 
 #include <algorithm>

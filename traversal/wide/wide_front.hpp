@@ -112,4 +112,20 @@ class WideFront {
   std::size_t complete_at_ = 0;
 };
 
+/// Traversals without a front, after one that wore out.
+class FrontPause {
+ public:
+  /// Counts one traversal.
+  bool over() { return left_ == 0 || (--left_, false); }
+  /// A front was retested: one that wore out is followed by a pause, each longer than the last.
+  void begin(bool worn) {
+    if (worn) left_ = next_;
+    next_ = worn ? std::min(4 * next_, longest) : shortest;
+  }
+
+ private:
+  static constexpr int shortest = 16, longest = 256;
+  int left_ = 0, next_ = shortest;
+};
+
 }  // namespace bvlab

@@ -57,9 +57,8 @@ class WideMargins {
     answers_[p] = {};
     Kept& kept = kept_[p];
     kept.deadline = 0, kept.was_apart = kept.touched_again = false;
-    kept.crossing.reset(), kept.rest = 0, kept.next_rest = 1, kept.pause = 0,
-                           kept.next_pause = shortest_pause;
-    kept.front.clear();
+    kept.crossing.reset(), kept.rest = 0, kept.next_rest = 1;
+    kept.front.clear(), kept.pause = {};
   }
 
   /// Another query than in the last frame starts without memory.
@@ -130,10 +129,7 @@ class WideMargins {
       if (Query::one_hit_is_enough && answers_[p].touching) start.touched = kept.touched;
       // A front pays where the bodies have been apart before and their fronts did not wear out at
       // once.
-      if (kept.pause > 0)
-        --kept.pause;
-      else if (kept.was_apart)
-        start.front = &kept.front;
+      if (kept.pause.over() && kept.was_apart) start.front = &kept.front;
       start.rotation = rotations_[pair.i] + rotations_[pair.j];
       return start;
     }
@@ -179,14 +175,10 @@ class WideMargins {
       // An entry retested costs as much as a step of a traversal; what is saved has to pay for
       // making fronts.
       const bool worn = found.sweeps() && 4 * found.due() > 3 * front.size();
-      if (!found.sweeps()) {
+      if (found.sweeps())
+        kept.pause.begin(worn);
+      else
         front.complete();
-      } else if (worn) {
-        kept.pause = kept.next_pause;
-        kept.next_pause = std::min(4 * kept.next_pause, longest_pause);
-      } else {
-        kept.next_pause = shortest_pause;
-      }
       if (worn || front.overgrown()) front.clear();
     }
     // A smaller gap would hardly last until the next frame.
@@ -201,8 +193,7 @@ class WideMargins {
     bool set_pose(const Pose& pose) { return MovingBody::set_pose(pose, Vec3<double>::Zero()); }
   };
 
-  static constexpr int shortest_pause = 16, longest_pause = 256;  // traversals without a front
-  static constexpr int longest_rest = 64;                         // traversals without a crossing
+  static constexpr int longest_rest = 64;  // traversals without a crossing
 
   struct Answer {
     double until = unknown;  ///< as a sum of displacements; negative: holds while nothing moves
@@ -215,7 +206,7 @@ class WideMargins {
     double distance = 0;
     NodePair touched{};
     WideFront front;
-    int pause = 0, next_pause = shortest_pause;
+    FrontPause pause;
     std::optional<Crossing> crossing;
     int rest = 0, next_rest = 1;  // traversals whose crossing is not kept
     bool was_apart = false, touched_again = false;
