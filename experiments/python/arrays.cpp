@@ -57,14 +57,13 @@ bool fits(const py::array& array, const std::vector<Axis>& axes) {
 }  // namespace
 
 py::array checked_array(const py::handle& given, const std::string& name, Kind kind,
-                        const char* dtype, const std::vector<Axis>& axes) {
+                        const py::dtype& dtype, const std::vector<Axis>& axes) {
   // The common case: an array as it is wanted.
   if (py::isinstance<py::array>(given)) {
     const auto array = py::reinterpret_borrow<py::array>(given);
     constexpr int wanted = py::array::c_style | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
     if ((array.flags() & wanted) == wanted && fits(array, axes) &&
-        Py_TYPE(given.ptr()) == py::detail::npy_api::get().PyArray_Type_ &&
-        array.dtype().is(py::dtype(dtype)))
+        Py_TYPE(given.ptr()) == py::detail::npy_api::get().PyArray_Type_ && array.dtype().is(dtype))
       return array;
   }
   refuse_masked(given, name);

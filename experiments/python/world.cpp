@@ -31,14 +31,12 @@ class PyWorld {
  public:
   PyWorld(const py::object& meshes, std::size_t objects, const Variant& variant, int threads)
       : meshes_(meshes),
-        objects_(objects > 0 ? objects : meshes_.given()),
+        objects_(counted(objects > 0 ? objects : meshes_.given())),
         variant_(variant),
         moved_to_(objects_),
         stands_(objects_),
         present_(objects_, 0),
         is_new_(objects_, 0) {
-    if (objects_ > std::numeric_limits<std::uint32_t>::max())
-      throw Unusable("objects", "more than 32-bit indices can name");
     engine_ = released([&] { return make_world(meshes_.span(), objects_, variant_, threads); });
     for (const TriangleMesh& mesh : meshes_.span())
       small_.push_back(std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
@@ -130,6 +128,13 @@ class PyWorld {
   }
 
  private:
+  /// Before any memory is asked for.
+  static std::size_t counted(std::size_t objects) {
+    if (objects > std::numeric_limits<std::uint32_t>::max())
+      throw Unusable("objects", "more than 32-bit indices can name");
+    return objects;
+  }
+
   /// No component of R v + t is beyond the largest number, with numbers below this.
   static constexpr double safe = std::numeric_limits<double>::max() / 8;
 

@@ -61,22 +61,25 @@ LAYOUTS = [unaligned, read_only, in_a_record, np.asfortranarray, lambda a: a[::-
 
 
 class During:
-    """Calls `change` in the midst of a call that looks at signals: in this thread, between two frames."""
+    """Calls `change` in the midst of a call that looks at signals: in this thread, between two frames.
 
-    def __init__(self, change, after=0.02):
+    After so many seconds of processor time, which are more than arrays take to come in, and fewer than the call takes.
+    """
+
+    def __init__(self, change, after=0.03):
         self.change, self.after, self.ran = change, after, False
 
     def __enter__(self):
         def handler(_signal, _frame):
             self.ran = True
             self.change()
-        self.before = signal.signal(signal.SIGALRM, handler)
-        signal.setitimer(signal.ITIMER_REAL, self.after)
+        self.before = signal.signal(signal.SIGPROF, handler)
+        signal.setitimer(signal.ITIMER_PROF, self.after)
         return self
 
     def __exit__(self, *_):
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, self.before)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, self.before)
 
 
 class Writing:
@@ -187,7 +190,7 @@ class Changes(unittest.TestCase):
 
     def test_in_the_midst_of_boxes(self):
         for dtype in (np.float64, np.float32):
-            boxes = random_boxes(60, 3000).astype(dtype)
+            boxes = random_boxes(60, 5000, 0.05).astype(dtype)
             self.changed_during(lambda each: bvlab.boxes(each).answers, boxes, lambda each: each.fill(np.nan),
                                 lambda each: each.resize((0,), refcheck=False),
                                 lambda each: each.__setitem__(..., each[..., [3, 4, 5, 0, 1, 2]]))
@@ -240,7 +243,7 @@ class Changes(unittest.TestCase):
     def test_a_world_that_is_at_work(self):
         """A signal's handler interrupts timed steps, and calls the same world: refused, and nothing waits for itself."""
         world, faults = bvlab.World([self.mesh], objects=6), []
-        poses = np.tile(scenes.walk(frames=100, objects=6, side=1), (20, 1, 1))
+        poses = np.tile(scenes.walk(frames=100, objects=6, side=1), (100, 1, 1))
 
         def call():
             for each in (world.update, world.touching, lambda: world.move(0, AT_REST), lambda: world.near):
@@ -285,7 +288,7 @@ class Arguments(unittest.TestCase):
         """An array without entries may promise any length."""
         def nothing(*shape):
             return np.empty(shape)
-        for shape in ((2**33, 0, 7), (0, 2**33, 7), (2**60, 0, 7)):
+        for shape in ((2**33, 0, 7), (0, 2**33, 7), (2**40, 0, 7)):
             self.assertRaises(ValueError, bvlab.replay, [self.mesh], nothing(*shape))
             self.assertRaises(ValueError, bvlab.boxes, nothing(*shape[:2], 6))
         for query in ("touching", "contacts", "distance"):
@@ -306,7 +309,7 @@ class Arguments(unittest.TestCase):
     def test_numbers(self):
         huge = (-1, 2**31, 2**32, 2**63, 2**64, 2**80)
         for name, values in {"threads": (0, *huge), "leaf_size": (0, *huge), "fan_out": (0, 1, 3, *huge), "query": (1, None),
-                             "relative_error": (-1, np.nan, np.inf, "x"), "volume": (None, 1, b"obb", "\0", "\ud800", "o" * 10**5)}.items():
+                             "relative_error": (-1, np.nan, np.inf, "x"), "volume": (None, 1, "\0", "\ud800", "o" * 10**5)}.items():
             for value in values:
                 with self.subTest(**{name: str(value)[:20]}), self.assertRaises((ValueError, TypeError)):
                     bvlab.replay([self.mesh], POSES, **{name: value})
