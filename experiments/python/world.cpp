@@ -181,8 +181,11 @@ class PyWorld {
     return static_cast<std::uint32_t>(number);
   }
 
+  template <class T>
+  using CArray = py::array_t<T, py::array::c_style>;
+
   /// A copy: whatever is called to make an array of the next argument may change this one.
-  std::vector<std::uint32_t> checked(const py::array_t<std::int64_t>& indices) const {
+  std::vector<std::uint32_t> checked(const CArray<std::int64_t>& indices) const {
     std::vector<std::uint32_t> all;
     const std::int64_t* first = indices.data();
     for (py::ssize_t k = 0; k < indices.size(); ++k) all.push_back(index(first[k]));
@@ -192,7 +195,7 @@ class PyWorld {
   using Move = std::pair<std::uint32_t, Pose>;
 
   std::vector<Move> moves_of(const std::vector<std::uint32_t>& objects,
-                             const py::array_t<double>& rows) const {
+                             const CArray<double>& rows) const {
     std::vector<Move> moves;
     moves.reserve(objects.size());
     const double* row = rows.data();
