@@ -81,9 +81,9 @@ class PyWorld {
     // An array without entries can promise any length.
     if (steps > std::numeric_limits<std::uint32_t>::max())
       throw Unusable("objects", "more steps than 32 bits number");
-    const auto moves = moves_of(
-        checked(indices),
-        array_of<double>(poses, "poses", Kind::real, {{"steps", steps}, {"k", k}, {"7", 7}}));
+    const auto objects = checked(indices);  // before poses are asked for, which may change them
+    const auto moves = moves_of(objects, array_of<double>(poses, "poses", Kind::real,
+                                                          {{"steps", steps}, {"k", k}, {"7", 7}}));
     std::vector<double> seconds;
     Signals signals;
     const auto play = [&] {

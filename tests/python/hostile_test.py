@@ -300,7 +300,6 @@ class Arguments(unittest.TestCase):
         self.assertRaises(ValueError, world.timed_steps, np.empty((2**33, 0), np.int64), nothing(2**33, 0, 7))
         self.assertEqual(world.timed_steps(np.empty((3, 0), np.int64), nothing(3, 0, 7)).shape, (3,))
         world.move(np.empty(0, np.int64), nothing(0, 7))
-        world.move([], [])
 
     @unittest.skipIf(SANITIZED, "the sanitizer ends a process that asks for too much")
     def test_more_than_memory_holds(self):
