@@ -57,13 +57,13 @@ bool fits(const py::array& array, const std::vector<Axis>& axes) {
 }  // namespace
 
 py::array checked_array(const py::handle& given, const std::string& name, Kind kind,
-                        const char* dtype, const std::vector<Axis>& axes) {
+                        const py::dtype& dtype, const std::vector<Axis>& axes) {
   // The common case: an array as it is wanted.
   if (py::isinstance<py::array>(given)) {
     const auto array = py::reinterpret_borrow<py::array>(given);
-    if ((array.flags() & py::array::c_style) && fits(array, axes) &&
-        Py_TYPE(given.ptr()) == py::detail::npy_api::get().PyArray_Type_ &&
-        array.dtype().is(py::dtype(dtype)))
+    constexpr int wanted = py::array::c_style | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
+    if ((array.flags() & wanted) == wanted && fits(array, axes) &&
+        Py_TYPE(given.ptr()) == py::detail::npy_api::get().PyArray_Type_ && array.dtype().is(dtype))
       return array;
   }
   refuse_masked(given, name);
@@ -87,7 +87,8 @@ py::array checked_array(const py::handle& given, const std::string& name, Kind k
     state.attr("__enter__")();
     py::object made;
     try {
-      made = numpy.attr("ascontiguousarray")(array, dtype);
+      // "A": numbers of a packed record or of bytes may begin at any address.
+      made = numpy.attr("require")(array, dtype, "CA");
     } catch (...) {
       state.attr("__exit__")(py::none(), py::none(), py::none());
       throw;

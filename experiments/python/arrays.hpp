@@ -27,13 +27,13 @@ struct Axis {
 /// where it is so already and `dtype` is its type. Throws Unusable, in one line that begins with
 /// the name, for anything else; what is not finite is not looked for.
 py::array checked_array(const py::handle& given, const std::string& name, Kind kind,
-                        const char* dtype, const std::vector<Axis>& axes);
+                        const py::dtype& dtype, const std::vector<Axis>& axes);
 
 /// The same as an array of T.
 template <class T>
 py::array_t<T, py::array::c_style> array_of(const py::handle& given, const std::string& name,
                                             Kind kind, const std::vector<Axis>& axes) {
-  return checked_array(given, name, kind, py::format_descriptor<T>::format().c_str(), axes);
+  return checked_array(given, name, kind, py::dtype::of<T>(), axes);
 }
 
 /// The vector's memory as an array of that shape, which owns it from now on.

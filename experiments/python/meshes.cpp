@@ -40,12 +40,13 @@ std::vector<std::array<std::uint32_t, 3>> faces_from(const py::handle& given,
   const std::int64_t* values = array.data();
   std::vector<std::array<std::uint32_t, 3>> faces(count);
   for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t k = 0; k < 3; ++k, ++values) {
-      if (*values < 0 || static_cast<std::uint64_t>(*values) >= vertices)
-        throw Unusable("faces", "index " + std::to_string(*values) + " in row " +
-                                    std::to_string(i) + ", where there are " +
-                                    std::to_string(vertices) + " vertices");
-      faces[i][k] = static_cast<std::uint32_t>(*values);
+    for (std::uint32_t& face : faces[i]) {
+      // Another thread may be writing there: what is checked is what is kept.
+      const std::int64_t index = *static_cast<const volatile std::int64_t*>(values++);
+      if (index < 0 || static_cast<std::uint64_t>(index) >= vertices)
+        throw Unusable("faces", "index " + std::to_string(index) + " in row " + std::to_string(i) +
+                                    ", where there are " + std::to_string(vertices) + " vertices");
+      face = static_cast<std::uint32_t>(index);
     }
   return faces;
 }

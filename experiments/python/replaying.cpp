@@ -95,11 +95,12 @@ Result play(const py::object& given_meshes, const py::object& given_poses,
 
 template <class T>
 Result play_boxes(const py::array& array, const BoxReplayOptions& options) {
-  const BoxTrace<T> trace{
-      static_cast<std::size_t>(array.shape(0)),
-      static_cast<std::size_t>(array.shape(1)),
-      {static_cast<const Box<T>*>(array.data()), static_cast<std::size_t>(array.size() / 6)},
-      "trace"};
+  // Copied: other threads may write to the array while this runs, or resize it, and methods rely on
+  // boxes that were checked.
+  const auto* first = static_cast<const Box<T>*>(array.data());
+  const std::vector<Box<T>> boxes(first, first + array.size() / 6);
+  const BoxTrace<T> trace{static_cast<std::size_t>(array.shape(0)),
+                          static_cast<std::size_t>(array.shape(1)), boxes, "trace"};
   auto result = released([&] { return replay_boxes(trace, options); });
   const py::dict totals = dictionary(totals_of(result, trace, options));
   py::object pairs = py::none();
@@ -256,7 +257,7 @@ Ctrl-C ends it. ValueError: the line that the program would print.)");
              R"(Finds the overlapping pairs of boxes, frame by frame, as `bvlab boxes`.
 
 trace    (frames, boxes, 6) real: lo x y z, hi x y z; touching counts as overlapping. float32 is
-         compared as float32, all else as float64. It must not be changed while this runs.
+         compared as float32, all else as float64. It is copied, so that it may be changed meanwhile.
 
 The result's answers: uint32 (k, 3): frame, i, j with i < j; every overlapping pair once, sorted.
 bvlab.methods() has the names. ValueError: NaN, infinity, lo > hi, another shape.)");
@@ -283,7 +284,9 @@ A dict: fastest, the strategy that takes the fewest seconds (None where interval
 the next, or windows are too few); candidates, those that may be it, the likeliest first; survival, the
 part of the front that is there again a frame later (None where no pair was near another); strategies, of
 each by its name {"n_v": volume tests, "n_p": triangle tests, "seconds": s, "seconds_low", "seconds_high"}.
-How often intervals hold what a strategy then takes is said in experiments/replay/predict.hpp.
+Intervals are wide, and mostly hold: on 40 motions of 600 frames 312 of 320 held what a strategy then
+took (of recursion's, the narrowest, 35 of 40). Half of one is 56 % of its seconds (median), so that 7.3 of
+eight strategies stayed candidates, the fastest among them in all 40: to tell those apart, replay them.
 stride and window, in frames: None for all of a short trace. meshes, poses, fan_out and frame as in replay.)");
 }
 

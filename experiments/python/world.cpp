@@ -3,10 +3,14 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
+#include <thread>
+#include <type_traits>
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/python/meshes.hpp"
@@ -28,7 +32,7 @@ class PyWorld {
  public:
   PyWorld(const py::object& meshes, std::size_t objects, const VariantWords& words, int threads)
       : meshes_(meshes),
-        objects_(objects > 0 ? objects : meshes_.given()),
+        objects_(counted(objects > 0 ? objects : meshes_.given())),
         variant_(words.configuration
                      ? configured(variant_from(words), *words.configuration, meshes_.span()).variant
                      : variant_from(words)),
@@ -36,8 +40,6 @@ class PyWorld {
         stands_(objects_),
         present_(objects_, 0),
         is_new_(objects_, 0) {
-    if (objects_ > std::numeric_limits<std::uint32_t>::max())
-      throw Unusable("objects", "more than 32-bit indices can name");
     engine_ = released([&] { return make_world(meshes_.span(), objects_, variant_, threads); });
     for (const TriangleMesh& mesh : meshes_.span())
       small_.push_back(std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
@@ -51,31 +53,27 @@ class PyWorld {
       const auto row = array_of<double>(pose, "pose", Kind::real, {{"7", 7}});
       const std::uint32_t object = index(which);
       const Pose to = pose_of(row.data(), object);
-      const auto held = lock();
+      const Turn held(*this);
       place(object, to);
       return;
     }
-    const auto indices = array_of<std::int64_t>(which, "objects", Kind::integer, {{"k"}});
-    const auto rows =
-        array_of<double>(pose, "poses", Kind::real, {{"k", indices.shape(0)}, {"7", 7}});
-    std::vector<std::pair<std::uint32_t, Pose>> moves;
-    for (py::ssize_t k = 0; k < indices.shape(0); ++k) {
-      const std::uint32_t object = index(indices.at(k));
-      moves.emplace_back(object, pose_of(rows.data() + 7 * k, object));
-    }
-    const auto held = lock();  // all of them or none
+    const auto objects = checked(array_of<std::int64_t>(which, "objects", Kind::integer, {{"k"}}));
+    const auto moves = moves_of(
+        objects, array_of<double>(pose, "poses", Kind::real,
+                                  {{"k", static_cast<py::ssize_t>(objects.size())}, {"7", 7}}));
+    const Turn held(*this);  // all of them or none
     for (const auto& [object, to] : moves) place(object, to);
   }
 
   void remove(const py::object& which) {
     const std::uint32_t object = index(which);
-    const auto held = lock();
+    const Turn held(*this);
     engine_->take_out(object);
     set(object, std::nullopt);
   }
 
   void update() {
-    const auto held = lock();
+    const Turn held(*this);
     released([&] { settle(); });
   }
 
@@ -83,17 +81,15 @@ class PyWorld {
     const auto indices =
         array_of<std::int64_t>(which, "objects", Kind::integer, {{"steps"}, {"k"}});
     const py::ssize_t steps = indices.shape(0), k = indices.shape(1);
-    const auto rows =
-        array_of<double>(poses, "poses", Kind::real, {{"steps", steps}, {"k", k}, {"7", 7}});
-    std::vector<std::pair<std::uint32_t, Pose>> moves;
-    for (py::ssize_t m = 0; m < steps * k; ++m) {
-      const std::uint32_t object = index(indices.data()[m]);
-      moves.emplace_back(object, pose_of(rows.data() + 7 * m, object));
-    }
+    // An array without entries can promise any length.
+    if (steps > std::numeric_limits<std::uint32_t>::max())
+      throw Unusable("objects", "more steps than 32 bits number");
+    const auto objects = checked(indices);  // before poses are asked for, which may change them
+    const auto moves = moves_of(objects, array_of<double>(poses, "poses", Kind::real,
+                                                          {{"steps", steps}, {"k", k}, {"7", 7}}));
     std::vector<double> seconds;
-    const auto held = lock();
     Signals signals;
-    released([&] {
+    const auto play = [&] {
       using Clock = std::chrono::steady_clock;
       for (py::ssize_t step = 0; step < steps; ++step) {
         const auto start = Clock::now();
@@ -104,52 +100,73 @@ class PyWorld {
         seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
         signals();
       }
-    });
+    };
+    alone([&] { released(play); });
     return taken<double>(std::move(seconds), {steps});
   }
 
+  // Arrays are made when the lock is given back: memory that Python asks for may have it collect
+  // garbage, whose finalizers may call this world.
   py::array_t<std::uint32_t> touching() {
-    const auto held = lock();
-    return rows_of(touching_pairs());
+    return rows_of(alone([&] { return touching_pairs(); }));
   }
 
   py::array_t<std::uint32_t> contacts() {
-    const auto held = lock();
-    return taken_rows<std::uint32_t, 4>(
-        released([&] { return answers().contacts(touching_pairs(), stands_); }));
+    return taken_rows<std::uint32_t, 4>(alone(
+        [&] { return released([&] { return answers().contacts(touching_pairs(), stands_); }); }));
   }
 
   py::tuple distances(double below) {
     if (!(below >= 0)) throw Unusable("below", "must be a number that is not negative");
-    const auto held = lock();
-    auto [pairs, distances] = released([&] {
-      if (!near_) near_.emplace(meshes_.span(), objects_);
-      const auto near = near_->pairs(stands_, present_, below);
-      const auto all = answers().distances(near, stands_);
-      std::pair<std::vector<ObjectPair>, std::vector<double>> kept;
-      for (std::size_t k = 0; k < near.size(); ++k)
-        if (all[k] <= below) kept.first.push_back(near[k]), kept.second.push_back(all[k]);
-      return kept;
-    });
+    auto [pairs, distances] = alone([&] { return released([&] { return within(below); }); });
     const auto count = static_cast<py::ssize_t>(distances.size());
     return py::make_tuple(rows_of(std::move(pairs)), taken<double>(std::move(distances), {count}));
   }
 
-  std::size_t near() const { return engine_->near(); }
-  std::size_t asked() const { return engine_->asked(); }
+  std::size_t near() {
+    return alone([&] { return engine_->near(); });
+  }
+  std::size_t asked() {
+    return alone([&] { return engine_->asked(); });
+  }
 
  private:
+  /// Before any memory is asked for.
+  static std::size_t counted(std::size_t objects) {
+    if (objects > std::numeric_limits<std::uint32_t>::max())
+      throw Unusable("objects", "more than 32-bit indices can name");
+    return objects;
+  }
+
   /// No component of R v + t is beyond the largest number, with numbers below this.
   static constexpr double safe = std::numeric_limits<double>::max() / 8;
 
-  /// One thread at a time; whoever waits lets Python go on.
-  std::unique_lock<std::mutex> lock() {
-    std::unique_lock held(mutex_, std::try_to_lock);
-    if (!held.owns_lock()) {
-      const py::gil_scoped_release waiting;
-      held.lock();
+  /// One thread at a time; whoever waits lets Python go on. A signal handler that interrupts a call
+  /// may not make another of the same world.
+  class Turn {
+   public:
+    explicit Turn(PyWorld& world) : world_(world), held_(world.mutex_, std::defer_lock) {
+      if (world.at_work_ == std::this_thread::get_id())
+        throw std::runtime_error("World: is at work, in this thread");
+      if (!held_.try_lock()) {
+        const py::gil_scoped_release waiting;
+        held_.lock();
+      }
+      world.at_work_ = std::this_thread::get_id();
     }
-    return held;
+    ~Turn() { world_.at_work_ = std::thread::id(); }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+   private:
+    PyWorld& world_;
+    std::unique_lock<std::mutex> held_;
+  };
+
+  template <class Work>
+  std::invoke_result_t<const Work&> alone(const Work& work) {
+    const Turn held(*this);
+    return work();
   }
 
   std::uint32_t index(const py::object& given) const {
@@ -167,7 +184,35 @@ class PyWorld {
     return static_cast<std::uint32_t>(number);
   }
 
-  Pose pose_of(const double* v, std::uint32_t object) const {
+  template <class T>
+  using CArray = py::array_t<T, py::array::c_style>;
+
+  /// A copy: whatever is called to make an array of the next argument may change this one.
+  std::vector<std::uint32_t> checked(const CArray<std::int64_t>& indices) const {
+    std::vector<std::uint32_t> all;
+    const std::int64_t* first = indices.data();
+    for (py::ssize_t k = 0; k < indices.size(); ++k) all.push_back(index(first[k]));
+    return all;
+  }
+
+  using Move = std::pair<std::uint32_t, Pose>;
+
+  std::vector<Move> moves_of(const std::vector<std::uint32_t>& objects,
+                             const CArray<double>& rows) const {
+    std::vector<Move> moves;
+    moves.reserve(objects.size());
+    const double* row = rows.data();
+    for (const std::uint32_t object : objects) {
+      moves.emplace_back(object, pose_of(row, object));
+      row += 7;
+    }
+    return moves;
+  }
+
+  Pose pose_of(const double* row, std::uint32_t object) const {
+    // Another thread may be writing there: what is checked is what is kept.
+    double v[7];
+    std::copy_n(static_cast<const volatile double*>(row), 7, v);
     const auto pose = pose_from({v[0], v[1], v[2]}, v[3], v[4], v[5], v[6]);
     if (!pose) {
       const bool finite = std::all_of(v, v + 7, [](double x) { return std::isfinite(x); });
@@ -210,6 +255,16 @@ class PyWorld {
     return pairs;
   }
 
+  std::pair<std::vector<ObjectPair>, std::vector<double>> within(double below) {
+    if (!near_) near_.emplace(meshes_.span(), objects_);
+    const auto near = near_->pairs(stands_, present_, below);
+    const auto all = answers().distances(near, stands_);
+    std::pair<std::vector<ObjectPair>, std::vector<double>> kept;
+    for (std::size_t k = 0; k < near.size(); ++k)
+      if (all[k] <= below) kept.first.push_back(near[k]), kept.second.push_back(all[k]);
+    return kept;
+  }
+
   PairAnswers& answers() {
     if (!answers_) answers_.emplace(meshes_.span(), objects_, variant_);
     return *answers_;
@@ -225,6 +280,7 @@ class PyWorld {
   std::size_t objects_;
   Variant variant_;
   std::mutex mutex_;
+  std::atomic<std::thread::id> at_work_{};  // whose turn it is
   std::unique_ptr<WorldEngine> engine_;
   std::optional<PairAnswers> answers_;
   std::optional<NearWithin> near_;

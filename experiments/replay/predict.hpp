@@ -35,7 +35,9 @@
 /// contacts, eight strategies): the interval held 305 of 320 times that strategies took where it
 /// was chosen, and 311 of 320 on another seed, and was 46 % each way (median). So it seldom tells
 /// one strategy from all others: there 6.7 of the eight stayed candidates, the fastest always among
-/// them. `predict_coverage` beside this file measures that of the program.
+/// them. `predict_coverage` beside this file measures that of the program: on 40 other motions of
+/// that kind (seed 901, a busy machine, processor time) 312 of 320 were held, of recursion's, which
+/// is 20 % each way, 35 of 40; it was 56 % each way (median), and 7.3 of the eight stayed.
 /// Of fewer than four windows that do not cover the trace nothing is told.
 #pragma once
 

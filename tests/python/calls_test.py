@@ -61,7 +61,7 @@ class Calls(unittest.TestCase):
         self.assertGreater(inside, (end - start) / 0.002 / 20)
 
     def test_a_world_of_several_threads(self):
-        world = bvlab.World([self.mesh] * 6, volume="obb", strategy="deferred")
+        world = bvlab.World([self.mesh] * 6, volume="obb", strategy=list(bvlab.strategies())[-1])
         faults = []
 
         def work(i):

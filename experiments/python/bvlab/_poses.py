@@ -29,12 +29,12 @@ def poses(positions: ArrayLike, quaternions: ArrayLike | None = None, *,
     if order not in ORDERS:
         raise ValueError(f"order: {'is needed' if order is None else f'{order!r} is unknown'}; there are "
                          + ", ".join(ORDERS))
-    positions = _array(positions, "positions", ("frames", "objects", 3))
-    quaternions = _array(quaternions, "quaternions", (*positions.shape[:2], 4))
-    zero = ~quaternions.any(axis=-1)
+    at = _array(positions, "positions", ("frames", "objects", 3))
+    turned = _array(quaternions, "quaternions", (*at.shape[:2], 4))
+    zero = ~turned.any(axis=-1)
     if zero.any():
         raise ValueError(f"quaternions: zero quaternion {_place(zero)}")
-    return np.concatenate([positions, quaternions[..., ORDERS[order]]], axis=-1)
+    return np.concatenate([at, turned[..., ORDERS[order]]], axis=-1)
 
 
 def pairs_of(objects: int) -> NDArray[np.uint32]:
@@ -42,7 +42,7 @@ def pairs_of(objects: int) -> NDArray[np.uint32]:
     return np.stack(np.triu_indices(objects, 1), axis=-1).astype(np.uint32)
 
 
-def _array(given, name, shape):
+def _array(given: ArrayLike, name: str, shape: tuple[int | str, ...]) -> NDArray[np.float64]:
     """float64, finite, of that shape, in which a name stands for any length."""
     if np.ma.is_masked(given):
         raise ValueError(f"{name}: has masked entries")
@@ -64,12 +64,12 @@ def _array(given, name, shape):
     return array
 
 
-def _place(wrong):
+def _place(wrong: NDArray[np.bool_]) -> str:
     frame, thing = np.argwhere(wrong)[0]
     return f"in frame {frame}, object {thing}"
 
 
-def _from_matrices(matrices):
+def _from_matrices(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
     rotation, translation = matrices[..., :3, :3], matrices[..., :3, 3]
     with np.errstate(all="ignore"):
         square = np.einsum("...ki,...kj->...ij", rotation, rotation)
@@ -83,7 +83,7 @@ def _from_matrices(matrices):
     return np.concatenate([translation, _quaternions(rotation)], axis=-1)
 
 
-def _quaternions(r):
+def _quaternions(r: NDArray[np.float64]) -> NDArray[np.float64]:
     """w x y z by Shepperd's method: of the four ways the one that divides by the largest number."""
     trace = r[..., 0, 0] + r[..., 1, 1] + r[..., 2, 2]
     best = np.argmax(np.stack([trace, r[..., 0, 0], r[..., 1, 1], r[..., 2, 2]], axis=-1), axis=-1)

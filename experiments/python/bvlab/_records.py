@@ -12,7 +12,7 @@ if TYPE_CHECKING:  # what takes long to import is imported where it is used
     import matplotlib.figure
     import pandas
 
-_looks = {}  # settings of matplotlib that bvlab_plots draws with
+_looks: dict[str, object] = {}  # settings of matplotlib that bvlab_plots draws with
 
 
 def record(path: str | os.PathLike) -> pandas.DataFrame:

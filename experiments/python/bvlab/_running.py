@@ -23,8 +23,8 @@ def run(definition: dict | str | os.PathLike, record: str | os.PathLike | None =
     record      folder of the record; a new one, experiments/record/<date>.<n>, where not given
     counts      time nothing: counts and answers, by all threads
     threads     of what is not timed; 0 for all cores
-    progress    None: a bar, on a terminal or in a notebook, after two seconds; False: nothing; or a function that is
-                called with the parts that are done and all of them
+    progress    None or True: a bar, on a terminal or in a notebook, after two seconds; False: nothing; or a function
+                that is called with the parts that are done and all of them
 
     Gives the record's folder, for bvlab.record and bvlab.figures. Ctrl-C ends it after the part at work.
     ValueError: the line that the program would print.
@@ -38,7 +38,11 @@ def run(definition: dict | str | os.PathLike, record: str | os.PathLike | None =
             text = Path(name).read_text()
         except (OSError, UnicodeDecodeError) as fault:
             raise ValueError(f"{name}: {getattr(fault, 'strerror', None) or fault}") from None
-    show = Bar() if progress is None else progress or None
+    show: Bar | Callable[[int, int], object] | None
+    if progress is None or isinstance(progress, bool):
+        show = None if progress is False else Bar()
+    else:
+        show = progress
     try:
         return Path(run_text(text, name, "" if record is None else os.fspath(record), counts, threads, show))
     finally:
