@@ -167,9 +167,9 @@ py::object total(const Result& result, const char* key) {
 
 void add_result(py::module_& module) {
   py::class_<Result> type(module, "Result", py::module_local(),
-                          "What replay and boxes give: answers, and totals as --json has them.");
+                          "The result of replay and boxes: answers, and totals as --json has them.");
   type.def_readonly("answers", &Result::answers,
-                    R"(As --out: what the query asks, see replay and boxes.
+                    R"(Answers as --out has them; see replay and boxes.
 None where answers=False.)")
       .def_readonly("totals", &Result::totals, "Times in s, counts, the variant; a dict as --json.")
       .def_readonly("series", &Result::series,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// World: many bodies that are told to move, and asked which touch.
+/// World: many moving bodies, and the pairs of them that touch.
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -298,14 +298,14 @@ void add_world(py::module_& module) {
   const Variant d = default_variant();
   py::class_<PyWorld>(
       module, "World", py::module_local(),
-      R"(Many bodies, of which pairs that are near each other are asked when one of the two has moved.
+      R"(Many moving bodies. Only pairs whose boxes overlap are queried, and only when one of the two has moved.
 
-World(meshes)            body i is meshes[i]; the same Mesh again costs nothing
-World(meshes, objects=n) n bodies: body i is meshes[i mod their number]
+World(meshes)            body i has meshes[i]; a Mesh given twice is built once
+World(meshes, objects=n) n bodies: body i has meshes[i mod len(meshes)]
 
-A body is in the scene from its first `move` on. Answers are those of the last `update`: they and the
-state that makes them cheap stay in C++. Any volume and strategy by name, as in replay; without a
-name, what is recommended. Another thread may use a World; it waits its turn.)")
+A body is in the scene from its first `move` on. Answers are those of the last `update`. Volume and
+strategy are chosen by name, as in replay; without a name, what is recommended for these meshes. Calls
+from several threads run one after the other.)")
       .def(py::init([](const py::object& meshes, std::size_t objects,
                        const std::optional<std::string>& volume,
                        const std::optional<std::string>& strategy,
@@ -341,33 +341,33 @@ name, what is recommended. Another thread may use a World; it waits its turn.)")
            "threads"_a = 1)
       .def(
           "move", &PyWorld::move, "object"_a, "pose"_a,
-          R"(Says where a body is from the next update on, or several: move(i, pose), move(indices, poses).
+          R"(Sets the pose of a body, or of several, from the next update on: move(i, pose), move(indices, poses).
 
 pose     (7,) real: x y z qw qx qy qz, object to world; of k bodies (k, 7). All are moved or none.
 ValueError: not finite, a zero quaternion. IndexError: no such body.)")
       .def("remove", &PyWorld::remove, "object"_a,
            "Takes a body out of the scene, until it is moved again.")
       .def("update", &PyWorld::update,
-           "Finds the answers for where bodies are now; what has not moved costs nothing.")
+           "Queries the pairs of which a body has moved. Bodies that have not moved cost nothing.")
       .def(
           "timed_steps", &PyWorld::timed_steps, "objects"_a, "poses"_a,
-          R"(Moves and updates step by step in C++, and says what each took: (steps,) float64, in s.
+          R"(Moves and updates step by step in C++. Returns the time of each step: (steps,) float64, in s.
 
-objects  (steps, k) integer: who moves in each step; poses: (steps, k, 7) real. What a loop in Python
-takes beyond that is Python's.)")
+objects  (steps, k) integer: the bodies that move in each step; poses: (steps, k, 7) real. A loop in
+Python takes longer by its own overhead.)")
       .def("touching", &PyWorld::touching,
            "uint32 (k, 2): the pairs i < j whose surfaces share a point, sorted.")
       .def(
           "contacts", &PyWorld::contacts,
           R"(uint32 (k, 4): body i, body j, triangle of i, triangle of j, of all triangles that share a point; sorted.
 
-Sought from the roots for each pair that touches.)")
+Each pair that touches is traversed from the roots.)")
       .def("distances", &PyWorld::distances, "below"_a,
-           R"(The pairs no farther apart than `below`, and how far: uint32 (k, 2), float64 (k,).
+           R"(The pairs no farther apart than `below`, and their distances: uint32 (k, 2), float64 (k,).
 
-In units of the meshes; 0 where they touch. Sought from the roots.)")
-      .def_property_readonly("near", &PyWorld::near, "Pairs whose boxes met in the last update.")
-      .def_property_readonly("asked", &PyWorld::asked, "Pairs that the last update asked.")
+In units of the meshes; 0 where they touch. Each pair is traversed from the roots.)")
+      .def_property_readonly("near", &PyWorld::near, "The number of pairs whose boxes overlapped in the last update.")
+      .def_property_readonly("asked", &PyWorld::asked, "The number of pairs that the last update queried.")
       .def("__len__", &PyWorld::objects);
 }
 

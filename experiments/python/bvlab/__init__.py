@@ -11,7 +11,7 @@ Does my mesh touch?
     world.update()
     world.touching()                                # uint32 (k, 2): pairs whose surfaces share a point
     world.contacts()                                # uint32 (k, 4): the pairs of triangles
-    world.distances(below=1.5)                      # pairs no farther apart, and how far
+    world.distances(below=1.5)                      # pairs no farther apart, and their distances
 
 What does a motion cost, and what does coherence save?
 
@@ -19,7 +19,7 @@ What does a motion cost, and what does coherence save?
     result = bvlab.replay([mesh], poses, volume="obb", strategy="deferred", query="touching", count=True)
     result.answers                                  # uint8 (frames, pairs): as `bvlab replay --out`
     result.totals                                   # seconds, n_u, n_v, n_p, front ...: as --json
-    bvlab.predict([mesh], poses)["candidates"]      # which strategies to take
+    bvlab.predict([mesh], poses)["candidates"]      # strategies that may be the fastest
 
 From an idea to a figure:
 
@@ -33,7 +33,7 @@ formula_meshes(), peers().
 A volume or a strategy of your own: bvlab.compile_in(volumes=["mine.hpp:Mine<float>"]).
 
 Lengths are in the units of the meshes, angles in quaternions, times in seconds. What the program
-refuses is a ValueError with its line. While C++ runs, other threads of Python do, too.
+refuses is a ValueError with its line. The GIL is released while C++ runs.
 """
 
 from ._bvlab import Mesh, Result, World, boxes, named_mesh, predict, read, replay

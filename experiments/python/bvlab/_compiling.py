@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A volume or a strategy of one's own, compiled into the module."""
+"""Compiles a user's volume or strategy into the module."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ _FORM = r".+:[A-Za-z_][A-Za-z0-9_:]*(<.*>)?"
 def compile_in(volumes: str | Iterable[str] = (), strategies: str | Iterable[str] = (), *,
                source: str | os.PathLike | None = None, build: str | os.PathLike | None = None,
                only_volumes: Iterable[str] = (), only_strategies: Iterable[str] = ()) -> ModuleType:
-    """Compiles volumes or strategies from outside into the module, and gives a module that knows them.
+    """Compiles volumes or strategies from outside into a module, and returns that module.
 
     volumes, strategies   ["mine.hpp:Mine<float>"]: header and type, as -DBVLAB_EXTRA_VOLUMES has them; see
                           hierarchies/adding_a_volume.md and traversal/adding_a_strategy.md
     source, build         the source tree, and its build folder; as this module was built
-    only_volumes, only_strategies   of THE lists compile these alone, which takes less time
+    only_volumes, only_strategies   compile only these of the built-in lists, which takes less time
 
         mine = bvlab.compile_in(volumes=["capsule.hpp:Capsule<float>"])
         mine.replay([mine.Mesh(vertices, faces)], poses, volume="capsule")
 
-    In the build folder only the new entry and a table are compiled: a minute or two. The module that is given is
-    beside this one, which stays as it is; meshes of one are none of the other. ValueError: the compiler's first error.
+    Only the new entry and a table are compiled: a minute or two. The returned module is independent of this one:
+    a Mesh of one cannot be used with the other. ValueError: the compiler's first error.
     """
     extra = {"VOLUMES": _entries(volumes), "STRATEGIES": _entries(strategies)}
     if not any(extra.values()):

@@ -1,64 +1,64 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The names that there are, each with what it is: those of the program, from the program."""
+"""Names and descriptions of all that can be chosen, as the program lists them."""
 
 from ._bvlab import names
 
 
 def volumes() -> dict[str, str]:
-    """Bounding volumes: each name with what it is."""
+    """Bounding volumes, by name: descriptions."""
     return names("volumes")
 
 
 def strategies() -> dict[str, str]:
-    """How much of the last answer is used again: each name with what it is."""
+    """Strategies, which reuse the last frame's traversal, by name: descriptions."""
     return names("strategies")
 
 
 def frames() -> dict[str, str]:
-    """Where volumes are compared: each name with what it is."""
+    """Frames in which volumes are compared, by name: descriptions."""
     return names("frames")
 
 
 def kernels() -> dict[str, str]:
-    """How the lanes of a register are filled: each name with what it is."""
+    """Kernels, which fill the lanes of a register, by name: descriptions."""
     return names("kernels")
 
 
 def queries() -> dict[str, str]:
-    """What is asked of a pair: each name with what it is."""
+    """Queries of a pair, by name: descriptions."""
     return names("queries")
 
 
 def methods() -> dict[str, str]:
-    """Broad-phase methods, for boxes: each name with what it is."""
+    """Broad-phase methods, by name: descriptions."""
     return names("methods")
 
 
 def configurations() -> dict[str, str]:
-    """Names for volume, tree, strategy, build, fit and leaf size at once, with what they are."""
+    """Configurations of volume, tree, strategy, build, fit and leaf size, by name: descriptions."""
     return names("configurations")
 
 
 def builds() -> dict[str, str]:
-    """How hierarchies are built: each name with what it is."""
+    """Ways to build a hierarchy, by name: descriptions."""
     return names("builds")
 
 
 def precisions() -> dict[str, str]:
-    """Tests of triangle against triangle: each name with what it is."""
+    """Tests of triangle against triangle, by name: descriptions."""
     return names("precisions")
 
 
 def parameters() -> dict[str, str]:
-    """What a definition can set: each name with what it is and its default."""
+    """Parameters of a definition, by name: descriptions with defaults."""
     return names("parameters")
 
 
 def formula_meshes() -> dict[str, str]:
-    """Meshes that are made by formula, for named_mesh and definitions: each name with what it is."""
+    """Meshes made by formula, for named_mesh and definitions, by name: descriptions."""
     return names("meshes")
 
 
 def peers() -> dict[str, str]:
-    """Other libraries that a definition can run on the same work: each name with what it is."""
+    """Other libraries that a definition can run, by name: descriptions."""
     return names("peers")

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Records: frames of pandas, and figures of matplotlib. What is known of records is known by bvlab_plots, the library
-of plots/, which stands beside this package."""
+"""Records as pandas frames and matplotlib figures, by bvlab_plots, the library of plots/."""
 
 from __future__ import annotations
 
@@ -61,8 +60,7 @@ def figures(path: str | os.PathLike, **figure: str) -> dict[str, matplotlib.figu
 
 @contextlib.contextmanager
 def _drawing():
-    """Where bvlab_plots is imported and draws: its settings of matplotlib are nobody else's, and what it refuses is a
-    ValueError."""
+    """Imports and uses bvlab_plots with its own matplotlib settings; what it refuses becomes a ValueError."""
     import matplotlib
     backend, settings = matplotlib.get_backend(), dict(matplotlib.rcParams)
     with matplotlib.rc_context(_looks):
