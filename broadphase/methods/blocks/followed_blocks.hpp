@@ -6,7 +6,13 @@
 /// box leaves its fat box, no pair but a candidate can overlap. A box that leaves it gets a wider
 /// one, one that jumps or is new another slot.
 ///
-/// A frame looks at every box, and compares all candidates.
+/// Boxes that turned too often for that, or jitter, get margins all around instead. Margins have no
+/// end of their own: they are used until a sample of the boxes has come half-way out. Where none
+/// does for long, the narrowest margins take over.
+///
+/// A frame looks at every box, and compares all candidates. The next candidates are found a part in
+/// each frame (NextCandidates). Only a frame that begins without them takes longer than starting
+/// over.
 #pragma once
 
 #include <cmath>
@@ -36,23 +42,41 @@ class FollowedBlocks {
   }
 
   /// Whether the candidates are good for another frame.
-  bool goes_on() const { return age_ < horizon_; }
+  bool goes_on() const { return !worn_ && (age_ < horizon_ || !steady_); }
   /// In how many frames, up to the last, no more than one box in eight moved.
   int few_moved() const { return few_moved_; }
   /// Whether boxes have gone on as they did.
   bool steady() const { return steady_; }
-  /// The most frames that fat boxes may be made for.
+  /// The fewest and the most frames that fat boxes may be made for.
+  static constexpr int shortest = 8;
   int longest() const { return longest_; }
+  /// In how many frames the next candidates are found.
+  int time_to_find() const { return std::min(horizon_, 2 * shortest) / 2; }
 
   /// Whether it is time to choose for how many frames the next candidates are to be good.
   bool time_to_prepare() const {
-    return !next_.begun() && horizon_ >= shortest_prepared &&
-           age_ == horizon_ - NextCandidates<T, Contact>::frames;
+    if (next_.begun()) return false;
+    if (crowded_) return true;
+    if (steady_) return age_ == horizon_ - time_to_find();
+    return horizon_ > shortest && age_ > 0 && age_ % 4 == 0 && (at_ease() || half_used());
   }
-  /// Finds them from now on, a part in each frame.
+  /// Whether boxes stay about where they are: the shortest horizon is enough.
+  bool at_ease() const { return !steady_ && !restless_ && age_ >= 2 * horizon_; }
+  /// Finds them from now on, a part in each frame, unless that number is zero.
   void prepare(int horizon) {
-    if (horizon >= shortest_prepared) next_.begin(horizon);
+    if (horizon == 0) {
+      worn_ |= crowded_;
+      return;
+    }
+    next_.begin(horizon, time_to_find());
+    unsettled_.clear();
+    resettle_ = false;
+    takes_over_at_ = age_ + time_to_find();
+    next_ahead_ = at_ease() ? 0 : shortest;
   }
+
+  /// Whether they left the shortest margins: longer ones are worth more than they cost.
+  bool restless() const { return !steady_ && restless_; }
 
   /// The last frame's box in this slot.
   Row<T> last_row(std::uint32_t slot) const {
@@ -90,7 +114,7 @@ class FollowedBlocks {
       newcomers_.push_back(static_cast<std::uint32_t>(id));
     // Each of these costs about as much as starting over does for thirty boxes, or a hundred.
     if (32 * escaped_.size() + 100 * newcomers_.size() > boxes.size() + 3200) {
-      if (age_ < horizon_ && newcomers_.size() < escaped_.size()) distrust();
+      if (newcomers_.size() < escaped_.size()) distrust();
       return false;
     }
     widen_escaped();
@@ -100,13 +124,14 @@ class FollowedBlocks {
     for (const std::uint32_t slot : emptied_) tree_.ids(0)[slot] = no_box;
     // A pair that ended in one slot and began in another, where its box went, did neither.
     if (settings_.changes == Changes::reported && !emptied_.empty()) pairs_.cancel_out();
-    // What is prepared is not of these slots.
-    if (!newcomers_.empty() || !emptied_.empty() || boxes.size() != count_) next_.abandon();
+    if (next_.begun()) note_unsettled(boxes.size());
     count_ = boxes.size();
     ++age_;
-    if (too_many_candidates(boxes)) age_ = horizon_;
-    took_over_ = age_ >= horizon_ && next_.ready();
-    if (took_over_) take_over_next();
+    crowded_ = candidates_.size() > 2 * candidates_at_first_ + boxes.size();
+    worn_ = candidates_.size() > 4 * candidates_at_first_ + 2 * boxes.size() ||
+            tree_.slots() > boxes.size() + boxes.size() / 8 + 64;
+    took_over_ = next_.ready() && age_ >= takes_over_at_;
+    if (took_over_) take_over_next(boxes);
     return true;
   }
 
@@ -164,13 +189,12 @@ class FollowedBlocks {
         });
     if (sorted_) visits_when_sorted_ = visits_, sorted_ = false;
     candidates_at_first_ = candidates_.size();
-    if (horizon >= shortest_prepared) {
-      next_.reserve(tree_.leaves(), candidates_.size());
-      spare_.resize(tree_.slots());
-    }
+    next_.reserve(tree_.leaves(), candidates_.size());
+    spare_.resize(tree_.slots());
     count_ = boxes.size();
     active_ = true;
     horizon_ = horizon, age_ = 0;
+    worn_ = crowded_ = false;
     few_moved_ = 0;
     write_candidates();
     if (compare) pairs_.compare_with_kept();
@@ -219,7 +243,7 @@ class FollowedBlocks {
 
   /// A part of the work for the next candidates.
   void prepare_a_part(Boxes<T> boxes) {
-    const int ahead = horizon_ - age_ + next_.horizon();
+    const int ahead = std::min(next_ahead_, takes_over_at_ - age_) + next_.horizon();
     next_.advance(
         joined_,
         [&](BlockTree<T>& tree) {
@@ -235,18 +259,67 @@ class FollowedBlocks {
               static_cast<std::uint32_t>((order.size() + block_width - 1) / block_width));
           for (std::size_t k = 0; k < order.size(); ++k) tree.ids(0)[k] = order[k].id;
         },
+        [&](std::uint32_t slot, std::uint32_t id) {
+          if (id >= boxes.size()) return nowhere_row<T>();
+          const std::uint32_t at = sorted_next_ ? slots_[id] : slot;
+          return fat_box_of(row_of(boxes[id]), candidates_.rows()[at], ahead);
+        },
         [&](std::uint32_t id) {
-          return fat_box_of(row_of(boxes[id]), candidates_.rows()[slots_[id]], ahead);
+          if (id >= boxes.size()) return;
+          __builtin_prefetch(&boxes[id]);
+          if (sorted_next_) __builtin_prefetch(&candidates_.rows()[slots_[id]]);
         });
   }
+  /// Boxes that are new, gone or in another slot since the next candidates were begun. Where they
+  /// are many, these are not worth going on with.
+  void note_unsettled(std::size_t boxes) {
+    resettle_ |= !newcomers_.empty() || !emptied_.empty();
+    unsettled_.insert(unsettled_.end(), newcomers_.begin(), newcomers_.end());
+    if (100 * unsettled_.size() > boxes + 3200) next_.abandon();
+  }
   /// From now on the next candidates are those in use.
-  void take_over_next() {
-    auto& rows = candidates_.rows();
+  void take_over_next(Boxes<T> boxes) {
     std::swap(tree_, next_.tree());
+    std::swap(fat_boxes_, next_.fat_boxes());
+    if (resettle_) forget_unsettled();
+    if (sorted_next_ || resettle_) take_over_order();
+    candidates_.clear();
+    std::swap(candidates_.list(), next_.candidates());
+    if (!unsettled_.empty()) {
+      std::swap(newcomers_, unsettled_);
+      seat_newcomers(boxes);
+    }
+    visits_ = next_.visits();
+    if (sorted_next_) visits_when_sorted_ = visits_;
+    candidates_at_first_ = candidates_.size();
+    horizon_ = next_.horizon(), age_ = 0;
+    worn_ = crowded_ = false;
+    next_.abandon();
+    if (settings_.changes == Changes::reported) know_which_overlap();
+  }
+  /// Takes the boxes that are gone, or are to get other slots, out of the tree that takes over.
+  void forget_unsettled() {
+    std::sort(unsettled_.begin(), unsettled_.end());
+    unsettled_.erase(std::unique(unsettled_.begin(), unsettled_.end()), unsettled_.end());
+    for (std::uint32_t slot = 0; slot < tree_.slots(); ++slot) {
+      std::uint32_t& id = tree_.ids(0)[slot];
+      if (id == no_box ||
+          (id < count_ && !std::binary_search(unsettled_.begin(), unsettled_.end(), id)))
+        continue;
+      id = no_box;
+      tree_.leaf(slot / block_width).put(static_cast<int>(slot % block_width), nowhere<T>());
+    }
+  }
+  /// Brings the rows into the tree's order.
+  void take_over_order() {
+    auto& rows = candidates_.rows();
     const std::uint32_t slots = tree_.slots();
+    const std::uint32_t* const ids = tree_.ids(0);
     spare_.resize(slots);
     for (std::uint32_t slot = 0; slot < slots; ++slot) {
-      const std::uint32_t id = tree_.ids(0)[slot];
+      if (slot + ahead < slots && ids[slot + ahead] != no_box)
+        __builtin_prefetch(&rows[slots_[ids[slot + ahead]]]);
+      const std::uint32_t id = ids[slot];
       if (id == no_box) {
         spare_[slot] = nowhere_row<T>();
         continue;
@@ -255,15 +328,6 @@ class FollowedBlocks {
       slots_[id] = slot;
     }
     std::swap(rows, spare_);
-    std::swap(fat_boxes_, next_.fat_boxes());
-    candidates_.clear();
-    std::swap(candidates_.list(), next_.candidates());
-    visits_ = next_.visits();
-    if (sorted_next_) visits_when_sorted_ = visits_;
-    candidates_at_first_ = candidates_.size();
-    horizon_ = next_.horizon(), age_ = 0;
-    next_.abandon();
-    if (settings_.changes == Changes::reported) know_which_overlap();
   }
   /// Of the candidates that took over. Boxes that are out of their new fat boxes already, which
   /// else the next frame would see, get wider ones before.
@@ -290,7 +354,7 @@ class FollowedBlocks {
       fat = {now.lo + least<T>(low * ahead, zero) - far / 4,
              now.hi + most<T>(high * ahead, zero) + far / 4};
     } else {
-      const T widest = std::max({far[0], far[1], far[2]}) * static_cast<T>(frames);
+      const T widest = std::max({far[0], far[1], far[2]}) * (static_cast<T>(frames) + T(0.25));
       fat = {now.lo - widest, now.hi + widest};
     }
     constexpr T limit = std::numeric_limits<T>::max();
@@ -377,8 +441,8 @@ class FollowedBlocks {
   /// in the next frame. Where most move, it goes on for as long as the candidates are good.
   static constexpr int after_an_escape = 2;
   void widen_escaped() {
-    const int frames =
-        few_of(count_) ? std::min(horizon_, after_an_escape) : std::max(1, horizon_ - age_);
+    const int frames = few_of(count_) ? std::min(horizon_, after_an_escape)
+                                      : std::max(steady_ ? 1 : shortest / 2, horizon_ - age_);
     for (const auto& [slot, was] : escaped_) {
       const Row<T> now = candidates_.rows()[slot], next = fat_box_of(now, was, frames);
       Row<T>& fat = fat_boxes_[slot];
@@ -433,13 +497,29 @@ class FollowedBlocks {
   /// Too many boxes left the fat boxes made for them: they turn too often for that, or speed up.
   void distrust() {
     if (steady_)
-      steady_ = false;
-    else
-      longest_ = std::max(1, longest_ / 2);
+      steady_ = age_ >= horizon_;
+    else if (horizon_ == shortest)
+      restless_ = true;
+    else if (age_ < horizon_)
+      longest_ = std::max(shortest, longest_ / 2);
   }
-  bool too_many_candidates(Boxes<T> boxes) const {
-    return candidates_.size() > 2 * candidates_at_first_ + boxes.size() ||
-           tree_.slots() > boxes.size() + boxes.size() / 8 + 64;
+  /// Whether an eighth of a sample of the boxes has used half of its margin: if they go on, there
+  /// are as many frames left as they had.
+  bool half_used() const {
+    const auto& rows = candidates_.rows();
+    const std::uint32_t stride = std::max<std::uint32_t>(1, tree_.leaves() / 16);
+    std::size_t seen = 0, used = 0;
+    for (std::uint32_t k = 0; k < tree_.leaves(); k += stride)
+      for (std::uint32_t slot = k * block_width; slot < (k + 1) * block_width; ++slot) {
+        if (tree_.ids(0)[slot] == no_box) continue;
+        const Four<T> low = rows[slot].lo - fat_boxes_[slot].lo,
+                      high = fat_boxes_[slot].hi - rows[slot].hi;
+        bool half = false;
+        for (int axis = 0; axis < 3; ++axis)
+          half |= std::min(low[axis], high[axis]) < T(0.27) * (low[axis] + high[axis]);
+        ++seen, used += half;
+      }
+    return 8 * used > seen;
   }
 
   void write_candidates() {
@@ -472,15 +552,18 @@ class FollowedBlocks {
   std::size_t count_ = 0;             ///< boxes of the last frame
   std::size_t candidates_at_first_ = 0, visits_ = 0, visits_when_sorted_ = 0;
   bool active_ = false, sorted_ = false, steady_ = true;
-  /// Where fat boxes are made for fewer frames, there is no time to prepare the next.
-  static constexpr int shortest_prepared = 16;
+  bool restless_ = false;  ///< they left the shortest margins
+  bool crowded_ = false;   ///< so many candidates that others are worth finding
+  bool worn_ = false;      ///< so many, or so many empty slots, that these are not to be used again
   NextCandidates<T, Contact> next_;
   bool sorted_next_ = false, took_over_ = false;
-  int longest_ = 64, horizon_ = 0, age_ = 0;
+  int longest_ = 64, horizon_ = 0, age_ = 0, takes_over_at_ = 0, next_ahead_ = 0;
 
   std::vector<Escaped> escaped_;
   std::vector<Look> looks_;
   std::vector<std::uint32_t> newcomers_, emptied_;
+  std::vector<std::uint32_t> unsettled_;  ///< newcomers since the next candidates were begun
+  bool resettle_ = false;                 ///< and whether any came, went or jumped
   std::size_t moved_count_ = 0;
   int few_moved_ = 0;  ///< frames in a row
   std::vector<Box<T>> new_boxes_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The candidates that follow those in use, found a part in each frame while these are still good:
 /// a frame that makes all of them at once takes twice as long as one from scratch. First an order;
-/// then, in three frames, fat boxes for the frames until they take over and those after; then, in
-/// four, the join.
+/// then, in three parts, fat boxes for the frames until they take over and those after; then, in
+/// eight, the join.
 #pragma once
 
 #include <span>
@@ -15,34 +15,40 @@ namespace bvlab {
 template <class T, class Contact>
 class NextCandidates {
  public:
-  /// Frames that it takes.
-  static constexpr int frames = 8;
-
   bool begun() const { return stage_ != 0; }
-  bool ready() const { return stage_ > frames; }
+  bool ready() const { return stage_ > stages; }
   /// For how many frames they are going to be good.
   int horizon() const { return horizon_; }
   void abandon() { stage_ = 0; }
-  void begin(int horizon) { stage_ = 1, horizon_ = horizon; }
+  /// `frames`: that it may take.
+  void begin(int horizon, int frames) {
+    stage_ = 1, horizon_ = horizon;
+    frames_ = frames, frame_ = 0;
+  }
 
-  /// The next part of the work, whatever it is. `order()`: the indices of the boxes in their slots,
-  /// sixteen to a leaf; `fat_box(id)`: where that box may go until they end.
-  template <class Order, class FatBox>
-  void advance(JoinedBlocks<T, Contact>& joined, const Order& order, const FatBox& fat_box) {
-    if (stage_ == 1)
-      order(tree_);
-    else if (stage_ <= 1 + fat_parts)
-      make_fat_boxes(joined, static_cast<std::uint32_t>(stage_) - 2, fat_box);
-    else
-      join(joined, static_cast<std::size_t>(stage_ - 2 - fat_parts));
-    ++stage_;
+  /// The next frame's parts of the work, whatever they are. `order()`: the indices of the boxes in
+  /// their slots, sixteen to a leaf; `fat_box(slot, id)`: where that box may go until they end;
+  /// `fetch(id)`: is going to be asked that.
+  template <class Order, class FatBox, class Fetch>
+  void advance(JoinedBlocks<T, Contact>& joined, const Order& order, const FatBox& fat_box,
+               const Fetch& fetch) {
+    ++frame_;
+    for (; stage_ <= stages * frame_ / frames_; ++stage_)
+      if (stage_ == 1)
+        order(tree_);
+      else if (stage_ <= 1 + fat_parts)
+        make_fat_boxes(joined, static_cast<std::uint32_t>(stage_) - 2, fat_box, fetch);
+      else
+        join(joined, static_cast<std::size_t>(stage_ - 2 - fat_parts));
   }
 
   /// Has the memory come that it will need for about so many.
   void reserve(std::uint32_t leaves, std::size_t candidates) {
     tree_.resize_leaves(leaves);
     fat_boxes_.resize(tree_.slots());
-    candidates_.room_for(candidates);
+    // The join asks for some room beyond what it is going to need.
+    candidates_.clear();
+    candidates_.room_for(candidates + candidates / 8 + 16 * 256);
   }
 
   BlockTree<T>& tree() { return tree_; }
@@ -57,22 +63,28 @@ class NextCandidates {
   }
 
  private:
-  static constexpr int fat_parts = 3, joins = frames - 1 - fat_parts;
+  static constexpr int fat_parts = 3, joins = 8, stages = 1 + fat_parts + joins;
   static constexpr std::uint32_t stretch =
-      16 * block_width;  ///< leaves that a thread takes at once
+      16 * block_width;                       ///< leaves that a thread takes at once
+  static constexpr std::uint32_t ahead = 16;  ///< slots between a prefetch and its use
 
-  template <class FatBox>
-  void make_fat_boxes(JoinedBlocks<T, Contact>& joined, std::uint32_t part, const FatBox& fat_box) {
+  template <class FatBox, class Fetch>
+  void make_fat_boxes(JoinedBlocks<T, Contact>& joined, std::uint32_t part, const FatBox& fat_box,
+                      const Fetch& fetch) {
     fat_boxes_.resize(tree_.slots());
     const std::uint32_t all = (tree_.leaves() + stretch - 1) / stretch;
     const std::uint32_t begin = all * part / fat_parts, end = all * (part + 1) / fat_parts;
     joined.shares().threads().share(end - begin, [&](std::size_t k, std::size_t) {
       const auto first = (begin + static_cast<std::uint32_t>(k)) * stretch;
       for (std::uint32_t leaf = first; leaf < std::min(first + stretch, tree_.leaves()); ++leaf) {
-        for (int lane = 0; lane < block_width; ++lane) {
-          const std::uint32_t id = tree_.ids(leaf)[lane];
-          Row<T>& fat = fat_boxes_[std::size_t{leaf} * block_width + lane];
-          fat = id == no_box ? nowhere_row<T>() : fat_box(id);
+        for (std::uint32_t slot = leaf * block_width; slot < (leaf + 1) * block_width; ++slot) {
+          if (const std::uint32_t later = slot + ahead;
+              later < tree_.slots() && tree_.ids(0)[later] != no_box)
+            fetch(tree_.ids(0)[later]);
+          const std::uint32_t id = tree_.ids(0)[slot];
+          const int lane = static_cast<int>(slot % block_width);
+          Row<T>& fat = fat_boxes_[slot];
+          fat = id == no_box ? nowhere_row<T>() : fat_box(slot, id);
           tree_.leaf(leaf).put(lane, box_of(fat));
         }
         tree_.set_leaf_bounds(leaf, bounds(tree_.leaf(leaf)));
@@ -96,7 +108,7 @@ class NextCandidates {
         });
   }
 
-  int stage_ = 0, horizon_ = 0;
+  int stage_ = 0, horizon_ = 0, frames_ = 0, frame_ = 0;
   BlockTree<T> tree_;  ///< of the fat boxes
   LargeVector<Row<T>> fat_boxes_;
   PairList candidates_;
