@@ -296,12 +296,13 @@ void replace_each(std::string& text, const std::string& before, const std::strin
 
 /// Where the files of the page are: in the source tree, or where experiments/package puts them.
 std::filesystem::path page_folder() {
-  const std::filesystem::path in_source = BVLAB_PAGE_DIRECTORY;
+  std::filesystem::path in_source = BVLAB_PAGE_DIRECTORY;
   std::error_code error;
   if (std::filesystem::exists(in_source / "replay.html", error)) return in_source;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const auto installed = program.parent_path() / "../../../share/bvlab/page";
-  return std::filesystem::exists(installed / "replay.html", error) ? installed : in_source;
+  auto installed = program.parent_path() / "../../../share/bvlab/page";
+  if (std::filesystem::exists(installed / "replay.html", error)) return installed;
+  return in_source;
 }
 
 }  // namespace
