@@ -294,11 +294,22 @@ void replace_each(std::string& text, const std::string& before, const std::strin
   }
 }
 
+/// Where the files of the page are: in the source tree, or where experiments/package puts them.
+std::filesystem::path page_folder() {
+  std::filesystem::path in_source = BVLAB_PAGE_DIRECTORY;
+  std::error_code error;
+  if (std::filesystem::exists(in_source / "replay.html", error)) return in_source;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  auto installed = program.parent_path() / "../../../share/bvlab/page";
+  if (std::filesystem::exists(installed / "replay.html", error)) return installed;
+  return in_source;
+}
+
 }  // namespace
 
 std::string scene_page(std::span<const TriangleMesh> meshes, const Trace& trace,
                        const Variant& variant, const SceneNames& names) {
-  const std::filesystem::path folder = BVLAB_PAGE_DIRECTORY;
+  const std::filesystem::path folder = page_folder();
   std::string page = read_whole(folder / "replay.html");
   std::string data = Page(meshes, trace, variant).data(names).text();
   // A name must not end the script that it stands in.

@@ -233,7 +233,7 @@ class Splitter {
   }
 
   Vec3<double> principal(Items range, const Eigen::AlignedBox3d& box, Eigen::Index longest) const {
-    const Vec3<double> along_box = Vec3<double>::Unit(longest);
+    Vec3<double> along_box = Vec3<double>::Unit(longest);
     const double scale = box.diagonal().norm();
     if (!(scale > 0) || !std::isfinite(scale)) return along_box;
     Vec3<double> mean = Vec3<double>::Zero();

@@ -80,7 +80,7 @@ Mat3<double> principal_axes(std::span<const Vec3<double>> points) {
 template <class = double>
 Mat3<double> principal_axes(std::span<const Vec3<double>> points,
                             std::span<const Triangle> triangles) {
-  const Vec3<double> origin = points[0];
+  const Vec3<double>& origin = points[0];
   const double extent = detail::extent_about(origin, points);
   if (!(extent > 0)) return Mat3<double>::Identity();
   Vec3<double> mean = Vec3<double>::Zero();

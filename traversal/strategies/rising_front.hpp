@@ -43,7 +43,8 @@ struct Proposals {
   }
   /// Room for `count` slots; they are kept when `used` is increased.
   std::uint32_t* room(std::uint32_t count) {
-    if (slots.size() < used + count) slots.resize(2 * (used + count));
+    const std::size_t needed = std::size_t{used} + count;
+    if (slots.size() < needed) slots.resize(2 * needed);
     return slots.data() + used;
   }
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 
 #include "hierarchies/geometry/scalar.hpp"
 
@@ -12,7 +13,8 @@
 
 namespace bvlab {
 
-/// Lane by lane from[index[lane]].
+/// Lane by lane from[index[lane]]. The numbers may be integers of four bytes, whose bits are kept;
+/// they are copied, not read as floats.
 template <int W>
 [[gnu::always_inline]] inline Batch<float, W> gathered(const float* from,
                                                        const Batch<std::int32_t, W>& index) {
@@ -24,7 +26,11 @@ template <int W>
   if constexpr (W == 8)
     return Batch<float, W>(_mm256_i32gather_ps(from, static_cast<__m256i>(index), 4));
 #endif
-  return Batch<float, W>([&](auto lane) { return from[index[lane]]; });
+  return Batch<float, W>([&](auto lane) {
+    float x;
+    std::memcpy(&x, reinterpret_cast<const char*>(from) + sizeof x * index[lane], sizeof x);
+    return x;
+  });
 }
 
 }  // namespace bvlab
