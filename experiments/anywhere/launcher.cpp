@@ -54,7 +54,8 @@ int main(int, char** argv) {
     return 1;
   }
   if (asked)
-    std::fprintf(stderr, "bvlab: BVLAB_PROCESSOR=%s: not installed, or not for this processor\n", asked);
+    std::fprintf(stderr, "bvlab: BVLAB_PROCESSOR=%s: not installed, or not for this processor\n",
+                 asked);
   else
     std::fprintf(stderr, "bvlab: %s*/bvlab: none is for this processor\n", programs.c_str());
   return asked ? 2 : 1;

@@ -18,6 +18,7 @@ class Made:
     commit: str
     date: str
     changes: bool | None
+    merged_as: str = ""  # the commit in which that one was merged, where its own history was not kept
 
 
 def machine_of(record):
@@ -33,7 +34,7 @@ def made(machine):
     """Older records have "0.1.0 <commit> with changes" in one."""
     version, _, rest = str(machine.get("bvlab", "")).partition(" ")
     if "commit" in machine:
-        return Made(version, machine["commit"] or "", machine.get("date", ""), machine.get("changes"))
+        return Made(version, machine["commit"] or "", machine.get("date", ""), machine.get("changes"), machine.get("merged_as", ""))
     commit, _, more = rest.partition(" ")
     return Made(version, commit, "", bool(more) if commit else None)
 
@@ -63,6 +64,7 @@ def fault_of(record, root=ROOT):
         return f"was made from {by.commit[:12]} with changes"
     if by.changes is None:
         return f"does not say whether {by.commit[:12]} had changes"
-    if git("merge-base", "--is-ancestor", by.commit, "HEAD", root=root).returncode:
-        return f"was made from {by.commit[:12]}, which is not in the history"
+    kept = by.merged_as or by.commit
+    if git("merge-base", "--is-ancestor", kept, "HEAD", root=root).returncode:
+        return f"was made from {kept[:12]}, which is not in the history"
     return ""

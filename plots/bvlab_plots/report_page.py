@@ -170,8 +170,9 @@ def facts_of(section):
     by = provenance.made(machine)
     if str(machine.get("memory", "")).endswith(" kB"):
         machine["memory"] = f"{int(machine['memory'].split()[0]) / 1e6:.0f} GB"
+    merged = f", merged as <code>{text(by.merged_as)}</code>" if by.merged_as else ""
     facts = [("Command", f"<code>{text(section.command)}</code>"),
-             ("Commit", f"<code>{text(by.commit)}</code>{' with changes' if by.changes else ''} (bvlab {text(by.version)})"
+             ("Commit", f"<code>{text(by.commit)}</code>{' with changes' if by.changes else ''}{merged} (bvlab {text(by.version)})"
               if by.commit else ""), ("Date", text(by.date)),
              ("Machine", text(", ".join(f"{machine[k]}{' cores' if k == 'cores' else ''}" for k in
                                         ("processor", "cores", "memory", "system") if k in machine))),

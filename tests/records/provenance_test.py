@@ -41,6 +41,8 @@ class Faults(unittest.TestCase):
         self.assertEqual(provenance.history(self.root), "")
         self.assertEqual(self.fault(bvlab="0.1.0", commit=self.commit, changes=False), "")
         self.assertEqual(self.fault(bvlab=f"0.1.0 {self.commit[:7]}"), "")
+        self.assertEqual(self.fault(bvlab="0.1.0", commit="0" * 40, changes=False, merged_as=self.commit), "")
+        self.assertIn("not in the history", self.fault(bvlab="0.1.0", commit=self.commit, changes=False, merged_as="0" * 40))
 
     def test_none_changed_or_lost(self):
         self.assertIn("no commit", self.fault(bvlab="0.1.0 "))
