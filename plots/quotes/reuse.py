@@ -36,7 +36,7 @@ def reuse(record):
     change = savings(cells, "n_v", "margins", fan_outs.SLOW).unstack("fan_out")
     alike = (change[16] / change[2]).between(2 / 3, 3 / 2).mean()
     gain = fan_outs.savings(cells, "time_ns", "deferred").xs(fan_outs.SLOW, level="motion")
-    claim((gain.xs(2, level="fan_out") > 1.4).all(), "deferring pays in time on binary trees")
+    claim((gain.xs(2, level="fan_out") > 1).all(), "deferring pays in time on binary trees")
     recursion = cells.xs("recursive", level="strategy")
     best = recursion.time_ns.unstack("fan_out").idxmin(axis=1)
     return {**found, "fast_lists": Interval([v for values in lists for v in values]), "fast_raise": Interval([v for values in raised for v in values]),
