@@ -166,8 +166,9 @@ py::object total(const Result& result, const char* key) {
 }
 
 void add_result(py::module_& module) {
-  py::class_<Result> type(module, "Result", py::module_local(),
-                          "The result of replay and boxes: answers, and totals as --json has them.");
+  py::class_<Result> type(
+      module, "Result", py::module_local(),
+      "The result of replay and boxes: answers, and totals as --json has them.");
   type.def_readonly("answers", &Result::answers,
                     R"(Answers as --out has them; see replay and boxes.
 None where answers=False.)")
@@ -207,7 +208,9 @@ A structured array; None unless series=True. pandas.DataFrame(result.series) has
 }  // namespace
 
 void add_replaying(py::module_& module) {
-  PYBIND11_NUMPY_DTYPE(FrameCounts, n_u, n_v, n_p, front, hits);
+  // Modules in one process share what pybind11 knows of dtypes: see compile_in.
+  if (!py::detail::get_numpy_internals().get_type_info<FrameCounts>(false))
+    PYBIND11_NUMPY_DTYPE(FrameCounts, n_u, n_v, n_p, front, hits);
   add_result(module);
   const Variant d = default_variant();
   const BoxReplayOptions box;

@@ -362,12 +362,15 @@ Python takes longer by its own overhead.)")
           R"(uint32 (k, 4): body i, body j, triangle of i, triangle of j, of all triangles that share a point; sorted.
 
 Each pair that touches is traversed from the roots.)")
-      .def("distances", &PyWorld::distances, "below"_a,
-           R"(The pairs no farther apart than `below`, and their distances: uint32 (k, 2), float64 (k,).
+      .def(
+          "distances", &PyWorld::distances, "below"_a,
+          R"(The pairs no farther apart than `below`, and their distances: uint32 (k, 2), float64 (k,).
 
 In units of the meshes; 0 where they touch. Each pair is traversed from the roots.)")
-      .def_property_readonly("near", &PyWorld::near, "The number of pairs whose boxes overlapped in the last update.")
-      .def_property_readonly("asked", &PyWorld::asked, "The number of pairs that the last update queried.")
+      .def_property_readonly("near", &PyWorld::near,
+                             "The number of pairs whose boxes overlapped in the last update.")
+      .def_property_readonly("asked", &PyWorld::asked,
+                             "The number of pairs that the last update queried.")
       .def("__len__", &PyWorld::objects);
 }
 
