@@ -2,8 +2,8 @@
 /// The recommended configuration for the queries touching and contacts, where triangles are about
 /// as long as wide, as in scans and simulations: slab-boxes in wide trees, as many children per
 /// node as a register has lanes, tested in the bodies' own frames, with margins from frame to
-/// frame. For meshes of long triangles see recommended_for.hpp; `bvlab replay --recommended`
-/// chooses between the two. For distances, swept rectangles in binary trees are best (see rss.hpp).
+/// frame. recommended_for.hpp has two others and chooses, as `bvlab replay --recommended` does. For
+/// distances, swept rectangles in binary trees are best (see rss.hpp).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -43,11 +43,15 @@ inline constexpr double long_triangles = 3.5;
 
 /// Margins over wide trees of one volume. Build is an entry of builds.hpp; at most `leaf_size`
 /// triangles a leaf.
-template <BoundingVolume V, int F, class KernelType, class Build, Fit fit, std::uint32_t leaf_size>
+template <BoundingVolume V, int F, class KernelType, class BuildType, Fit kFit,
+          std::uint32_t kLeafSize>
 struct MarginsOver {
   using Volume = V;
   using Kernel = KernelType;
+  using Build = BuildType;
   static constexpr int fan_out = F;
+  static constexpr Fit fit = kFit;
+  static constexpr std::uint32_t leaf_size = kLeafSize;
   using Hierarchy = typename Kernel::template Hierarchy<Volume, fan_out>;
   using Shape = WideShape<Volume, fan_out, Kernel>;
   using Pairs = WidePairs<Volume, fan_out, WideMargins, Kernel>;

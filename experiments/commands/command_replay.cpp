@@ -25,7 +25,6 @@ struct Arguments {
   std::vector<std::string> meshes;
   std::string trace, out, json, page, x3d, count = "off";
   std::optional<std::string> configuration;
-  std::string reason;  ///< why that is recommended
   Variant variant;
   unsigned threads = 1;
   std::optional<std::uint64_t> budget;
@@ -114,12 +113,13 @@ void run(Arguments arguments) {
     meshes.push_back(read_mesh(file));
     say_if_nothing_is_culled(meshes.back(), file);
   }
-  if (arguments.configuration) {
-    auto [variant, reason] = configured(arguments.variant, *arguments.configuration, meshes);
-    arguments.variant = variant, arguments.reason = reason;
-  }
   const Trace trace = read_trace(arguments.trace);
   require_finite_corners(trace, arguments.trace, meshes);
+  Chosen chosen;
+  if (arguments.configuration) {
+    chosen = configured(arguments.variant, *arguments.configuration, meshes, &trace);
+    arguments.variant = chosen.variant;
+  }
   const Count count = arguments.count == "on" ? Count::on : Count::off;
   if (arguments.budget) {
     const BudgetedResult result =
@@ -137,7 +137,8 @@ void run(Arguments arguments) {
   options.keep_answers = !arguments.out.empty() || !arguments.x3d.empty();
   const ReplayResult result = replay(meshes, trace, arguments.variant, options);
   Totals totals = totals_of(result, meshes, trace, arguments.variant, options);
-  if (!arguments.reason.empty()) totals.set("recommended", arguments.reason);
+  if (!chosen.reason.empty())
+    totals.set("recommended", chosen.reason).set("choosing_seconds", chosen.seconds);
   if (!arguments.out.empty()) write_answers(arguments, trace, result);
   if (!arguments.page.empty()) write_page(arguments, meshes, trace);
   if (!arguments.x3d.empty())

@@ -62,11 +62,6 @@ Result play(const py::object& given_meshes, const py::object& given_poses,
   Variant variant = variant_from(words);
   check_threads(wanted.threads);
   const Meshes meshes(given_meshes);
-  std::string reason;
-  if (words.configuration) {
-    Chosen chosen = configured(variant, *words.configuration, meshes.span());
-    variant = std::move(chosen.variant), reason = std::move(chosen.reason);
-  }
   const Trace trace = trace_from(given_poses);
   ReplayOptions options;
   options.count = wanted.count ? Count::on : Count::off;
@@ -78,9 +73,14 @@ Result play(const py::object& given_meshes, const py::object& given_poses,
   options.after_frame = [&](std::size_t) { signals(); };
   auto [result, totals] = released([&] {
     require_finite_corners(trace, "poses", meshes.span());
+    Chosen chosen{variant, "", 0};
+    if (words.configuration)
+      chosen = configured(variant, *words.configuration, meshes.span(), &trace);
+    variant = chosen.variant;
     ReplayResult played = replay(meshes.span(), trace, variant, options);
     Totals of_it = totals_of(played, meshes.span(), trace, variant, options);
-    if (!reason.empty()) of_it.set("recommended", reason);
+    if (!chosen.reason.empty())
+      of_it.set("recommended", chosen.reason).set("choosing_seconds", chosen.seconds);
     return std::pair(std::move(played), std::move(of_it));
   });
   Result all{py::none(), py::none(), py::none(), dictionary(totals)};

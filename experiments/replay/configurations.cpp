@@ -2,11 +2,13 @@
 #include "experiments/replay/configurations.hpp"
 
 #include <iomanip>
+#include <limits>
 #include <sstream>
 #include <utility>
 
 #include "experiments/files/unusable.hpp"
-#include "traversal/recommended.hpp"
+#include "experiments/replay/player.hpp"
+#include "traversal/recommended_for.hpp"
 
 namespace bvlab {
 namespace {
@@ -16,20 +18,28 @@ struct Configuration {
   void (*set)(Variant&);
 };
 
+/// A candidate of the library (traversal/recommended_for.hpp), in the program's names.
+template <class Best>
+Variant as(Variant variant) {
+  set_kernel(variant, Best::Kernel::name);
+  variant.volume = Best::Volume::name, variant.strategy = "margins";
+  variant.build = Best::Build::name, variant.leaf_size = Best::leaf_size;
+  variant.fit = Best::fit == Fit::tight ? "tight" : "published";
+  return variant;
+}
+
 /// What took the least time in narrow-phase.toml and hierarchies.toml. Where triangles that touch
 /// are sought, wide trees are fastest from the roots, and margins save more than they cost wherever
 /// pairs are quiet (at most a tenth is lost where none is). Distances are sought by the volumes of
 /// triangles, which swept rectangles bound best.
 void set_recommended(Variant& variant) {
-  if (variant.query == "distance") {
-    set_tree(variant, "binary");
-    variant.volume = "rss", variant.strategy = "recursive";
-    variant.build = "bottom-up", variant.fit = "tight", variant.leaf_size = 1;
-  } else {
-    set_tree(variant, "wide");
-    variant.volume = "slab-box", variant.strategy = "margins";
-    variant.build = "top-down-surface-area", variant.fit = "published", variant.leaf_size = 16;
+  if (variant.query != "distance") {
+    variant = as<Recommended>(variant);
+    return;
   }
+  set_tree(variant, "binary");
+  variant.volume = "rss", variant.strategy = "recursive";
+  variant.build = "bottom-up", variant.fit = "tight", variant.leaf_size = 1;
 }
 
 /// li1998incremental, with the list that it found best.
@@ -41,10 +51,11 @@ void set_as_published(Variant& variant) {
 
 constexpr Configuration list[] = {
     {"recommended",
-     "touching and contacts: slab-box under the kernel siblings, built top-down-surface-area, 16 "
-     "triangles a leaf, margins; where triangles are long, obb under mixed, built bottom-up, fit "
-     "tight, 4 a leaf, margins; distance: rss in binary trees, built bottom-up, fit tight, one a "
-     "leaf, recursive",
+     "touching and contacts, with margins: slab-box under the kernel siblings, built "
+     "top-down-surface-area, 16 triangles a leaf; or the same built bottom-up, 4 a leaf; or obb "
+     "under mixed, built bottom-up, fit tight, 4 a leaf: what costs least in counted samples of the "
+     "motion, or suits the meshes where the motion is not known; distance: rss in binary trees, "
+     "built bottom-up, fit tight, one a leaf, recursive",
      set_recommended},
     {"as-published",
      "the talk's (Li and Chen 1998): spheres in binary trees, one triangle a leaf, and a "
@@ -52,23 +63,69 @@ constexpr Configuration list[] = {
      set_as_published},
 };
 
+Chosen recommended_for_distances(const Variant& variant) {
+  return {variant,
+          "distances are sought by the volumes of triangles, which swept rectangles bound best",
+          0};
+}
+
+/// Of a motion that is not known.
 Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes) {
   set_recommended(variant);
-  if (variant.query == "distance")
-    return {variant,
-            "distances are sought by the volumes of triangles, which swept rectangles "
-            "bound best"};
+  if (variant.query == "distance") return recommended_for_distances(variant);
   const double elongated = elongation(meshes);
   std::ostringstream measured;
   measured << std::setprecision(3) << elongated;
   if (elongated < long_triangles)
     return {variant, "triangles are hardly longer than wide (" + measured.str() +
-                         "): boxes along the mesh's axes, cut by a slab, fit them and cost least"};
-  set_kernel(variant, "mixed");
-  variant.volume = "obb", variant.strategy = "margins";
-  variant.build = "bottom-up", variant.fit = "tight", variant.leaf_size = 4;
-  return {variant, "triangles are long (" + measured.str() +
-                       "): oriented boxes fit them, others are mostly empty"};
+                         "): boxes along the mesh's axes, cut by a slab, fit them and cost least",
+            0};
+  return {as<RecommendedOriented>(variant),
+          "triangles are long (" + measured.str() +
+              "): oriented boxes fit them, others are mostly empty",
+          0};
+}
+
+Trace part_of(const Trace& trace, std::span<const std::size_t> frames) {
+  Trace part{frames.size(), trace.objects, {}};
+  const std::size_t length = 7 * trace.objects;
+  for (const std::size_t frame : frames)
+    part.values.insert(part.values.end(), trace.values.begin() + frame * length,
+                       trace.values.begin() + (frame + 1) * length);
+  return part;
+}
+
+Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const Trace& trace) {
+  const auto frames = sampled_frames(trace.frames);
+  std::size_t triangles = 0;
+  for (const auto& mesh : meshes) triangles += mesh.triangles.size();
+  if (variant.query == "distance" || frames.empty() || trace.pairs() == 0 ||
+      triangles > most_triangles_to_sample)
+    return recommended(variant, meshes);
+  const Trace samples = part_of(trace, frames);
+  const double pairs = static_cast<double>(samples.frames) * static_cast<double>(trace.pairs());
+  ReplayOptions options;
+  options.count = Count::on, options.keep_answers = false;
+  Chosen best;
+  double least = std::numeric_limits<double>::infinity();
+  std::ostringstream costs;
+  Candidates::for_each([&]<class Best>(const Candidates::Of<Best>& candidate) {
+    const Variant tried = as<Best>(variant);
+    // The program may have been configured without some volumes.
+    if (wide_fan_out(tried.volume, tried.kernel) == 0) return;
+    const auto counts = replay(meshes, samples, tried, options);
+    const UnitCosts unit = variant.query == "touching" ? candidate.touching : candidate.contacts;
+    const double cost = (static_cast<double>(counts.n_v) * unit.volume +
+                         static_cast<double>(counts.n_p) * unit.triangle) /
+                        pairs;
+    costs << (costs.str().empty() ? "" : ", ") << candidate.name << ' ' << std::setprecision(3)
+          << cost;
+    if (cost < least) least = cost, best = {tried, std::string(candidate.name), 0};
+  });
+  if (best.reason.empty()) return recommended(variant, meshes);
+  best.reason += " cost least in " + std::to_string(frames.size()) + " sampled frames, of " +
+                 std::to_string(trace.frames) + " (expected ns a pair: " + costs.str() + ")";
+  return best;
 }
 
 }  // namespace
@@ -93,9 +150,14 @@ Variant configured(Variant variant, std::string_view configuration) {
 }
 
 Chosen configured(Variant variant, std::string_view configuration,
-                  std::span<const TriangleMesh> meshes) {
-  if (configuration == "recommended") return recommended(std::move(variant), meshes);
-  return {configured(std::move(variant), configuration), ""};
+                  std::span<const TriangleMesh> meshes, const Trace* trace) {
+  if (configuration != "recommended")
+    return {configured(std::move(variant), configuration), "", 0};
+  const auto start = Clock::now();
+  Chosen chosen = trace ? recommended(std::move(variant), meshes, *trace)
+                        : recommended(std::move(variant), meshes);
+  chosen.seconds = seconds_since(start);
+  return chosen;
 }
 
 }  // namespace bvlab

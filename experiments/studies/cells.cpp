@@ -127,16 +127,18 @@ Variant configured_variant_of(const Cell& cell) {
   return cell["configuration"].empty() ? variant : configured(variant, cell["configuration"]);
 }
 
-/// What is recommended depends on the meshes.
-void set_recommended_of_meshes(std::vector<Cell>& cells) {
-  std::map<std::string, Variant> known;
+/// What is recommended depends on the meshes and the motion. It is found once for each of them, also
+/// where the cells are asked for again.
+void set_recommended_of_motions(std::vector<Cell>& cells) {
+  static std::map<std::string, Variant> known;
   for (auto& cell : cells) {
     if (cell["configuration"] != "recommended") continue;
-    const std::string key = cell["mesh"] + "/" + cell["polygons"] + "/" + cell["query"];
+    const std::string key = trace_key(cell) + "/" + cell["query"];
     auto found = known.find(key);
     if (found == known.end()) {
-      const auto meshes = is_public_scene(cell["scene"]) ? prepared(cell).meshes : meshes_of(cell);
-      found = known.emplace(key, configured(variant_of(cell), "recommended", meshes).variant).first;
+      const Prepared ready = prepared(cell);
+      const auto chosen = configured(variant_of(cell), "recommended", ready.meshes, &ready.trace);
+      found = known.emplace(key, chosen.variant).first;
     }
     spell_out(cell, found->second);
   }
@@ -241,7 +243,7 @@ std::vector<Cell> cells_with_answers(const Definition& definition) {
   }
   set_meshes_of_public_scenes(cells);
   set_polygons_of_files(cells);
-  set_recommended_of_meshes(cells);
+  set_recommended_of_motions(cells);
   return cells;
 }
 
