@@ -7,15 +7,14 @@
 /// no property of the meshes that was tried shows that. So where the motion is known, short samples
 /// of it are played by all candidates, and the expected cost
 ///
-///     N_v C_v + N_p C_p
+///     C + N_f C_f + N_v C_v + N_p C_p
 ///
-/// of a pair, with the N counted on the samples and the C below, decides. Counts do not depend on
-/// the machine's load, so the choice is repeatable. Where the motion is not known, the shape of the
-/// triangles decides.
+/// of a pair, with the N counted on the samples and the C below, decides (N_f: entries of fronts).
+/// Counts do not depend on the machine's load, so the choice is repeatable. Where the motion is not
+/// known, the shape of the triangles decides.
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -41,41 +40,62 @@ using RecommendedOriented =
 using RecommendedSmallLeaves = MarginsOver<SlabBox<float>, recommended_fan_out, SiblingsKernel,
                                            builds::BottomUpLocal, Fit::published, 4>;
 
-/// What a test of two volumes (C_v) and of two triangles (C_p) costs, in nanoseconds on the machine
-/// of record real-motions; posing is part of C_v. Only their ratios matter.
+/// What a pair of bodies (C), an entry of a front that is looked at (C_f), a test of two volumes
+/// (C_v) and one of two triangles (C_p) cost, in nanoseconds on the machine of record real-motions;
+/// posing is part of C_v. Only their ratios matter.
 struct UnitCosts {
-  double volume, triangle;
-};
+  double pair, entry, volume, triangle;
 
-/// THE list of candidates, each with its unit costs. These were fitted by least squares of relative
-/// error to the times of 18 motions (touching) and 11 (contacts): eight planning problems, and
-/// bunnies of 500 and 8000 polygons in five kinds of motion.
-struct Candidates {
-  template <class Best>
-  struct Of {
-    using type = Best;
-    std::string_view name;
-    UnitCosts touching, contacts;
-  };
-  template <class Do>
-  static void for_each(Do&& what) {
-    what(Of<Recommended>{"slab-boxes", {5.5, 1.7}, {5.2, 1.2}});
-    what(Of<RecommendedSmallLeaves>{"slab-boxes in small leaves", {6.8, 7.2}, {8.3, 3.1}});
-    what(Of<RecommendedOriented>{"oriented boxes", {6.3, 10.0}, {5.8, 3.4}});
+  /// `front` is the number of entries of all fronts.
+  double operator()(std::size_t pairs, std::size_t front, std::uint64_t n_v,
+                    std::uint64_t n_p) const {
+    return static_cast<double>(pairs) * pair + static_cast<double>(front) * entry +
+           static_cast<double>(n_v) * volume + static_cast<double>(n_p) * triangle;
   }
 };
 
-/// The frames of a motion that are played for the choice: up to sixteen runs of four consecutive
-/// frames, evenly spread over at most a quarter of the motion. None of a motion of fewer than 16.
-inline std::vector<std::size_t> sampled_frames(std::size_t frames) {
-  constexpr std::size_t together = 4, most = 16;
-  const std::size_t runs = std::min(most, frames / (4 * together));
-  std::vector<std::size_t> sampled;
-  for (std::size_t run = 0; run < runs; ++run)
-    for (std::size_t k = 0; k < together; ++k)
-      sampled.push_back((2 * run + 1) * frames / (2 * runs) - together / 2 + k);
-  return sampled;
+/// A configuration that may be recommended, and its unit costs.
+template <class Best>
+struct RecommendedCandidate {
+  std::string_view name;
+  UnitCosts touching, contacts;
+
+  template <class Query>
+  const UnitCosts& costs() const {
+    return Query::one_hit_is_enough ? touching : contacts;
+  }
+};
+
+/// Calls `what` with each candidate. Unit costs were fitted by least squares of relative error to
+/// the times of 18 motions (touching) and 11 (contacts): planning problems, and bunnies of 500 and
+/// 8000 polygons in five kinds of motion.
+template <class Do>
+void for_each_candidate(Do&& what) {
+  what(RecommendedCandidate<Recommended>{"slab-boxes", {15, 5.2, 5.2, 1.6}, {184, 5.2, 5.2, 1.2}});
+  what(RecommendedCandidate<RecommendedSmallLeaves>{
+      "slab-boxes in small leaves", {14, 6.2, 6.5, 5.3}, {184, 6.2, 8.3, 3.1}});
+  what(RecommendedCandidate<RecommendedOriented>{
+      "oriented boxes", {18, 10.1, 5.7, 8.8}, {184, 10.1, 5.8, 3.4}});
 }
+
+/// The frames of a motion that are played for the choice: up to sixteen runs of `run` consecutive
+/// frames, evenly spread over at most a quarter of the motion. None of a motion of fewer than 24.
+struct SampledFrames {
+  static constexpr std::size_t run = 6, uncounted = 3, most_runs = 16;
+  std::vector<std::size_t> frames;
+
+  explicit SampledFrames(std::size_t length) {
+    const std::size_t runs = std::min(most_runs, length / (4 * run));
+    for (std::size_t i = 0; i < runs; ++i)
+      for (std::size_t k = 0; k < run; ++k)
+        frames.push_back((2 * i + 1) * length / (2 * runs) - run / 2 + k);
+  }
+  /// Whether frames[k] is counted. The first of a run are not: bodies have been put elsewhere, and
+  /// fronts begin anew.
+  static bool counted(std::size_t k) { return k % run >= uncounted; }
+  /// How many are counted.
+  std::size_t size() const { return frames.size() / run * (run - uncounted); }
+};
 /// Meshes of more triangles in all are not built three times for a choice.
 inline constexpr std::size_t most_triangles_to_sample = 200'000;
 
@@ -93,47 +113,52 @@ decltype(auto) with_recommended(std::span<const TriangleMesh> meshes, Visit&& vi
   return visit(std::type_identity<RecommendedOriented>());
 }
 
-/// What `frames` cost a pair by one candidate, in the unit of its unit costs. `frames[k]` has the
-/// poses of all bodies; body i has mesh i mod their number. `make_query(p)` as in WidePairs::frame.
+/// What the counted of `samples` cost by one candidate, in the unit of its unit costs. samples[k]
+/// has the poses of all bodies; body i has mesh i mod their number. `make_query(p)` returns the
+/// query of pair p, as for WidePairs::frame.
 template <class Best, class MakeQuery>
 double expected_cost(std::span<const TriangleMesh> meshes,
-                     std::span<const std::vector<Pose>> frames, const UnitCosts& costs,
+                     std::span<const std::vector<Pose>> samples, const UnitCosts& costs,
                      MakeQuery&& make_query) {
-  if (frames.empty()) return 0;
+  if (samples.empty()) return 0;
   std::vector<typename Best::Hierarchy> hierarchies;
   for (const auto& mesh : meshes) hierarchies.push_back(Best::hierarchy(mesh));
   std::vector<typename Best::Shape> shapes;
-  for (std::size_t i = 0; i < frames[0].size(); ++i)
+  for (std::size_t i = 0; i < samples[0].size(); ++i)
     shapes.push_back({&meshes[i % meshes.size()], &hierarchies[i % meshes.size()]});
   typename Best::Pairs pairs(shapes, all_object_pairs(static_cast<std::uint32_t>(shapes.size())));
-  Counting counter;
-  for (const auto& poses : frames) pairs.frame(poses, counter, make_query, [](auto&&...) {});
-  return static_cast<double>(counter.n_v) * costs.volume +
-         static_cast<double>(counter.n_p) * costs.triangle;
+  double cost = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    Counting counter;
+    pairs.frame(samples[k], counter, make_query, [](auto&&...) {});
+    if (SampledFrames::counted(k))
+      cost += costs(pairs.pairs().size(), pairs.front_size(), counter.n_v, counter.n_p);
+  }
+  return cost;
 }
 
-/// The same for a motion that is known: `frames[k]` has the poses of all bodies in frame k.
-/// `make_query(p)` returns the query of pair p, as in WidePairs::frame.
+/// `with_recommended` for a motion that is known: `frames[k]` has the poses of all bodies in frame
+/// k. Builds a hierarchy of each mesh for each candidate.
 template <class MakeQuery, class Visit>
 decltype(auto) with_recommended(std::span<const TriangleMesh> meshes,
                                 std::span<const std::vector<Pose>> frames, MakeQuery&& make_query,
                                 Visit&& visit) {
   using Query = std::remove_cvref_t<decltype(make_query(std::size_t{0}))>;
   std::vector<std::vector<Pose>> samples;
-  for (const std::size_t frame : sampled_frames(frames.size())) samples.push_back(frames[frame]);
+  for (const std::size_t frame : SampledFrames(frames.size()).frames)
+    samples.push_back(frames[frame]);
   std::size_t triangles = 0;
   for (const auto& mesh : meshes) triangles += mesh.triangles.size();
   if (samples.empty() || triangles > most_triangles_to_sample)
     return with_recommended(meshes, visit);
-  std::array<double, 3> cost;
-  std::size_t k = 0;
-  Candidates::for_each([&]<class Best>(const Candidates::Of<Best>& candidate) {
-    cost[k++] = expected_cost<Best>(
-        meshes, samples, Query::one_hit_is_enough ? candidate.touching : candidate.contacts,
-        make_query);
+  std::vector<double> cost;
+  for_each_candidate([&]<class Best>(const RecommendedCandidate<Best>& candidate) {
+    cost.push_back(
+        expected_cost<Best>(meshes, samples, candidate.template costs<Query>(), make_query));
   });
-  if (cost[0] <= cost[1] && cost[0] <= cost[2]) return visit(std::type_identity<Recommended>());
-  if (cost[1] <= cost[2]) return visit(std::type_identity<RecommendedSmallLeaves>());
+  const auto least = std::min_element(cost.begin(), cost.end()) - cost.begin();
+  if (least == 0) return visit(std::type_identity<Recommended>());
+  if (least == 1) return visit(std::type_identity<RecommendedSmallLeaves>());
   return visit(std::type_identity<RecommendedOriented>());
 }
 

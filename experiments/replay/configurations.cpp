@@ -53,7 +53,8 @@ constexpr Configuration list[] = {
     {"recommended",
      "touching and contacts, with margins: slab-box under the kernel siblings, built "
      "top-down-surface-area, 16 triangles a leaf; or the same built bottom-up, 4 a leaf; or obb "
-     "under mixed, built bottom-up, fit tight, 4 a leaf: what costs least in counted samples of the "
+     "under mixed, built bottom-up, fit tight, 4 a leaf: what costs least in counted samples of "
+     "the "
      "motion, or suits the meshes where the motion is not known; distance: rss in binary trees, "
      "built bottom-up, fit tight, one a leaf, recursive",
      set_recommended},
@@ -65,8 +66,7 @@ constexpr Configuration list[] = {
 
 Chosen recommended_for_distances(const Variant& variant) {
   return {variant,
-          "distances are sought by the volumes of triangles, which swept rectangles bound best",
-          0};
+          "distances are sought by the volumes of triangles, which swept rectangles bound best", 0};
 }
 
 /// Of a motion that is not known.
@@ -77,8 +77,9 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes) {
   std::ostringstream measured;
   measured << std::setprecision(3) << elongated;
   if (elongated < long_triangles)
-    return {variant, "triangles are hardly longer than wide (" + measured.str() +
-                         "): boxes along the mesh's axes, cut by a slab, fit them and cost least",
+    return {variant,
+            "triangles are hardly longer than wide (" + measured.str() +
+                "): boxes along the mesh's axes, cut by a slab, fit them and cost least",
             0};
   return {as<RecommendedOriented>(variant),
           "triangles are long (" + measured.str() +
@@ -96,35 +97,37 @@ Trace part_of(const Trace& trace, std::span<const std::size_t> frames) {
 }
 
 Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const Trace& trace) {
-  const auto frames = sampled_frames(trace.frames);
+  const SampledFrames samples(trace.frames);
   std::size_t triangles = 0;
   for (const auto& mesh : meshes) triangles += mesh.triangles.size();
-  if (variant.query == "distance" || frames.empty() || trace.pairs() == 0 ||
+  if (variant.query == "distance" || samples.frames.empty() || trace.pairs() == 0 ||
       triangles > most_triangles_to_sample)
     return recommended(variant, meshes);
-  const Trace samples = part_of(trace, frames);
-  const double pairs = static_cast<double>(samples.frames) * static_cast<double>(trace.pairs());
+  const Trace sampled = part_of(trace, samples.frames);
   ReplayOptions options;
-  options.count = Count::on, options.keep_answers = false;
+  options.count = Count::on, options.keep_answers = false, options.keep_series = true;
   Chosen best;
   double least = std::numeric_limits<double>::infinity();
   std::ostringstream costs;
-  Candidates::for_each([&]<class Best>(const Candidates::Of<Best>& candidate) {
+  for_each_candidate([&]<class Best>(const RecommendedCandidate<Best>& candidate) {
     const Variant tried = as<Best>(variant);
     // The program may have been configured without some volumes.
     if (wide_fan_out(tried.volume, tried.kernel) == 0) return;
-    const auto counts = replay(meshes, samples, tried, options);
-    const UnitCosts unit = variant.query == "touching" ? candidate.touching : candidate.contacts;
-    const double cost = (static_cast<double>(counts.n_v) * unit.volume +
-                         static_cast<double>(counts.n_p) * unit.triangle) /
-                        pairs;
-    costs << (costs.str().empty() ? "" : ", ") << candidate.name << ' ' << std::setprecision(3)
+    const UnitCosts& unit = variant.query == "touching" ? candidate.touching : candidate.contacts;
+    const auto series = replay(meshes, sampled, tried, options).series;
+    double cost = 0;
+    for (std::size_t k = 0; k < series.size(); ++k)
+      if (SampledFrames::counted(k))
+        cost += unit(trace.pairs(), series[k].front, series[k].n_v, series[k].n_p);
+    cost /= static_cast<double>(samples.size() * trace.pairs());
+    costs << (costs.tellp() > 0 ? ", " : "") << candidate.name << ' ' << std::setprecision(3)
           << cost;
     if (cost < least) least = cost, best = {tried, std::string(candidate.name), 0};
   });
   if (best.reason.empty()) return recommended(variant, meshes);
-  best.reason += " cost least in " + std::to_string(frames.size()) + " sampled frames, of " +
-                 std::to_string(trace.frames) + " (expected ns a pair: " + costs.str() + ")";
+  best.reason += " cost least in " + std::to_string(samples.frames.size()) +
+                 " sampled frames, of " + std::to_string(trace.frames) +
+                 " (expected ns a pair: " + costs.str() + ")";
   return best;
 }
 
@@ -151,8 +154,7 @@ Variant configured(Variant variant, std::string_view configuration) {
 
 Chosen configured(Variant variant, std::string_view configuration,
                   std::span<const TriangleMesh> meshes, const Trace* trace) {
-  if (configuration != "recommended")
-    return {configured(std::move(variant), configuration), "", 0};
+  if (configuration != "recommended") return {configured(std::move(variant), configuration), "", 0};
   const auto start = Clock::now();
   Chosen chosen = trace ? recommended(std::move(variant), meshes, *trace)
                         : recommended(std::move(variant), meshes);

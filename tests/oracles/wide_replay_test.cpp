@@ -111,6 +111,19 @@ TEST(WideReplays, CountWhatTheyDo) {
   }
 }
 
+/// Where bodies are near each other and do not touch, margins keep fronts: the same for any number
+/// of threads.
+TEST(WideReplays, MarginsHaveFrontsWithALength) {
+  const Played slow = played({"slow", {{"knot", 480}}, walk(6, 60, 2.5, 0.001, 0.1, 0)});
+  for (const char* kernel : {"siblings", "mixed"}) {
+    Variant variant = wide("touching", kernel);
+    variant.strategy = "margins";
+    const double one = replay(slow.meshes, slow.trace, variant, options(1)).front;
+    EXPECT_GT(one, 0) << kernel;
+    EXPECT_EQ(one, replay(slow.meshes, slow.trace, variant, options(2)).front);
+  }
+}
+
 TEST(WideReplays, RefuseWhatThereIsNot) {
   const auto refused = [](auto change) {
     Variant variant = wide("touching");

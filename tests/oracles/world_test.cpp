@@ -124,7 +124,7 @@ TEST(World, RecommendedForItsMeshesGivesTheAnswersOfAllPairs) {
       for (auto& vertex : mesh.vertices) vertex[0] *= stretch;
     const auto truth = replay(scene.meshes, scene.trace, {}, {}).touching;
     with_recommended(scene.meshes, [&]<class Best>(std::type_identity<Best>) {
-      EXPECT_EQ((std::is_same_v<Best, RecommendedForLongTriangles>), stretch > 1);
+      EXPECT_EQ((std::is_same_v<Best, RecommendedOriented>), stretch > 1);
       std::vector<typename Best::Hierarchy> trees;
       for (const auto& mesh : scene.meshes) trees.push_back(Best::hierarchy(mesh));
       std::vector<typename Best::Shape> shapes;

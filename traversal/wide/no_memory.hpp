@@ -7,6 +7,7 @@
 ///   begin_frame<Query>()                    another query than before starts without memory
 ///   move(i, body, pose, culling, origin)    body i is at `pose`
 ///   rest(i)                                 body i does not move
+///   front_size(pair), front_size()          entries of the front of one pair, of all
 ///   require(body, pose)                     a traversal is about to need the body
 ///   answer_valid<Query>(pair, bodies)       whether the last answer holds, by one comparison
 ///   repeat(pair, query)                     gives a query the last answer
@@ -58,6 +59,7 @@ class NoMemory {
                      body.orthonormal_pose().error_bound);
   }
   static void rest(std::size_t) {}
+  static constexpr std::size_t front_size(std::size_t = 0) { return 0; }
   template <class Body>
   static void require(Body&, const Pose&) {}
 

@@ -28,6 +28,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -50,7 +51,9 @@ class WideMargins {
     bodies_.emplace_back(HierarchyExtent{sphere.centre, sphere.radius, reach, 0});
     displacements_.push_back(0), steps_.push_back(0), rotations_.push_back(0), epochs_.push_back(0);
   }
-  void resize(std::size_t pairs) { answers_.resize(pairs), kept_.resize(pairs); }
+  void resize(std::size_t pairs) {
+    answers_.resize(pairs), kept_.resize(pairs), front_sizes_.resize(pairs);
+  }
 
   /// Forgets pair p, which has parted.
   void forget(std::size_t p) {
@@ -58,7 +61,13 @@ class WideMargins {
     Kept& kept = kept_[p];
     kept.deadline = 0, kept.was_apart = kept.touched_again = false;
     kept.crossing.reset(), kept.rest = 0, kept.next_rest = 1;
-    kept.front.clear(), kept.pause = {};
+    kept.front.clear(), kept.pause = {}, front_sizes_[p] = 0;
+  }
+
+  /// The entries of the front of pair p, and of all pairs.
+  std::size_t front_size(std::size_t p) const { return front_sizes_[p]; }
+  std::size_t front_size() const {
+    return std::accumulate(front_sizes_.begin(), front_sizes_.end(), std::size_t{0});
   }
 
   /// Another query than in the last frame starts without memory.
@@ -67,6 +76,7 @@ class WideMargins {
     if (last_query_ == &Query::name) return;
     std::fill(answers_.begin(), answers_.end(), Answer{});
     std::fill(kept_.begin(), kept_.end(), Kept{});
+    std::fill(front_sizes_.begin(), front_sizes_.end(), 0);
     last_query_ = &Query::name;
   }
   /// Body i is at `pose` in this frame. Its own pose is set when a traversal needs it.
@@ -113,7 +123,7 @@ class WideMargins {
   void apart(std::size_t p, const ObjectPair& pair, double gap) {
     Kept& kept = kept_[p];
     answers_[p] = {unknown, epochs(pair), false};
-    kept.crossing.reset(), kept.front.clear();
+    kept.crossing.reset(), kept.front.clear(), front_sizes_[p] = 0;
     kept.was_apart = true, kept.touched_again = false;
     extend_validity(p, pair, gap);
   }
@@ -167,7 +177,7 @@ class WideMargins {
         --kept.rest;
       else
         kept.crossing = found.crossing();
-      kept.front.clear();
+      kept.front.clear(), front_sizes_[p] = 0;
       return;
     }
     if (found.front()) {
@@ -180,6 +190,7 @@ class WideMargins {
       else
         front.complete();
       if (worn || front.overgrown()) front.clear();
+      front_sizes_[p] = static_cast<std::uint32_t>(front.size());
     }
     // A smaller gap would hardly last until the next frame.
     const double gap = found.gap();
@@ -289,6 +300,7 @@ class WideMargins {
   std::vector<std::uint32_t> epochs_;
   std::vector<Answer> answers_;
   std::vector<Kept> kept_;
+  std::vector<std::uint32_t> front_sizes_;  // of kept_, apart from it, to be summed quickly
   const std::string_view* last_query_ = nullptr;
 };
 

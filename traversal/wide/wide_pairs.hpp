@@ -108,9 +108,10 @@ class WidePairs {
   }
 
   const std::vector<ObjectPair>& pairs() const { return pairs_; }
-  /// Fronts of this kind have no length that compares with those of other strategies.
-  std::size_t front_size() const { return 0; }
-  std::size_t front_size(std::uint32_t) const { return 0; }
+  /// Entries of all fronts, or of one pair's. An entry is a step's pair of nodes with the lanes it
+  /// closed, or a triangle with a leaf.
+  std::size_t front_size() const { return memory_.front_size(); }
+  std::size_t front_size(std::uint32_t slot) const { return memory_.front_size(slot); }
 
  private:
   static constexpr std::size_t at_once = 2;

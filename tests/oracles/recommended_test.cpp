@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// What is recommended for a motion: the program and the library choose alike, repeatably, by
+/// counts of samples, and whatever is chosen answers as recursion does.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <type_traits>
+#include <vector>
+
+#include "experiments/replay/configurations.hpp"
+#include "tests/oracles/settings.hpp"
+#include "traversal/queries.hpp"
+#include "traversal/recommended_for.hpp"
+
+namespace bvlab {
+namespace {
+
+TEST(SampledFrames, LieInTheMotionAndAreAtMostAQuarterOfIt) {
+  for (std::size_t length = 0; length < 3000; length += 1 + length / 7) {
+    const SampledFrames samples(length);
+    EXPECT_EQ(samples.frames.empty(), length < 24) << length;
+    EXPECT_LE(4 * samples.frames.size(), length);
+    std::size_t counted = 0;
+    for (std::size_t k = 0; k < samples.frames.size(); ++k) {
+      EXPECT_LT(samples.frames[k], length);
+      if (k > 0) EXPECT_GT(samples.frames[k], samples.frames[k - 1]) << "each frame once, in order";
+      if (SampledFrames::counted(k)) {
+        EXPECT_EQ(samples.frames[k], samples.frames[k - 1] + 1);
+        ++counted;
+      }
+    }
+    EXPECT_EQ(counted, samples.size());
+  }
+}
+
+std::vector<std::vector<Pose>> frames_of(const Trace& trace) {
+  std::vector<std::vector<Pose>> frames(trace.frames, std::vector<Pose>(trace.objects));
+  for (std::size_t k = 0; k < trace.frames; ++k) trace.poses(k, frames[k]);
+  return frames;
+}
+
+/// The volume, the build and the leaf size of what the library recommends.
+template <class MakeQuery>
+Variant by_library(const Played& scene, MakeQuery&& make_query) {
+  const auto frames = frames_of(scene.trace);
+  return with_recommended(scene.meshes, frames, make_query,
+                          []<class Best>(std::type_identity<Best>) {
+                            Variant variant;
+                            variant.volume = Best::Volume::name, variant.build = Best::Build::name;
+                            variant.leaf_size = Best::leaf_size;
+                            return variant;
+                          });
+}
+
+/// Bodies that drift slowly past each other, that wander fast, and thin plates.
+std::vector<Played> scenes() {
+  std::vector<Played> all{played({"slow", {{"knot", 2000}}, walk(6, 200, 3, 0.001, 0.1, 0)}),
+                          played({"fast", {{"bumpy-sphere", 1280}}, walk(6, 200, 3, 0.1, 9, 0)}),
+                          played({"thin", {{"box", 300}}, walk(5, 100, 2, 0.02, 3, 0)})};
+  for (auto& vertex : all[2].meshes[0].vertices) vertex[0] *= 20;
+  return all;
+}
+
+TEST(Recommended, ProgramAndLibraryChooseAlikeAndAnswersStay) {
+  std::set<std::string> chosen_volumes;
+  for (const auto& scene : scenes())
+    for (const char* query : {"touching", "contacts"}) {
+      Variant variant;
+      variant.query = query;
+      const Chosen chosen = configured(variant, "recommended", scene.meshes, &scene.trace);
+      const Chosen again = configured(variant, "recommended", scene.meshes, &scene.trace);
+      EXPECT_EQ(chosen.reason, again.reason);
+      EXPECT_NE(chosen.reason.find("sampled frames"), std::string::npos) << chosen.reason;
+      std::vector<Contact> found;
+      const Variant library = std::string_view(query) == "touching"
+                                  ? by_library(scene, [](std::size_t) { return Touching(); })
+                                  : by_library(scene, [&](std::size_t) { return Contacts(found); });
+      EXPECT_EQ(chosen.variant.volume, library.volume);
+      EXPECT_EQ(chosen.variant.build, library.build);
+      EXPECT_EQ(chosen.variant.leaf_size, library.leaf_size);
+      const auto truth = replay(scene.meshes, scene.trace, variant, {});
+      const auto result = replay(scene.meshes, scene.trace, chosen.variant, {});
+      EXPECT_EQ(result.touching, truth.touching);
+      EXPECT_EQ(result.contacts, truth.contacts);
+      chosen_volumes.insert(chosen.variant.volume);
+    }
+  EXPECT_GT(chosen_volumes.size(), 1u) << "the scenes are to differ in what suits them";
+}
+
+/// Without enough frames to sample the meshes decide, as where no motion is given.
+TEST(Recommended, ShortMotionsAreDecidedByTheMeshes) {
+  for (const double stretch : {1.0, 20.0}) {
+    Played scene = played(settings(23)[0]);
+    for (auto& mesh : scene.meshes)
+      for (auto& vertex : mesh.vertices) vertex[0] *= stretch;
+    const Chosen of_motion = configured({}, "recommended", scene.meshes, &scene.trace);
+    const Chosen of_meshes = configured({}, "recommended", scene.meshes);
+    EXPECT_EQ(of_motion.reason, of_meshes.reason);
+    EXPECT_EQ(of_motion.variant.volume, stretch > 1 ? "obb" : "slab-box");
+    EXPECT_EQ(by_library(scene, [](std::size_t) { return Touching(); }).volume,
+              of_motion.variant.volume);
+  }
+}
+
+}  // namespace
+}  // namespace bvlab
