@@ -18,8 +18,9 @@
 
 #include "hierarchies/geometry/written_out.hpp"
 #include "traversal/body.hpp"
-#include "traversal/gather.hpp"
-#include "traversal/queries/candidate.hpp"
+#include "traversal/no_front.hpp"
+#include "traversal/queries/touching.hpp"
+#include "traversal/traverse.hpp"
 
 namespace bvlab {
 
@@ -64,13 +65,78 @@ struct BudgetedAnswer {
   std::uint64_t tests = 0;  ///< volume tests made
 };
 
+/// A pair of nodes that may touch, and the diameter of its smaller patch.
+struct PairOfPatches {
+  float size;
+  NodePair pair;
+  bool operator<(const PairOfPatches& other) const { return size < other.size; }
+};
+
+/// The front of a traversal within a budget. Its sweep is the whole run: largest pairs first, as
+/// many at once as the traversal has lanes. What is left in the queue is not decided.
+class LargestFirst : public NoFront {
+ public:
+  /// The sizes belong to the hierarchies that are traversed. The queue, a heap, must be empty.
+  LargestFirst(const PatchSizes& sizes_a, const PatchSizes& sizes_b, std::uint64_t budget,
+               std::vector<PairOfPatches>& queue)
+      : sizes_a_(sizes_a), sizes_b_(sizes_b), left_(budget), queue_(queue) {}
+
+  template <class Traversal>
+  bool sweep(Traversal& traversal) {
+    push({0, 0});
+    bool satisfied = false;
+    while (!queue_.empty() && left_ > 0 && !satisfied) {
+      std::array<NodePair, Traversal::W> taken;
+      const std::size_t count = take(taken);
+      const std::uint64_t all = (std::uint64_t{2} << (count - 1)) - 1;
+      std::uint64_t open = ~traversal.culled(count, [&](std::size_t i) { return taken[i]; }) & all;
+      for (; open; open &= open - 1)
+        expand(traversal, taken[static_cast<std::size_t>(std::countr_zero(open))]);
+      satisfied = traversal.flush();
+    }
+    return satisfied;
+  }
+
+ private:
+  void push(const NodePair& pair) {
+    queue_.push_back({std::min(sizes_a_[pair.a], sizes_b_[pair.b]), pair});
+    std::push_heap(queue_.begin(), queue_.end());
+  }
+
+  template <std::size_t W>
+  std::size_t take(std::array<NodePair, W>& taken) {
+    std::size_t count = 0;
+    for (; count < W && !queue_.empty() && left_ > 0; ++count, --left_) {
+      std::pop_heap(queue_.begin(), queue_.end());
+      taken[count] = queue_.back().pair;
+      queue_.pop_back();
+    }
+    return count;
+  }
+
+  /// Holds the primitives of two leaves; replaces any other pair by those with the children of the
+  /// larger patch.
+  template <class Traversal>
+  void expand(Traversal& traversal, const NodePair& pair) {
+    const auto& a = traversal.a().node(pair.a);
+    const auto& b = traversal.b().node(pair.b);
+    if (a.count && b.count) return traversal.hold(pair);
+    if (a.count || (!b.count && sizes_b_[pair.b] > sizes_a_[pair.a]))
+      for (std::uint32_t k = 0; k < b.children; ++k) push({pair.a, b.first + k});
+    else
+      for (std::uint32_t k = 0; k < a.children; ++k) push({a.first + k, pair.b});
+  }
+
+  const PatchSizes &sizes_a_, &sizes_b_;
+  std::uint64_t left_;
+  std::vector<PairOfPatches>& queue_;
+};
+
 /// The algorithm, with buffers kept between calls. B is the scalar or batch in which volumes are
 /// tested: a step tests as many pairs as B has lanes, and all steps together no more than the
 /// budget.
 template <class B, BoundingVolume V>
 class Budgeted {
-  static constexpr int W = width<B>();
-
  public:
   /// `test` decides candidates as in `Touching`. The sizes belong to the bodies' hierarchies.
   template <class Counter>
@@ -78,25 +144,14 @@ class Budgeted {
                             const PatchSizes& sizes_b, std::uint64_t budget, TriangleTest test,
                             Counter& counter) {
     queue_.clear();
-    pending_.clear();
+    Touching query(test);
+    const auto statistics = traverse<B>(a, b, query, counter, workspace_,
+                                        LargestFirst(sizes_a, sizes_b, budget, queue_));
     BudgetedAnswer answer;
-    a.require(0, counter);
-    b.require(0, counter);
-    push({std::min(sizes_a[0], sizes_b[0]), 0, 0});
-    while (!queue_.empty() && answer.tests < budget) {
-      const int count = take(budget - answer.tests);
-      answer.tests += static_cast<std::uint64_t>(count);
-      counter.tested(static_cast<std::uint64_t>(count));
-      std::uint64_t open = ~excluded(a, b, count) & ((std::uint64_t{2} << (count - 1)) - 1);
-      bool hit = false;
-      for (; open && !hit; open &= open - 1)
-        hit = split(a, sizes_a, b, sizes_b, std::countr_zero(open), test, counter);
-      if (hit || one_touches(test, counter)) {
-        answer.known = Known::touching;
-        return answer;
-      }
-    }
-    if (queue_.empty())
+    answer.tests = statistics.volumes;
+    if (query.touching())
+      answer.known = Known::touching;
+    else if (queue_.empty())
       answer.known = Known::apart;
     else
       answer.deepest = deepest(a, b);
@@ -104,73 +159,6 @@ class Budgeted {
   }
 
  private:
-  struct InQuestion {
-    float size;
-    std::uint32_t a, b;
-    bool operator<(const InQuestion& other) const { return size < other.size; }
-  };
-
-  void push(const InQuestion& pair) {
-    queue_.push_back(pair);
-    std::push_heap(queue_.begin(), queue_.end());
-  }
-
-  int take(std::uint64_t most) {
-    int count = 0;
-    for (; count < W && !queue_.empty() && static_cast<std::uint64_t>(count) < most; ++count) {
-      std::pop_heap(queue_.begin(), queue_.end());
-      nodes_a_[count] = queue_.back().a, nodes_b_[count] = queue_.back().b;
-      queue_.pop_back();
-    }
-    for (int i = count; i < W; ++i) nodes_a_[i] = nodes_a_[0], nodes_b_[i] = nodes_b_[0];
-    return count;
-  }
-
-  std::uint64_t excluded(const Body<V>& a, const Body<V>& b, int) const {
-    if constexpr (W == 1)
-      return bits(disjoint(a.volumes()[nodes_a_[0]], b.volumes()[nodes_b_[0]]));
-    else
-      return bits(disjoint(gather<B>(a.volumes(), nodes_a_.data()),
-                           gather<B>(b.volumes(), nodes_b_.data())));
-  }
-
-  /// Tests the held candidates and discards them. Returns whether one of them touches.
-  template <class Counter>
-  bool one_touches(TriangleTest test, Counter& counter) {
-    counter.primitives(pending_.size());
-    const bool hit =
-        for_each_hit(pending_, test, [](std::size_t) { return true; }) < pending_.size();
-    pending_.clear();
-    return hit;
-  }
-
-  /// Puts the pairs of children into the queue, or holds the candidates of two leaves. Candidates
-  /// are tested when too many are held, however large the leaves are. Returns whether one touches.
-  template <class Counter>
-  bool split(Body<V>& a, const PatchSizes& sizes_a, Body<V>& b, const PatchSizes& sizes_b, int lane,
-             TriangleTest test, Counter& counter) {
-    constexpr std::size_t portion = 4096;
-    const std::uint32_t i = nodes_a_[lane], j = nodes_b_[lane];
-    const auto& node_a = a.hierarchy().node(i);
-    const auto& node_b = b.hierarchy().node(j);
-    if (node_a.count && node_b.count) {
-      for (std::uint32_t s = node_a.first; s < node_a.first + node_a.count; ++s)
-        for (std::uint32_t t = node_b.first; t < node_b.first + node_b.count; ++t) {
-          pending_.push_back({&a.triangle(s), &b.triangle(t), 0, 0, 0});
-          if (pending_.size() == portion && one_touches(test, counter)) return true;
-        }
-    } else if (node_a.count || (!node_b.count && sizes_b[j] > sizes_a[i])) {
-      b.require(node_b.first, counter);
-      for (std::uint32_t child = node_b.first; child < node_b.first + node_b.children; ++child)
-        push({std::min(sizes_a[i], sizes_b[child]), i, child});
-    } else {
-      a.require(node_a.first, counter);
-      for (std::uint32_t child = node_a.first; child < node_a.first + node_a.children; ++child)
-        push({std::min(sizes_a[child], sizes_b[j]), child, j});
-    }
-    return false;
-  }
-
   /// The largest size, enlarged for rotations that are not quite orthonormal and for rounding to
   /// float64.
   double deepest(const Body<V>& a, const Body<V>& b) const {
@@ -187,9 +175,8 @@ class Budgeted {
     return std::sqrt(1 + defect.norm() + 32 * unit_roundoff<double>);
   }
 
-  std::vector<InQuestion> queue_;  // a heap
-  std::vector<Candidate> pending_;
-  std::array<std::uint32_t, W> nodes_a_, nodes_b_;
+  Workspace workspace_;
+  std::vector<PairOfPatches> queue_;  // a heap
 };
 
 }  // namespace bvlab

@@ -137,6 +137,14 @@ class BlockTree {
     refit_above();
   }
 
+  /// Adds empty leaves for so many boxes; returns the first of their slots.
+  std::uint32_t add_slots(std::size_t count) {
+    const std::uint32_t first = slots();
+    resize_leaves(leaves() + static_cast<std::uint32_t>((count + block_width - 1) / block_width));
+    refit_above();
+    return first;
+  }
+
   /// Makes room for that many leaves; new ones are empty.
   void resize_leaves(std::uint32_t count) {
     const std::size_t had = leaves();

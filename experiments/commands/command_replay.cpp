@@ -53,6 +53,7 @@ std::string name(const std::string& file) {
 void write_page(const Arguments& arguments, std::span<const TriangleMesh> meshes,
                 const Trace& trace) {
   std::vector<std::string> names;
+  names.reserve(arguments.meshes.size());
   for (const auto& file : arguments.meshes) names.push_back(name(file));
   write_whole(arguments.page,
               scene_page(meshes, trace, arguments.variant, {names, name(arguments.trace)}));
@@ -96,10 +97,7 @@ void check(const Arguments& arguments) {
     throw Unusable("--budget", "starts from the roots in every frame; not with --strategy " +
                                    arguments.variant.strategy);
   if (arguments.variant.kernel != "gathered")
-    throw Unusable("--budget", "has a loop of its own; not with " + chosen(arguments));
-  if (frame_of(arguments.variant) != Frame::world)
-    throw Unusable("--budget",
-                   "compares in the world's frame; not with --frame " + arguments.variant.frame);
+    throw Unusable("--budget", "is for the kernel gathered; not with " + chosen(arguments));
   if (arguments.threads != 1) throw Unusable("--budget", "runs in one thread");
 }
 

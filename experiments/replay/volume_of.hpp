@@ -37,7 +37,8 @@ BudgetedResult play_budgeted(std::span<const TriangleMesh> meshes, const Trace& 
   const HierarchiesOf<V> hierarchies(meshes, variant);
   std::vector<PatchSizes> sizes;
   for (std::size_t m = 0; m < meshes.size(); ++m) sizes.emplace_back(meshes[m], hierarchies[m]);
-  Bodies<NativeBatch<typename V::scalar>, V> bodies(hierarchies.shapes(trace.objects));
+  Bodies<NativeBatch<typename V::scalar>, V> bodies(hierarchies.shapes(trace.objects),
+                                                    frame_of(variant));
   result.build_seconds = seconds_since(start);
   const auto pairs = all_object_pairs(static_cast<std::uint32_t>(trace.objects));
   result.known.reserve(trace.frames * pairs.size());

@@ -27,9 +27,10 @@ class Budget : public testing::Test {
     truth_ = replay(meshes_, trace_, Variant{}, {}).touching;
   }
 
-  BudgetedResult within(std::string_view volume, std::uint64_t budget) const {
+  BudgetedResult within(std::string_view volume, std::uint64_t budget, std::uint32_t fan_out = 2,
+                        Frame frame = Frame::world) const {
     Variant variant;
-    variant.volume = volume;
+    variant.volume = volume, variant.fan_out = fan_out, variant.frame = name_of(frame);
     return replay_budgeted(meshes_, trace_, variant, budget, Count::on);
   }
 
@@ -63,6 +64,22 @@ TEST_F(Budget, NeverWrongAndNeverExceeded) {
     }
     EXPECT_EQ(unknown_before, 0u) << volume;
   }
+}
+
+/// On every fan-out and in both frames no answer is wrong, and with enough tests none is missing.
+TEST_F(Budget, FanOutsAndFramesAnswerTheSame) {
+  for (const std::uint32_t fan_out : {2, 4, 8, 16})
+    for (const Frame frame : {Frame::world, Frame::body})
+      for (const auto& [volume, description] : volumes()) {
+        for (const std::uint64_t budget : {13, 200}) {
+          const auto some = within(volume, budget, fan_out, frame);
+          EXPECT_LE(some.n_v, budget * truth_.size());
+          for (std::size_t i = 0; i < truth_.size(); ++i)
+            if (some.known[i] != 2) ASSERT_EQ(some.known[i], truth_[i]) << volume << ' ' << fan_out;
+        }
+        const auto whole = within(volume, 1 << 20, fan_out, frame);
+        EXPECT_EQ(whole.known, truth_) << volume << ' ' << fan_out << ' ' << name_of(frame);
+      }
 }
 
 /// Where surfaces do touch and it is not known yet, at least one of the two patches that meet is no

@@ -126,6 +126,7 @@ TEST(World, RecommendedForItsMeshesGivesTheAnswersOfAllPairs) {
     with_recommended(scene.meshes, [&]<class Best>(std::type_identity<Best>) {
       EXPECT_EQ((std::is_same_v<Best, RecommendedOriented>), stretch > 1);
       std::vector<typename Best::Hierarchy> trees;
+      trees.reserve(scene.meshes.size());
       for (const auto& mesh : scene.meshes) trees.push_back(Best::hierarchy(mesh));
       std::vector<typename Best::Shape> shapes;
       for (std::size_t i = 0; i < scene.trace.objects; ++i)

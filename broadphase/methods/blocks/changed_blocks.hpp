@@ -125,10 +125,7 @@ class ChangedBlocks {
     new_boxes_.clear();
     for (const std::uint32_t id : newcomers_) new_boxes_.push_back(boxes[id]);
     const auto order = newcomers_order_(new_boxes_, joined_.shares().threads());
-    const std::uint32_t first = tree_.slots();
-    tree_.resize_leaves(tree_.leaves() +
-                        static_cast<std::uint32_t>((order.size() + block_width - 1) / block_width));
-    tree_.refit_above();
+    const std::uint32_t first = tree_.add_slots(order.size());
     changed_.resize(tree_.leaves(), 0);
     was_at_.resize(tree_.leaves());
     slots_.resize(std::max(slots_.size(), boxes.size()));
