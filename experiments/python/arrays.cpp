@@ -18,15 +18,42 @@ std::string shape_text(const std::vector<Axis>& axes) {
   return text + ")";
 }
 
-/// Calls NumPy; whatever it does not take is unusable.
+/// Calls NumPy, or what was given; whatever it does not take is unusable.
 template <class Call>
-py::array asked(const std::string& name, const Call& call) {
+auto asked(const std::string& name, const Call& call) {
   try {
     return call();
   } catch (py::error_already_set& error) {
     if (error.matches(PyExc_MemoryError) || error.matches(PyExc_KeyboardInterrupt)) throw;
     throw Unusable(name, "is no array of numbers: " + std::string(py::str(error.value())));
   }
+}
+
+/// Whether NumPy would go through it entry by entry. Asked in the order of what is common.
+bool is_sequence(const py::handle& given) {
+  PyObject* object = given.ptr();
+  if (PyList_CheckExact(object) || PyTuple_CheckExact(object)) return true;
+  if (PyFloat_Check(object) || PyLong_Check(object) || PyUnicode_Check(object) ||
+      !PySequence_Check(object) || PyObject_CheckBuffer(object))
+    return false;
+  for (const char* made_by : {"__array__", "__array_interface__", "__array_struct__"})
+    if (py::hasattr(given, made_by)) return false;
+  return true;
+}
+
+/// Sequences as lists of lists, each as long as it says, and nested as deep as there are axes: NumPy
+/// goes on through one that never ends, or that holds itself again and again.
+py::object as_lists(const py::handle& given, const std::string& name,
+                    const std::vector<Axis>& axes, std::size_t depth = 0) {
+  const auto as_it_is = py::reinterpret_borrow<py::object>(given);
+  if (!is_sequence(given)) return as_it_is;
+  if (depth == axes.size())
+    throw Unusable(name, "nested deeper than the axes of " + shape_text(axes));
+  const auto entries = asked(name, [&] { return listed(given, name); });
+  if (!entries) return as_it_is;
+  for (std::size_t i = 0; i < entries->size(); ++i)
+    (*entries)[i] = as_lists((*entries)[i], name, axes, depth + 1);
+  return *entries;
 }
 
 /// Masked entries would come in as what stands below the mask.
@@ -56,6 +83,26 @@ bool fits(const py::array& array, const std::vector<Axis>& axes) {
 
 }  // namespace
 
+std::optional<py::list> listed(const py::handle& given, const std::string& name) {
+  if (PyList_CheckExact(given.ptr()) || PyTuple_CheckExact(given.ptr())) return py::list(given);
+  const py::ssize_t length = PyObject_Size(given.ptr());
+  if (length < 0) {
+    if (PyErr_ExceptionMatches(PyExc_MemoryError) || PyErr_ExceptionMatches(PyExc_KeyboardInterrupt))
+      throw py::error_already_set();
+    PyErr_Clear();
+    return {};
+  }
+  py::list entries;
+  for (const py::handle each : py::iter(given)) {
+    if (static_cast<py::ssize_t>(entries.size()) == length)
+      throw Unusable(name, "goes on beyond its length, " + std::to_string(length));
+    entries.append(each);
+    // It may never come back to Python.
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+  return entries;
+}
+
 py::array checked_array(const py::handle& given, const std::string& name, Kind kind,
                         const py::dtype& dtype, const std::vector<Axis>& axes) {
   // The common case: an array as it is wanted.
@@ -68,7 +115,8 @@ py::array checked_array(const py::handle& given, const std::string& name, Kind k
   }
   refuse_masked(given, name);
   const auto numpy = py::module_::import("numpy");
-  const py::array array = asked(name, [&] { return py::array(numpy.attr("asarray")(given)); });
+  const py::object finite = as_lists(given, name, axes);
+  const py::array array = asked(name, [&] { return py::array(numpy.attr("asarray")(finite)); });
   check_kind(array, name, kind);
   if (!fits(array, axes)) {
     // An empty list has no second axis.

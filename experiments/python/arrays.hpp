@@ -8,12 +8,22 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace bvlab {
 
 namespace py = pybind11;
+
+/// Base of what Python sees. `T.__new__(T)` makes an object without a T, and where that is used
+/// pybind11 asks T for fresh memory: there is none to be had. A T is made by std::make_shared.
+struct MadeByCalls {
+  static void* operator new(std::size_t) {
+    throw py::type_error("was made by __new__ alone, and holds nothing: call its class");
+  }
+};
 
 enum class Kind { real, integer };
 
@@ -22,6 +32,10 @@ struct Axis {
   std::string name;
   py::ssize_t length = -1;  ///< any, where negative
 };
+
+/// The entries of what has a length; nothing of what has none, since it might never end. Throws
+/// Unusable, in one line that begins with the name, for what goes on beyond its length.
+std::optional<py::list> listed(const py::handle& given, const std::string& name);
 
 /// The array in `given`: of numbers of that kind and of these axes, in C order. Nothing is copied
 /// where it is so already and `dtype` is its type. Throws Unusable, in one line that begins with

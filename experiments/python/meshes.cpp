@@ -55,7 +55,7 @@ Mesh mesh_from(const py::handle& vertices, const py::handle& faces) {
   TriangleMesh mesh;
   mesh.vertices = vertices_from(vertices);
   mesh.triangles = faces_from(faces, mesh.vertices.size());
-  return {std::make_shared<const TriangleMesh>(std::move(mesh))};
+  return Mesh(std::make_shared<const TriangleMesh>(std::move(mesh)));
 }
 
 /// A Mesh, or anything with `vertices` and `faces`.
@@ -67,18 +67,20 @@ Mesh mesh_of(const py::handle& given) {
                              std::string(py::str(py::type::of(given).attr("__name__"))));
 }
 
-Mesh made(const py::object& vertices, const py::object& faces) {
-  return faces.is_none() ? mesh_of(vertices) : mesh_from(vertices, faces);
+std::shared_ptr<Mesh> made(const py::object& vertices, const py::object& faces) {
+  return std::make_shared<Mesh>(faces.is_none() ? mesh_of(vertices) : mesh_from(vertices, faces));
 }
 
-Mesh shared(TriangleMesh&& mesh) { return {std::make_shared<const TriangleMesh>(std::move(mesh))}; }
+std::shared_ptr<Mesh> shared(TriangleMesh&& mesh) {
+  return std::make_shared<Mesh>(std::make_shared<const TriangleMesh>(std::move(mesh)));
+}
 
-Mesh read(const std::filesystem::path& path) {
+std::shared_ptr<Mesh> read(const std::filesystem::path& path) {
   const py::gil_scoped_release released;
   return shared(read_mesh(path));
 }
 
-Mesh named(const std::string& name, std::size_t polygons) {
+std::shared_ptr<Mesh> named(const std::string& name, std::size_t polygons) {
   const py::gil_scoped_release released;
   return shared(named_mesh(name, polygons).mesh);
 }
@@ -126,13 +128,14 @@ Meshes::Meshes(const py::handle& given) {
   if (one) {
     all.push_back(mesh_of(given));
   } else {
-    if (!py::isinstance<py::iterable>(given))
+    const auto entries = listed(given, "meshes");
+    if (!entries)
       throw Unusable("meshes", "a list of meshes is needed, not " +
                                    std::string(py::str(py::type::of(given).attr("__name__"))));
     // The same object twice is one mesh, also where it is not ours.
     std::unordered_map<PyObject*, std::size_t> known;
     std::vector<py::object> kept;  // so that no other gets its address
-    for (const auto& each : given) {
+    for (const auto& each : *entries) {
       const auto [at, fresh] = known.try_emplace(each.ptr(), all.size());
       all.push_back(fresh ? mesh_of(each) : all[at->second]);
       kept.push_back(py::reinterpret_borrow<py::object>(each));
@@ -157,7 +160,7 @@ Meshes::Meshes(const py::handle& given) {
 }
 
 void add_meshes(py::module_& module) {
-  py::class_<Mesh>(module, "Mesh", py::module_local(), R"(Triangles over shared vertices; read-only.
+  py::class_<Mesh, std::shared_ptr<Mesh>>(module, "Mesh", py::module_local(), R"(Triangles over shared vertices; read-only.
 
 Mesh(vertices, faces)    (n, 3) real, in any unit, and (m, 3) integer: indices of vertices
 Mesh(other)              anything with .vertices and .faces, as trimesh's meshes have

@@ -18,7 +18,9 @@ struct SideBySide {
   std::shared_ptr<const std::vector<TriangleMesh>> copies;
 };
 
-struct Mesh {
+struct Mesh : MadeByCalls {
+  explicit Mesh(std::shared_ptr<const TriangleMesh> of) : triangles(std::move(of)) {}
+
   std::shared_ptr<const TriangleMesh> triangles;
   /// Of the last list of several meshes that began with this one.
   std::shared_ptr<SideBySide> last = std::make_shared<SideBySide>();

@@ -6,6 +6,7 @@
 
 #include "experiments/commands/kinds.hpp"
 #include "experiments/files/unusable.hpp"
+#include "experiments/python/arrays.hpp"
 
 PYBIND11_MODULE(_bvlab, module) {
   namespace py = pybind11;
@@ -33,6 +34,16 @@ PYBIND11_MODULE(_bvlab, module) {
     for (const Kind& kind : kinds()) all.emplace_back(kind.name);
     return all;
   });
+  module.def(
+      "_real_array",
+      [](const py::object& given, const std::string& name,
+         const std::vector<std::pair<std::string, py::ssize_t>>& axes) {
+        std::vector<Axis> wanted;
+        for (const auto& [axis, length] : axes) wanted.push_back({axis, length});
+        return array_of<double>(given, name, Kind::real, wanted);
+      },
+      py::arg("given"), py::arg("name"), py::arg("axes"),
+      "float64, in C order; of each axis its name and length, any where negative.");
   add_meshes(module);
   add_replaying(module);
   add_world(module);

@@ -21,8 +21,11 @@ namespace {
 using namespace py::literals;
 
 /// What `replay` and `boxes` give.
-struct Result {
-  py::object answers, series, frame_seconds;
+struct Result : MadeByCalls {
+  Result(py::object of_all, py::dict sums)
+      : answers(std::move(of_all)), totals(std::move(sums)) {}
+
+  py::object answers, series = py::none(), frame_seconds = py::none();
   py::dict totals;
 };
 
@@ -57,7 +60,7 @@ struct Wanted {
   int threads;
 };
 
-Result play(const py::object& given_meshes, const py::object& given_poses,
+std::shared_ptr<Result> play(const py::object& given_meshes, const py::object& given_poses,
             const VariantWords& words, const Wanted& wanted) {
   Variant variant = variant_from(words);
   check_threads(wanted.threads);
@@ -83,18 +86,18 @@ Result play(const py::object& given_meshes, const py::object& given_poses,
       of_it.set("recommended", chosen.reason).set("choosing_seconds", chosen.seconds);
     return std::pair(std::move(played), std::move(of_it));
   });
-  Result all{py::none(), py::none(), py::none(), dictionary(totals)};
-  if (wanted.answers) all.answers = answers_of(result, trace, variant.query);
-  if (wanted.series) all.series = series_of(std::move(result.series));
+  auto all = std::make_shared<Result>(py::none(), dictionary(totals));
+  if (wanted.answers) all->answers = answers_of(result, trace, variant.query);
+  if (wanted.series) all->series = series_of(std::move(result.series));
   if (wanted.frame_seconds) {
     const auto frames = static_cast<py::ssize_t>(result.frame_seconds.size());
-    all.frame_seconds = taken<double>(std::move(result.frame_seconds), {frames});
+    all->frame_seconds = taken<double>(std::move(result.frame_seconds), {frames});
   }
   return all;
 }
 
 template <class T>
-Result play_boxes(const py::array& array, const BoxReplayOptions& options) {
+std::shared_ptr<Result> play_boxes(const py::array& array, const BoxReplayOptions& options) {
   // Copied: other threads may write to the array while this runs, or resize it, and methods rely on
   // boxes that were checked.
   const auto* first = static_cast<const Box<T>*>(array.data());
@@ -105,10 +108,10 @@ Result play_boxes(const py::array& array, const BoxReplayOptions& options) {
   const py::dict totals = dictionary(totals_of(result, trace, options));
   py::object pairs = py::none();
   if (options.keep_pairs) pairs = taken_rows<std::uint32_t, 3>(std::move(result.pairs));
-  return {pairs, py::none(), py::none(), totals};
+  return std::make_shared<Result>(std::move(pairs), totals);
 }
 
-Result boxes(const py::object& given, const std::string& method, bool coherent,
+std::shared_ptr<Result> boxes(const py::object& given, const std::string& method, bool coherent,
              const std::string& precision, int threads, bool answers) {
   check_threads(threads);
   BoxReplayOptions options;
@@ -166,7 +169,7 @@ py::object total(const Result& result, const char* key) {
 }
 
 void add_result(py::module_& module) {
-  py::class_<Result> type(
+  py::class_<Result, std::shared_ptr<Result>> type(
       module, "Result", py::module_local(),
       "The result of replay and boxes: answers, and totals as --json has them.");
   type.def_readonly("answers", &Result::answers,

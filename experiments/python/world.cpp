@@ -28,7 +28,7 @@ namespace {
 
 using namespace py::literals;
 
-class PyWorld {
+class PyWorld : public MadeByCalls {
  public:
   PyWorld(const py::object& meshes, std::size_t objects, const VariantWords& words, int threads)
       : meshes_(meshes),
@@ -296,7 +296,7 @@ class PyWorld {
 
 void add_world(py::module_& module) {
   const Variant d = default_variant();
-  py::class_<PyWorld>(
+  py::class_<PyWorld, std::shared_ptr<PyWorld>>(
       module, "World", py::module_local(),
       R"(Many moving bodies. Only pairs whose boxes overlap are queried, and only when one of the two has moved.
 
@@ -332,7 +332,7 @@ from several threads run one after the other.)")
                words.configuration = "recommended";
              check(variant_from(words));
              check_threads(threads);
-             return std::make_unique<PyWorld>(meshes, objects, words, threads);
+             return std::make_shared<PyWorld>(meshes, objects, words, threads);
            }),
            "meshes"_a, py::kw_only(), "objects"_a = 0, "volume"_a = py::none(),
            "strategy"_a = py::none(), "fan_out"_a = py::none(), "frame"_a = py::none(),

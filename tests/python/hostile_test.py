@@ -4,6 +4,8 @@
 Under the address sanitizer this is where memory that is not ours would be seen.
 """
 
+import collections
+import itertools
 import os
 import signal
 import threading
@@ -109,6 +111,22 @@ class Converted:
 
     def __array__(self, dtype=None):
         return self.convert()
+
+
+class Saying:
+    """A sequence that says how long it is."""
+
+    def __init__(self, length, entries):
+        self.length, self.entries = length, entries
+
+    def __len__(self):
+        return self.length
+
+    def __iter__(self):
+        return iter(self.entries)
+
+    def __getitem__(self, at):
+        return next(itertools.islice(self.entries, at, None))
 
 
 class Layouts(unittest.TestCase):
@@ -274,16 +292,57 @@ class Arguments(unittest.TestCase):
             def vertices(self):
                 raise OSError("no file")
             faces = FACES
-        for call in (lambda: bvlab.replay(broken(), POSES), lambda: bvlab.World(broken())):
+        for call in (lambda: bvlab.replay(Saying(2, broken()), POSES), lambda: bvlab.World(Saying(2, broken()))):
             self.assertRaisesRegex(KeyError, "no more", call)
         for call in (lambda: bvlab.Mesh(Odd()), lambda: bvlab.replay([Odd()], POSES)):
             self.assertRaises((OSError, ValueError), call)
         for bad in (Converted(lambda: None), Converted(lambda: [1, 2]), Converted(lambda: 1 / 0),
                     (row for row in POSES)):
             self.assertRaises(ValueError, bvlab.replay, [self.mesh], bad)
-        # What can be gone through once is gone through once.
-        np.testing.assert_array_equal(bvlab.replay((each for each in [self.mesh, self.mesh]), POSES).answers,
+        np.testing.assert_array_equal(bvlab.replay(Saying(2, [self.mesh, self.mesh]), POSES).answers,
                                       bvlab.replay([self.mesh], POSES).answers)
+
+    def test_what_never_ends(self):
+        """Without a length it is refused, and with one it is gone through so far."""
+        laughs: list = [0.0]
+        for _ in range(40):
+            laughs = [laughs] * 10
+        itself: list = []
+        itself.append(itself)
+        for bad in (itertools.repeat([0, 0, 0]), Saying(3, itertools.repeat([0, 0, 0])), 
+                    [[0, 0, 0], [0, 0, 0], Saying(3, itertools.repeat(0))], [Saying(3, itertools.count())] * 3, laughs, itself):
+            for call in (lambda bad: bvlab.Mesh(bad, FACES), lambda bad: bvlab.Mesh(VERTICES, bad),
+                         lambda bad: bvlab.replay([self.mesh], bad), bvlab.boxes, lambda bad: bvlab.poses(bad, bad, order="wxyz"),
+                         lambda bad: bvlab.World([self.mesh]).move(0, bad), lambda bad: bvlab.World([self.mesh]).move(bad, POSES)):
+                with self.assertRaises((ValueError, TypeError)) as caught:
+                    call(bad)
+                self.assertRegex(str(caught.exception), "^[^\n]+$")
+        for bad in (itertools.repeat(self.mesh), (each for each in [self.mesh]), Saying(3, itertools.repeat(self.mesh))):
+            for call in (bvlab.World, lambda bad: bvlab.replay(bad, POSES), bvlab.Mesh):
+                with self.assertRaises(ValueError) as caught:
+                    call(bad)
+                self.assertRegex(str(caught.exception), "^mesh(es)?: [^\n]+$")
+
+    def test_sequences_of_ones_own(self):
+        """They are what their entries are, as deep as there are axes."""
+        rows = Saying(len(VERTICES), [Saying(3, row) for row in VERTICES.tolist()])
+        np.testing.assert_array_equal(bvlab.Mesh(rows, collections.deque(map(tuple, FACES.tolist()))).vertices, VERTICES)
+        np.testing.assert_array_equal(bvlab.poses(list(POSES[..., :3]), Saying(3, POSES[..., 3:]), order="wxyz"), POSES)
+
+    def test_objects_that_no_call_made(self):
+        for kind in (bvlab.Mesh, bvlab.World, bvlab.Result):
+            nothing = kind.__new__(kind)
+            uses = [lambda name=name: getattr(nothing, name) for name in dir(kind)
+                    if isinstance(getattr(kind, name), property)]
+            uses += [lambda: repr(nothing) if kind is not bvlab.World else len(nothing)]
+            if kind is bvlab.World:
+                uses += [nothing.update, nothing.touching, nothing.contacts, lambda: nothing.move(0, AT_REST),
+                         lambda: nothing.remove(0), lambda: nothing.distances(1)]
+            if kind is bvlab.Mesh:
+                uses += [lambda: len(nothing), lambda: bvlab.Mesh(nothing), lambda: bvlab.World([nothing]),
+                         lambda: bvlab.replay([self.mesh, nothing], POSES)]
+            for use in uses:
+                self.assertRaisesRegex(TypeError, "^was made by __new__ alone, and holds nothing: call its class$", use)
 
     def test_lengths_of_nothing(self):
         """An array without entries may promise any length."""

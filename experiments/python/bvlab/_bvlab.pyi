@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What of bvlab is C++."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection
 from os import PathLike
 from pathlib import Path
 from typing import Any, Protocol
@@ -25,7 +25,7 @@ class Mesh:
     def faces(self) -> NDArray[np.uint32]: ...
     def __len__(self) -> int: ...
 
-Meshes = Mesh | HasFaces | Iterable[Mesh | HasFaces]
+Meshes = Mesh | HasFaces | Collection[Mesh | HasFaces]
 
 class Result:
     @property

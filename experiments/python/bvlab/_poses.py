@@ -6,6 +6,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _bvlab
+
 ORDERS = {"wxyz": [0, 1, 2, 3], "xyzw": [3, 0, 1, 2]}
 ROUNDING = 1e-6  # by which a matrix may miss being a rotation
 
@@ -44,20 +46,8 @@ def pairs_of(objects: int) -> NDArray[np.uint32]:
 
 def _array(given: ArrayLike, name: str, shape: tuple[int | str, ...]) -> NDArray[np.float64]:
     """float64, finite, of that shape, in which a name stands for any length."""
-    if np.ma.is_masked(given):
-        raise ValueError(f"{name}: has masked entries")
-    try:
-        array = np.asarray(given)
-        if array.dtype.kind not in "fiub":
-            raise ValueError(f"real numbers are needed, not {array.dtype}")
-        fits = array.ndim == len(shape) and all(isinstance(n, str) or n == m for n, m in zip(shape, array.shape))
-        if not fits:
-            wanted = ", ".join(map(str, shape))
-            raise ValueError(f"shape {array.shape}, where ({wanted}) is needed")
-        with np.errstate(all="ignore"):
-            array = array.astype(np.float64)
-    except (TypeError, ValueError) as fault:
-        raise ValueError(f"{name}: {fault}".replace("\n", " ")) from None
+    axes = [(str(n), -1 if isinstance(n, str) else n) for n in shape]
+    array = np.array(_bvlab._real_array(given, name, axes))  # what is checked is what is kept
     wrong = ~np.isfinite(array).reshape(*array.shape[:2], -1).all(axis=-1)
     if wrong.any():
         raise ValueError(f"{name}: not a finite number {_place(wrong)}")
