@@ -11,6 +11,7 @@
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/public/public_scenes.hpp"
 #include "experiments/scenes/scenes.hpp"
+#include "experiments/studies/study.hpp"
 #include "hierarchies/builds.hpp"
 #include "traversal/primitives/precisions.hpp"
 
@@ -56,6 +57,21 @@ std::vector<Named> all_parameters() {
   return all;
 }
 
+std::vector<Named> studies() {
+  std::vector<Named> all;
+  for (const StudyKind* kind : study_kinds())
+    all.push_back({std::string(kind->name), std::string(kind->description)});
+  return all;
+}
+
+std::vector<Named> study_parameters() {
+  std::vector<Named> all;
+  for (const StudyKind* kind : study_kinds())
+    for (const auto& each : kind->parameters())
+      all.push_back({std::string(kind->name) + "." + each.name, each.description()});
+  return all;
+}
+
 constexpr Kind all_kinds[] = {
     {"volumes", volumes},
     {"frames", frames},
@@ -68,6 +84,8 @@ constexpr Kind all_kinds[] = {
     {"precisions", entries<Precisions>},
     {"builds", entries<Builds>},
     {"parameters", all_parameters},
+    {"studies", studies},
+    {"study-parameters", study_parameters},
     {"meshes", [] { return entries_of(formula_meshes()); }},
     {"peers", [] { return entries_of(peers()); }},
 };

@@ -7,6 +7,12 @@
 
 namespace bvlab {
 
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const MethodEntry* entry : method_entries()) names.emplace_back(entry->name);
+  return names;
+}
+
 template <class T>
 std::unique_ptr<AnyMethod<T>> make_method(std::string_view name, const MethodSettings& settings) {
   std::string names;

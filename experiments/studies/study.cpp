@@ -4,9 +4,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <set>
+#include <stdexcept>
 
 #include "experiments/definitions/definition.hpp"
 #include "experiments/definitions/figure_tables.hpp"
@@ -17,9 +15,9 @@ namespace {
 
 /// THE list of kinds.
 const StudyKind* const kinds[] = {&studies::boxes,     &studies::box_precision, &studies::budget,
-                                  &studies::distance,  &studies::memory,
-                                  &studies::posing,    &studies::stability,     &studies::tightness,
-                                  &studies::triangles, &studies::worlds};
+                                  &studies::distance,  &studies::memory,        &studies::posing,
+                                  &studies::stability, &studies::tightness,     &studies::triangles,
+                                  &studies::worlds};
 
 const StudyKind& kind_of(const StudyDefinition& definition) {
   std::string names;
@@ -41,54 +39,36 @@ std::string scalar(const std::string& file, const toml::node& node) {
   fail(file, node, "must be a number, a string or a list of them");
 }
 
-/// Keys that were asked for, so that the others can be refused.
-std::set<std::string>& asked() {
-  thread_local std::set<std::string> keys;
-  return keys;
+const StudyParameter* find(const StudyParameters& all, const std::string& key) {
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const auto& parameter) { return parameter.name == key; });
+  return found == all.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
-std::string text_of(double value) {
-  char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  return {text, end};
+std::span<const StudyKind* const> study_kinds() { return kinds; }
+
+std::vector<std::string> StudyDefinition::words(const std::string& key) const {
+  const StudyParameters all = kind_of(*this).parameters();
+  const StudyParameter* parameter = find(all, key);
+  if (!parameter) throw std::logic_error(kind + " has no parameter " + key);
+  const auto found = parameters.find(key);
+  if (found == parameters.end()) return parameter->fallback;
+  parameter->check(found->second, file);
+  return found->second;
 }
 
-std::vector<std::string> StudyDefinition::strings(const std::string& key,
-                                                  std::vector<std::string> fallback) const {
-  asked().insert(key);
-  const auto found = parameters.find(key);
-  return found == parameters.end() ? fallback : found->second;
-}
-
-std::vector<double> StudyDefinition::numbers(const std::string& key,
-                                             std::vector<double> fallback) const {
-  asked().insert(key);
-  const auto found = parameters.find(key);
-  if (found == parameters.end()) return fallback;
+std::vector<double> StudyDefinition::numbers(const std::string& key) const {
   std::vector<double> values;
-  for (const auto& text : found->second) {
-    double& value = values.emplace_back();
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size())
-      throw Unusable(file, key + " = " + text + ": not a number");
-  }
+  for (const auto& text : words(key)) values.push_back(number_of(text, key, file));
   return values;
 }
 
-double StudyDefinition::number(const std::string& key, double fallback) const {
-  const auto values = numbers(key, {fallback});
-  if (values.size() != 1) throw Unusable(file, key + " must be one number");
-  return values[0];
-}
-
-std::size_t StudyDefinition::whole(const std::string& key, std::size_t fallback,
-                                   std::size_t most) const {
-  const double value = number(key, static_cast<double>(fallback));
-  if (!(value >= 1 && value <= static_cast<double>(most)) || value != std::floor(value))
-    throw Unusable(file, key + " must be a whole number from 1 to " + std::to_string(most));
-  return static_cast<std::size_t>(value);
+std::vector<std::size_t> StudyDefinition::wholes(const std::string& key) const {
+  std::vector<std::size_t> values;
+  for (const double value : numbers(key)) values.push_back(static_cast<std::size_t>(value));
+  return values;
 }
 
 std::optional<StudyDefinition> study_from(const std::string& text, const std::string& file) {
@@ -137,7 +117,18 @@ std::optional<StudyDefinition> study_from(const std::string& text, const std::st
 
 void check(const StudyDefinition& definition) {
   const StudyKind& kind = kind_of(definition);
-  asked().clear();
+  const StudyParameters all = kind.parameters();
+  for (const auto& [key, values] : definition.parameters) {
+    const StudyParameter* parameter = find(all, key);
+    if (!parameter) {
+      std::string names;
+      for (const auto& each : all) names += (names.empty() ? "" : ", ") + each.name;
+      throw Unusable(definition.file, "unknown parameter '" + key + "' of kind " + definition.kind +
+                                          "; there are " + names);
+    }
+    parameter->check(values, definition.file);
+  }
+  if (!kind.check) return;
   try {
     kind.check(definition);
   } catch (const Unusable& fault) {
@@ -146,12 +137,6 @@ void check(const StudyDefinition& definition) {
     if (what.starts_with(definition.file)) throw;
     throw Unusable(definition.file, what);
   }
-  std::string names;
-  for (const auto& key : asked()) names += (names.empty() ? "" : ", ") + key;
-  for (const auto& [key, value] : definition.parameters)
-    if (!asked().contains(key))
-      throw Unusable(definition.file, "unknown parameter '" + key + "' of kind " + definition.kind +
-                                          "; there are " + names);
 }
 
 void check_extends(const StudyDefinition& held, const StudyDefinition& definition) {

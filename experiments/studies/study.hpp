@@ -6,7 +6,7 @@
 ///     kind = "triangles"          # see THE list in study.cpp
 ///     description = "one line"
 ///     repetitions = 5
-///     [parameters]                # numbers, strings, or lists of either; each kind knows its own
+///     [parameters]                # see `bvlab list study-parameters`
 ///     pairs = 50000
 ///     [[figure]]                  # what plots/draw shows of it: see ../definitions/README.md
 #pragma once
@@ -15,6 +15,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,7 @@
 #include "experiments/definitions/figure_tables.hpp"
 #include "experiments/recorder/record.hpp"
 #include "experiments/studies/experiment.hpp"
+#include "experiments/studies/study_parameter.hpp"
 
 namespace bvlab {
 
@@ -30,15 +32,16 @@ class StudyDefinition {
   std::string file, text, kind, name;
   unsigned repetitions = 1;
 
-  /// A list, also where one value was written; the fallback where none was. Asked for is known:
-  /// what nobody asks for is refused by `check`.
-  std::vector<std::string> strings(const std::string& key, std::vector<std::string> fallback) const;
-  std::vector<double> numbers(const std::string& key, std::vector<double> fallback) const;
-  double number(const std::string& key, double fallback) const;
-  /// A whole number from 1 to `most`.
-  std::size_t whole(const std::string& key, std::size_t fallback, std::size_t most) const;
+  /// What was written, or the default of a parameter in the table of its kind. Throws Unusable for
+  /// values that the table does not allow.
+  std::vector<std::string> words(const std::string& key) const;
+  std::vector<double> numbers(const std::string& key) const;
+  std::vector<std::size_t> wholes(const std::string& key) const;
+  std::string word(const std::string& key) const { return words(key).at(0); }
+  double number(const std::string& key) const { return numbers(key).at(0); }
+  std::size_t whole(const std::string& key) const { return wholes(key).at(0); }
 
-  std::map<std::string, std::vector<std::string>> parameters;
+  std::map<std::string, std::vector<std::string>> parameters;  ///< as they were written
   std::vector<FigureTable> figures;
 };
 
@@ -73,12 +76,16 @@ void check_extends(const StudyDefinition& held, const StudyDefinition& definitio
 void run_study(const StudyDefinition& definition, const std::filesystem::path& folder,
                const Progress& progress);
 
-/// One kind of study. `check` asks for every parameter it knows.
+/// One kind of study. `check`, where there is one, refuses what parameters are not together.
 struct StudyKind {
   std::string_view name, description;
+  StudyParameters (*parameters)();
   void (*check)(const StudyDefinition&);
   void (*run)(const StudyDefinition&, const std::filesystem::path& folder, const Progress&);
 };
+
+/// THE list of them.
+std::span<const StudyKind* const> study_kinds();
 
 namespace studies {
 
@@ -94,8 +101,5 @@ extern const StudyKind triangles;
 extern const StudyKind worlds;
 
 }  // namespace studies
-
-/// Digits enough to read the same number again.
-std::string text_of(double value);
 
 }  // namespace bvlab

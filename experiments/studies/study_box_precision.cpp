@@ -27,20 +27,21 @@ struct Settings {
   unsigned seed;
 };
 
-Settings settings_of(const StudyDefinition& definition) {
-  Settings settings;
-  settings.methods = definition.strings("methods", {"blocks", "sort-and-sweep"});
-  for (const auto& method : settings.methods) make_method<float>(method, {});
-  settings.sets = definition.strings("sets", {"random", "adjacent"});
-  for (const auto& set : settings.sets) make_box_set(set, 1, 1);
-  settings.offsets = definition.numbers("offsets", {0, 1e2, 1e4, 1e6});
-  settings.boxes = definition.whole("boxes", 10000, 10'000'000);
-  settings.frames = definition.whole("frames", 5, 1'000'000);
-  settings.seed = static_cast<unsigned>(definition.whole("seed", 1, 1'000'000'000));
-  return settings;
+StudyParameters parameters() {
+  return {
+      words_parameter("methods", {"blocks", "sort-and-sweep"}, "that are compared", method_names()),
+      words_parameter("sets", {"random", "adjacent"}, "of boxes", box_set_names()),
+      numbers_parameter("offsets", {0, 1e2, 1e4, 1e6}, {}, "of all boxes from the origin"),
+      whole_parameter("boxes", 10000, {1, 1e7}, "boxes"),
+      whole_parameter("frames", 5, {1, 1e6}, "frames, the start included"),
+      whole_parameter("seed", 1, seeds, "of the random numbers")};
 }
 
-void check_settings(const StudyDefinition& definition) { settings_of(definition); }
+Settings settings_of(const StudyDefinition& definition) {
+  return {definition.words("methods"),   definition.words("sets"),
+          definition.numbers("offsets"), definition.whole("boxes"),
+          definition.whole("frames"),    static_cast<unsigned>(definition.whole("seed"))};
+}
 
 /// The set drifting, each corner with digits that no float has, all moved by `offset`.
 Frames<double> frames_of(const Settings& settings, const std::string& set, double offset) {
@@ -168,7 +169,7 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
 }  // namespace
 
 const StudyKind studies::box_precision = {
-    "box-precision", "boxes in float against double: pairs too many, too few, and time",
-    check_settings, run};
+    "box-precision", "boxes in float against double: pairs too many, too few, and time", parameters,
+    nullptr, run};
 
 }  // namespace bvlab

@@ -73,63 +73,51 @@ struct Settings {
 
 bool is_file(const std::string& set) { return set.ends_with(".npy"); }
 
+StudyParameters parameters() {
+  const std::vector<std::string> sets = box_set_names(), methods = method_names();
+  StudyParameters all{
+      words_parameter("sets", sets, "of boxes", sets),
+      wholes_parameter("counts", {10000}, {1, 1e8}, "boxes in a set"),
+      words_parameter("motions", {"drift"}, "of the boxes", box_motion_names()),
+      numbers_parameter("displacements", {0.02}, {0, 1e6}, "a frame, in sizes of a box"),
+      wholes_parameter("seed", {1}, seeds, "of the random numbers"),
+      words_parameter("methods", methods, "see `bvlab list methods`", methods),
+      words_parameter("coherent", {"on"}, "whether methods remember frames, or are told who moved",
+                      {"on", "off", "told"}),
+      words_parameter("changes", {"off"}, "whether they say what began and ended", {"on", "off"}),
+      words_parameter("sorts", {"radix"}, "how methods sort", {"radix", "comparison"}),
+      wholes_parameter("threads", {1}, {1, 1024}, "of methods"),
+      words_parameter("peers", {}, "other libraries", box_peer_names()),
+      words_parameter("peers_if_built", {}, "those that not every machine has"),
+      word_parameter("reference", "", "method or peer that the others are compared with; the last"),
+      whole_parameter("frames", 10, {1, 1e6}, "frames, the start included"),
+      whole_parameter("steady_from", 1, {1, 1e6}, "frame from which times are taken"),
+      whole_parameter("plays", 1, {1, 1000}, "of which each frame's fastest counts"),
+      number_parameter("seconds_a_frame", 1, {0}, "after which a variant is given up")};
+  all[0].takes_files = true;
+  return all;
+}
+
 Settings settings_of(const StudyDefinition& definition) {
   Settings s;
-  const auto whole = [&](const std::string& key, double value, double most) {
-    if (!(value >= 1 && value <= most) || value != std::floor(value))
-      throw Unusable(definition.file, key + " must be a whole number from 1 to " + text_of(most));
-    return static_cast<std::size_t>(value);
-  };
-  const auto known = [&](const std::string& key, const std::string& name,
-                         const std::vector<std::string>& names) {
-    std::string all;
-    for (const auto& each : names) {
-      if (each == name) return;
-      all += (all.empty() ? "" : ", ") + each;
-    }
-    throw Unusable(definition.file, key + ": no '" + name + "'; there are " + all);
-  };
-  const auto counts = definition.numbers("counts", {10000});
-  const auto displacements = definition.numbers("displacements", {0.02});
-  for (const double displacement : displacements)
-    if (!(displacement >= 0 && displacement <= 1e6))
-      throw Unusable(definition.file, "displacements must lie between 0 and 1e6");
-  const auto motions = definition.strings("motions", {"drift"});
-  for (const auto& motion : motions) known("motions", motion, box_motion_names());
-  std::vector<unsigned> seeds;
-  for (const double seed : definition.numbers("seed", {1}))
-    seeds.push_back(static_cast<unsigned>(whole("seed", seed, 1e9)));
-  for (const auto& set : definition.strings("sets", box_set_names())) {
-    if (!is_file(set)) known("sets", set, box_set_names());
-    for (const double count : is_file(set) ? std::vector<double>{1} : counts)
-      for (const auto& motion : motions)
-        for (const double displacement : displacements)
-          for (const unsigned seed : seeds)
-            s.cases.push_back({set, motion, whole("counts", count, 1e8), displacement, seed});
-  }
-  const auto coherent = definition.strings("coherent", {"on"});
-  for (const auto& each : coherent) known("coherent", each, {"on", "off", "told"});
-  const auto changes = definition.strings("changes", {"off"});
-  for (const auto& each : changes) known("changes", each, {"on", "off"});
-  std::vector<std::string> method_names;
-  for (const auto* method : method_entries()) method_names.emplace_back(method->name);
-  const auto sorts = definition.strings("sorts", {"radix"});
-  for (const auto& each : sorts) known("sorts", each, {"radix", "comparison"});
-  const auto threads = definition.numbers("threads", {1});
-  for (const auto& method : definition.strings("methods", method_names)) {
-    known("methods", method, method_names);
+  for (const auto& set : definition.words("sets"))
+    for (const std::size_t count :
+         is_file(set) ? std::vector<std::size_t>{1} : definition.wholes("counts"))
+      for (const auto& motion : definition.words("motions"))
+        for (const double displacement : definition.numbers("displacements"))
+          for (const std::size_t seed : definition.wholes("seed"))
+            s.cases.push_back({set, motion, count, displacement, static_cast<unsigned>(seed)});
+  const auto coherent = definition.words("coherent");
+  for (const auto& method : definition.words("methods"))
     for (const auto& c : coherent)
-      for (const auto& reported : changes)
-        for (const auto& sort : sorts)
-          for (const double t : threads)
-            s.variants.push_back(
-                {method, c, reported, sort, static_cast<int>(whole("threads", t, 1024))});
-  }
-  auto peers = definition.strings("peers", {});
-  for (const auto& peer : peers) known("peers", peer, box_peer_names());
+      for (const auto& reported : definition.words("changes"))
+        for (const auto& sort : definition.words("sorts"))
+          for (const std::size_t threads : definition.wholes("threads"))
+            s.variants.push_back({method, c, reported, sort, static_cast<int>(threads)});
+  auto peers = definition.words("peers");
   // Of libraries that not every machine has.
   const auto built = box_peer_names();
-  for (const auto& peer : definition.strings("peers_if_built", {}))
+  for (const auto& peer : definition.words("peers_if_built"))
     if (std::find(built.begin(), built.end(), peer) != built.end()) peers.push_back(peer);
   const bool told = std::find(coherent.begin(), coherent.end(), "told") != coherent.end();
   for (const auto& peer : peers) {
@@ -137,15 +125,18 @@ Settings settings_of(const StudyDefinition& definition) {
     if (told && make_box_peer(peer)->takes_moved())
       s.variants.push_back({peer, "told", "off", "", 1});
   }
-  const std::string reference = definition.strings("reference", {s.variants.back().method}).at(0);
+  const auto references = definition.words("reference");
+  const std::string reference = references.empty() ? s.variants.back().method : references.front();
   while (s.reference < s.variants.size() && s.variants[s.reference].method != reference)
     ++s.reference;
   if (s.reference == s.variants.size())
     throw Unusable(definition.file, "reference: " + reference + " is not among methods and peers");
-  s.frames = static_cast<int>(whole("frames", definition.number("frames", 10), 1e6));
-  s.steady_from = whole("steady_from", definition.number("steady_from", 1), s.frames);
-  s.plays = whole("plays", definition.number("plays", 1), 1000);
-  s.limit_ns = 1e9 * definition.number("seconds_a_frame", 1);
+  s.frames = static_cast<int>(definition.whole("frames"));
+  s.steady_from = definition.whole("steady_from");
+  if (s.steady_from > static_cast<std::size_t>(s.frames))
+    throw Unusable(definition.file, "steady_from must be at most frames");
+  s.plays = definition.whole("plays");
+  s.limit_ns = 1e9 * definition.number("seconds_a_frame");
   return s;
 }
 void check_settings(const StudyDefinition& definition) { settings_of(definition); }
@@ -376,7 +367,8 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
 
 }  // namespace
 
-const StudyKind studies::boxes = {
-    "boxes", "broad-phase methods and peers on sets of boxes, frame by frame", check_settings, run};
+const StudyKind studies::boxes = {"boxes",
+                                  "broad-phase methods and peers on sets of boxes, frame by frame",
+                                  parameters, check_settings, run};
 
 }  // namespace bvlab

@@ -14,25 +14,15 @@
 namespace bvlab {
 namespace {
 
-std::vector<std::uint64_t> budgets_of(const StudyDefinition& definition) {
-  std::vector<std::uint64_t> budgets;
-  for (const double budget : definition.numbers("budgets", {1, 10, 100, 1000})) {
-    if (!(budget >= 0 && budget <= 1e9))
-      throw Unusable(definition.file, "budgets must be from 0 to 1e9");
-    budgets.push_back(static_cast<std::uint64_t>(budget));
-  }
-  return budgets;
-}
-
-void check_settings(const StudyDefinition& definition) {
-  budgets_of(definition);
-  Wandering{definition};
+StudyParameters parameters() {
+  return with_wandering_and_side({wholes_parameter("budgets", {1, 10, 100, 1000}, {0, 1e9},
+                                                   "volume tests for each pair and frame")});
 }
 
 void run(const StudyDefinition& definition, const std::filesystem::path& folder,
          const Progress& progress) {
-  const Wandering wandering(definition);
-  const auto budgets = budgets_of(definition);
+  const Wandering wandering(definition, definition.number("side"));
+  const auto budgets = definition.wholes("budgets");
   StudyRecord record(
       definition, folder,
       {"mesh", "volume", "budget", "repetition", "answers", "touching", "apart", "unknown", "wrong",
@@ -91,6 +81,6 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
 
 const StudyKind studies::budget = {
     "budget", "what is known after a given number of tests, and how deep the rest can be",
-    check_settings, run};
+    parameters, nullptr, run};
 
 }  // namespace bvlab

@@ -14,6 +14,12 @@
 namespace bvlab {
 namespace {
 
+StudyParameters parameters() {
+  return with_wandering_and_side(
+      {numbers_parameter("relative_errors", {0, 0.01, 0.1, 0.5}, {0}, "that are promised"),
+       words_parameter("strategies", {"recursive"}, "see `bvlab list strategies`")});
+}
+
 struct Settings {
   std::vector<double> errors;
   std::vector<std::string> strategies;
@@ -21,8 +27,8 @@ struct Settings {
 
 Settings settings_of(const StudyDefinition& definition) {
   Settings settings;
-  settings.errors = definition.numbers("relative_errors", {0, 0.01, 0.1, 0.5});
-  settings.strategies = definition.strings("strategies", {"recursive"});
+  settings.errors = definition.numbers("relative_errors");
+  settings.strategies = definition.words("strategies");
   for (const auto& strategy : settings.strategies)
     for (const double error : settings.errors) {
       Variant variant;
@@ -32,10 +38,7 @@ Settings settings_of(const StudyDefinition& definition) {
   return settings;
 }
 
-void check_settings(const StudyDefinition& definition) {
-  settings_of(definition);
-  Wandering{definition};
-}
+void check_settings(const StudyDefinition& definition) { settings_of(definition); }
 
 struct Observed {
   double largest = 0, sum = 0;
@@ -61,7 +64,7 @@ Observed compared(const std::vector<double>& answers, const std::vector<double>&
 void run(const StudyDefinition& definition, const std::filesystem::path& folder,
          const Progress& progress) {
   const Settings settings = settings_of(definition);
-  const Wandering wandering(definition);
+  const Wandering wandering(definition, definition.number("side"));
   StudyRecord record(
       definition, folder,
       {"mesh", "volume", "strategy", "relative_error", "repetition", "answers", "touching",
@@ -109,7 +112,7 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
 }  // namespace
 
 const StudyKind studies::distance = {
-    "distance", "the relative error of distances, promised and seen, against time", check_settings,
-    run};
+    "distance", "the relative error of distances, promised and seen, against time", parameters,
+    check_settings, run};
 
 }  // namespace bvlab

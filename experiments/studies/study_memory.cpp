@@ -21,6 +21,21 @@
 namespace bvlab {
 namespace {
 
+StudyParameters parameters() {
+  return {words_parameter("mesh", {"bunny:500"}, "meshes, NAME:POLYGONS: a scene for each"),
+          whole_parameter("objects", 10000, {1, 1e6}, "bodies"),
+          whole_parameter("frames", 10, {1, 1e5}, "frames, the start included"),
+          whole_parameter("seed", 1, seeds, "of the random numbers"),
+          number_parameter("step", 0.03, {0, 1e6}, "length of a step, in radii of the body"),
+          number_parameter("degrees", 5, {0, 180}, "angle of a step"),
+          numbers_parameter("rooms", {4}, {1e-6, 1e6},
+                            "sides of the cube for nine bodies, in radii of the body"),
+          word_parameter("build", "bottom-up", "of binary trees; see `bvlab list builds`"),
+          word_parameter("fit", "tight", "of binary trees"),
+          whole_parameter("leaf_size", 2, {1, 1 << 16}, "of binary trees"),
+          words_parameter("variants", {"binary obb recursive"}, "\"tree volume strategy\" each")};
+}
+
 struct Settings {
   std::vector<std::string> meshes;
   std::size_t objects, frames, seed;
@@ -29,21 +44,16 @@ struct Settings {
   std::vector<Variant> variants;
 
   explicit Settings(const StudyDefinition& definition)
-      : meshes(definition.strings("mesh", {"bunny:500"})),
-        objects(definition.whole("objects", 10000, 1'000'000)),
-        frames(definition.whole("frames", 10, 100'000)),
-        seed(definition.whole("seed", 1, 1'000'000'000)),
-        step(definition.number("step", 0.03)),
-        degrees(definition.number("degrees", 5)),
-        rooms(definition.numbers("rooms", {4})) {
-    for (const double room : rooms)
-      if (!(room > 0 && room <= 1e6))
-        throw Unusable(definition.file, "rooms must be from 0 to 1e6");
-    const std::string build = definition.strings("build", {"bottom-up"}).at(0),
-                      fit = definition.strings("fit", {"tight"}).at(0);
-    const auto leaf_size =
-        static_cast<std::uint32_t>(definition.whole("leaf_size", 2, std::size_t{1} << 16));
-    for (const auto& text : definition.strings("variants", {"binary obb recursive"})) {
+      : meshes(definition.words("mesh")),
+        objects(definition.whole("objects")),
+        frames(definition.whole("frames")),
+        seed(definition.whole("seed")),
+        step(definition.number("step")),
+        degrees(definition.number("degrees")),
+        rooms(definition.numbers("rooms")) {
+    const std::string build = definition.word("build"), fit = definition.word("fit");
+    const auto leaf_size = static_cast<std::uint32_t>(definition.whole("leaf_size"));
+    for (const auto& text : definition.words("variants")) {
       std::istringstream words(text);
       std::string tree, volume, strategy, more;
       if (!(words >> tree >> volume >> strategy) || words >> more)
@@ -114,7 +124,8 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
           const Held alone = held(mesh, trace, 1, variant);
           const Held all = held(mesh, trace, settings.objects, variant);
           Row row = key;
-          row.insert(row.end(), {variant.kernel == "siblings" ? "wide" : "binary", variant.volume, variant.strategy, "0"});
+          row.insert(row.end(), {variant.kernel == "siblings" ? "wide" : "binary", variant.volume,
+                                 variant.strategy, "0"});
           for (const std::size_t n : {trace.frames, all.near, all.touching, alone.bytes, all.bytes})
             row.push_back(std::to_string(n));
           record.add(std::move(row));
@@ -127,7 +138,8 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
 
 }  // namespace
 
-const StudyKind studies::memory = {
-    "memory", "what a whole scene holds of the heap, a body and a pair", check_settings, run};
+const StudyKind studies::memory = {"memory",
+                                   "what a whole scene holds of the heap, a body and a pair",
+                                   parameters, check_settings, run};
 
 }  // namespace bvlab

@@ -30,18 +30,9 @@
 namespace bvlab {
 namespace {
 
-std::vector<double> sides_of(const StudyDefinition& definition) {
-  if (definition.parameters.contains("side"))
-    throw Unusable(definition.file, "there are several sides: sides = [...]");
-  const auto sides = definition.numbers("sides", {1, 4, 8});
-  for (const double side : sides)
-    if (!(side > 0 && side <= 1e6)) throw Unusable(definition.file, "sides must be from 0 to 1e6");
-  return sides;
-}
-
-void check_settings(const StudyDefinition& definition) {
-  sides_of(definition);
-  Wandering{definition};
+StudyParameters parameters() {
+  return with_wandering({numbers_parameter("sides", {1, 4, 8}, sides_of_cubes,
+                                           "of the cubes, in radii of the body")});
 }
 
 using Scene = Wandering::Scene;
@@ -287,8 +278,8 @@ void measure_scene(const std::string& name, double side, const Scene& scene,
 
 void run(const StudyDefinition& definition, const std::filesystem::path& folder,
          const Progress& progress) {
-  Wandering wandering(definition);
-  const auto sides = sides_of(definition);
+  const auto sides = definition.numbers("sides");
+  Wandering wandering(definition, sides[0]);
   StudyRecord record(definition, folder,
                      {"mesh", "side", "k", "policy", "query", "repetition", "pairs", "dismissed",
                       "differing", "hits", "n_u", "n_v", "n_p", "pose_ns", "time_ns"},
@@ -312,6 +303,6 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
 
 const StudyKind studies::posing = {
     "posing", "how K-DOPs are posed: by realignment, by their corners, roots by the hull",
-    check_settings, run};
+    parameters, nullptr, run};
 
 }  // namespace bvlab

@@ -25,12 +25,16 @@ struct Settings {
   int seconds;
 };
 
-Settings settings_of(const StudyDefinition& definition) {
-  return {definition.whole("frames", 100, 1'000'000), definition.whole("seed", 1, 1'000'000'000),
-          static_cast<int>(definition.whole("seconds", 20, 3600))};
+StudyParameters parameters() {
+  return {whole_parameter("frames", 100, {1, 1e6}, "placements of each stressor"),
+          whole_parameter("seed", 1, seeds, "of the random numbers"),
+          whole_parameter("seconds", 20, {1, 3600}, "for each peer under each stressor")};
 }
 
-void check_settings(const StudyDefinition& definition) { settings_of(definition); }
+Settings settings_of(const StudyDefinition& definition) {
+  return {definition.whole("frames"), definition.whole("seed"),
+          static_cast<int>(definition.whole("seconds"))};
+}
 
 /// What `work` answers in a process of its own; nothing where it crashed, refused, or took longer
 /// than `seconds`: what other libraries do with such input is not to end ours.
@@ -141,7 +145,7 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
 }  // namespace
 
 const StudyKind studies::stability = {
-    "stability", "false answers of every variant and peer under every stressor", check_settings,
-    run};
+    "stability", "false answers of every variant and peer under every stressor", parameters,
+    nullptr, run};
 
 }  // namespace bvlab

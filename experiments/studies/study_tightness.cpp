@@ -32,20 +32,34 @@
 namespace bvlab {
 namespace {
 
+StudyParameters parameters() {
+  std::vector<std::string> all;
+  for (const auto& volume : volumes()) all.push_back(volume.name);
+  return {words_parameter("mesh", {"bunny"}, "meshes, NAME or NAME:POLYGONS"),
+          words_parameter("volumes", all, "that are fitted", all),
+          words_parameter("builds", {Variant{}.build}, "see `bvlab list builds`"),
+          words_parameter("fits", {"published", "tight"}, "how volumes are fitted"),
+          whole_parameter("polygons", 5000, {1, 1e6}, "triangles of each mesh"),
+          whole_parameter("leaf_size", 1, {1, 1 << 16}, "triangles in a leaf, at most"),
+          whole_parameter("nodes", 64, {1, 1e6}, "nodes of a level that are probed, at most"),
+          whole_parameter("probes", 1024, {1, 1e6}, "points for each level, at least"),
+          whole_parameter("seed", 1, seeds, "of the random numbers")};
+}
+
 struct Settings {
   std::vector<std::string> meshes, volumes, builds, fits;
   std::size_t polygons, leaf_size, nodes, probes, seed;
 
   explicit Settings(const StudyDefinition& definition)
-      : meshes(definition.strings("mesh", {"bunny"})),
-        volumes(definition.strings("volumes", all_volumes())),
-        builds(definition.strings("builds", {Variant{}.build})),
-        fits(definition.strings("fits", {"published", "tight"})),
-        polygons(definition.whole("polygons", 5000, 1'000'000)),
-        leaf_size(definition.whole("leaf_size", 1, 1u << 16)),
-        nodes(definition.whole("nodes", 64, 1'000'000)),
-        probes(definition.whole("probes", 1024, 1'000'000)),
-        seed(definition.whole("seed", 1, 1'000'000'000)) {
+      : meshes(definition.words("mesh")),
+        volumes(definition.words("volumes")),
+        builds(definition.words("builds")),
+        fits(definition.words("fits")),
+        polygons(definition.whole("polygons")),
+        leaf_size(definition.whole("leaf_size")),
+        nodes(definition.whole("nodes")),
+        probes(definition.whole("probes")),
+        seed(definition.whole("seed")) {
     for (const auto& volume : volumes)
       for (const auto& build : builds)
         for (const auto& fit : fits) bvlab::check(variant(volume, build, fit));
@@ -57,13 +71,6 @@ struct Settings {
     variant.volume = volume, variant.build = build, variant.fit = fit;
     variant.leaf_size = static_cast<std::uint32_t>(leaf_size);
     return variant;
-  }
-
- private:
-  static std::vector<std::string> all_volumes() {
-    std::vector<std::string> names;
-    for (const auto& volume : bvlab::volumes()) names.push_back(volume.name);
-    return names;
   }
 };
 
@@ -274,7 +281,7 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
 }  // namespace
 
 const StudyKind studies::tightness = {
-    "tightness", "what volumes leave out of distances, level by level of the tree", check_settings,
-    run};
+    "tightness", "what volumes leave out of distances, level by level of the tree", parameters,
+    check_settings, run};
 
 }  // namespace bvlab

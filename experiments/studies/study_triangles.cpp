@@ -55,13 +55,13 @@ std::vector<Test> all_tests() {
   return tests;
 }
 
-const TriangleSet& set_named(const std::string& file, const std::string& name) {
-  std::string names;
-  for (const auto& set : triangle_sets) {
-    if (set.name == name) return set;
-    names += (names.empty() ? "" : ", ") + std::string(set.name);
-  }
-  throw Unusable(file, "sets: no '" + name + "'; there are " + names);
+StudyParameters parameters() {
+  std::vector<std::string> sets;
+  for (const auto& set : triangle_sets) sets.emplace_back(set.name);
+  return {words_parameter("sets", sets, "of pairs of triangles", sets),
+          whole_parameter("pairs", 50000, {1, 1e7}, "pairs in each set"),
+          whole_parameter("at_once", 5000, {1, 1e7}, "pairs that are timed together"),
+          whole_parameter("seed", 1, seeds, "of the random numbers")};
 }
 
 struct Settings {
@@ -71,18 +71,14 @@ struct Settings {
 };
 
 Settings settings_of(const StudyDefinition& definition) {
-  std::vector<std::string> all;
-  for (const auto& set : triangle_sets) all.emplace_back(set.name);
-  Settings settings;
-  for (const auto& name : definition.strings("sets", all))
-    settings.sets.push_back(&set_named(definition.file, name));
-  settings.pairs = definition.whole("pairs", 50000, 10'000'000);
-  settings.at_once = definition.whole("at_once", 5000, 10'000'000);
-  settings.seed = definition.whole("seed", 1, 1'000'000'000);
+  Settings settings{
+      {}, definition.whole("pairs"), definition.whole("at_once"), definition.whole("seed")};
+  for (const auto& name : definition.words("sets"))
+    settings.sets.push_back(
+        &*std::find_if(std::begin(triangle_sets), std::end(triangle_sets),
+                       [&](const TriangleSet& set) { return set.name == name; }));
   return settings;
 }
-
-void check_settings(const StudyDefinition& definition) { settings_of(definition); }
 
 /// Pairs with area, so that every test can be asked, but for the sets that are made of others.
 std::vector<TrianglePair> pairs_of(const TriangleSet& set, const Settings& settings,
@@ -156,7 +152,7 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
 }  // namespace
 
 const StudyKind studies::triangles = {
-    "triangles", "misclassified pairs and time of every triangle test on every set", check_settings,
-    run};
+    "triangles", "misclassified pairs and time of every triangle test on every set", parameters,
+    nullptr, run};
 
 }  // namespace bvlab

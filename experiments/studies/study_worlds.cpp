@@ -48,56 +48,64 @@ double side_of(const Scene& scene) {
   return scene.room * std::cbrt(static_cast<double>(scene.objects) / 9);
 }
 
+StudyParameters parameters() {
+  const Variant standard;
+  return {word_parameter("mesh", "bunny", "NAME"),
+          whole_parameter("polygons", 500, {1, 1e7}, "triangles of the mesh"),
+          whole_parameter("frames", 12, {2, 1e5}, "frames, the start included"),
+          whole_parameter("seed", 1, {0, 1e9}, "of the random numbers"),
+          numbers_parameter("steps", {0.03}, {0, 1e6}, "lengths of a step, in radii of the body"),
+          numbers_parameter("degrees", {5}, {0, 180}, "angles of a step, one for each length"),
+          wholes_parameter("objects", {1000}, {1, 1e6}, "bodies"),
+          numbers_parameter("rooms", {4}, {1e-6, 1e6},
+                            "sides of the cube for nine bodies, in radii of the body"),
+          numbers_parameter("moving", {1, 0.1, 0.01}, {0, 1}, "parts of the bodies that move"),
+          wholes_parameter("threads", {1}, {1, 1024}, "of ours"),
+          words_parameter("volumes", {"sphere"}, "see `bvlab list volumes`"),
+          words_parameter("strategies", {"recursive"}, "see `bvlab list strategies`"),
+          word_parameter("build", standard.build, "see `bvlab list builds`"),
+          word_parameter("fit", standard.fit, "how volumes are fitted"),
+          whole_parameter("leaf_size", standard.leaf_size, {1, 64}, "triangles in a leaf, at most"),
+          words_parameter("configurations", {}, "see `bvlab list configurations`"),
+          words_parameter("peers", {}, "complete pipelines of others")};
+}
+
 Settings settings_of(const StudyDefinition& definition) {
-  Settings settings;
-  const auto number = [&](const char* key, double fallback, double least, double most) {
-    const double value = definition.number(key, fallback);
-    if (!(value >= least && value <= most))
-      throw Unusable(definition.file,
-                     std::string(key) + " must be " + text_of(least) + " to " + text_of(most));
-    return value;
-  };
-  settings.mesh = definition.strings("mesh", {"bunny"}).at(0);
-  settings.polygons = static_cast<std::size_t>(number("polygons", 500, 1, 1e7));
-  settings.frames = static_cast<std::size_t>(number("frames", 12, 2, 1e5));
-  settings.seed = static_cast<std::uint64_t>(number("seed", 1, 0, 1e9));
-  const auto steps = definition.numbers("steps", {0.03}),
-             degrees = definition.numbers("degrees", {5});
+  Settings settings{definition.word("mesh"),
+                    definition.whole("polygons"),
+                    definition.whole("frames"),
+                    definition.whole("seed"),
+                    {},
+                    {}};
+  const auto steps = definition.numbers("steps"), degrees = definition.numbers("degrees");
   if (steps.size() != degrees.size())
     throw Unusable(definition.file, "steps and degrees must be as many");
-  for (const double objects : definition.numbers("objects", {1000}))
-    for (const double room : definition.numbers("rooms", {4}))
-      for (const double moving : definition.numbers("moving", {1, 0.1, 0.01}))
-        for (std::size_t k = 0; k < steps.size(); ++k) {
-          if (!(objects >= 1 && objects <= 1e6) || !(room > 0) || !(moving >= 0 && moving <= 1))
-            throw Unusable(definition.file,
-                           "objects must be 1 to 1e6, rooms above 0, moving 0 to 1");
-          settings.scenes.push_back(
-              {static_cast<std::size_t>(objects), room, moving, steps[k], degrees[k]});
-        }
+  for (const std::size_t objects : definition.wholes("objects"))
+    for (const double room : definition.numbers("rooms"))
+      for (const double moving : definition.numbers("moving"))
+        for (std::size_t k = 0; k < steps.size(); ++k)
+          settings.scenes.push_back({objects, room, moving, steps[k], degrees[k]});
   std::vector<int> threads;
-  for (const double each : definition.numbers("threads", {1})) {
-    if (!(each >= 1 && each <= 1024) || each != std::floor(each))
-      throw Unusable(definition.file, "threads must be whole numbers from 1 to 1024");
+  for (const std::size_t each : definition.wholes("threads")) {
     if (each > 1 && !Threads::available)
       throw Unusable(definition.file, "threads: there is one, for TBB was not found");
     threads.push_back(static_cast<int>(each));
   }
-  for (const auto& volume : definition.strings("volumes", {"sphere"}))
-    for (const auto& strategy : definition.strings("strategies", {"recursive"})) {
+  for (const auto& volume : definition.words("volumes"))
+    for (const auto& strategy : definition.words("strategies")) {
       Variant variant;
       variant.volume = volume, variant.strategy = strategy;
-      variant.build = definition.strings("build", {variant.build}).at(0);
-      variant.fit = definition.strings("fit", {variant.fit}).at(0);
-      variant.leaf_size = static_cast<std::uint32_t>(number("leaf_size", variant.leaf_size, 1, 64));
+      variant.build = definition.word("build");
+      variant.fit = definition.word("fit");
+      variant.leaf_size = static_cast<std::uint32_t>(definition.whole("leaf_size"));
       check(variant);
       for (const int each : threads) settings.contestants.push_back({variant, "", "", each});
     }
-  for (const auto& name : definition.strings("configurations", {})) {
+  for (const auto& name : definition.words("configurations")) {
     const Variant variant = configured({}, name);
     for (const int each : threads) settings.contestants.push_back({variant, name, "", each});
   }
-  for (const auto& peer : definition.strings("peers", {})) {
+  for (const auto& peer : definition.words("peers")) {
     if (!is_world_peer(peer))
       throw Unusable(definition.file, "peers: no '" + peer + "'; there are " + world_peer_names());
     settings.contestants.push_back({{}, "", peer, 1});
@@ -213,7 +221,7 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
 }  // namespace
 
 const StudyKind studies::worlds = {
-    "worlds", "whole scenes of many bodies, beside other libraries' complete pipelines",
+    "worlds", "whole scenes of many bodies, beside other libraries' complete pipelines", parameters,
     check_settings, run};
 
 }  // namespace bvlab

@@ -9,15 +9,34 @@
 
 namespace bvlab {
 
-Wandering::Wandering(const StudyDefinition& definition)
-    : names(definition.strings("mesh", {"bunny"})),
-      polygons(definition.whole("polygons", 5000, most_polygons)),
-      objects(definition.whole("objects", 9, 1000)),
-      frames(definition.whole("frames", 50, 1'000'000)),
-      seed(definition.whole("seed", 1, 1'000'000'000)),
-      side(definition.number("side", 4)),
-      step(definition.number("step", 0.1)),
-      degrees(definition.number("degrees", 20)) {}
+StudyParameters with_wandering(StudyParameters others) {
+  for (auto& each :
+       {words_parameter("mesh", {"bunny"}, "meshes, NAME or NAME:POLYGONS: a scene for each"),
+        whole_parameter("polygons", 5000, {1, most_polygons}, "triangles of each mesh"),
+        whole_parameter("objects", 9, {1, 1000}, "bodies"),
+        whole_parameter("frames", 50, {1, 1e6}, "frames, the start included"),
+        whole_parameter("seed", 1, seeds, "of the random numbers"),
+        number_parameter("step", 0.1, lengths, "length of a step, in radii of the body"),
+        number_parameter("degrees", 20, {0, 180}, "angle of a step")})
+    others.push_back(each);
+  return others;
+}
+
+StudyParameters with_wandering_and_side(StudyParameters others) {
+  others.push_back(
+      number_parameter("side", 4, sides_of_cubes, "of the cube, in radii of the body"));
+  return with_wandering(std::move(others));
+}
+
+Wandering::Wandering(const StudyDefinition& definition, double side_of_cube)
+    : names(definition.words("mesh")),
+      polygons(definition.whole("polygons")),
+      objects(definition.whole("objects")),
+      frames(definition.whole("frames")),
+      seed(definition.whole("seed")),
+      side(side_of_cube),
+      step(definition.number("step")),
+      degrees(definition.number("degrees")) {}
 
 Wandering::Scene Wandering::scene(const std::string& name) const {
   Scene scene;

@@ -8,6 +8,13 @@
 
 namespace bvlab {
 
+/// Those of Wandering but `side`, behind others.
+StudyParameters with_wandering(StudyParameters others);
+/// With `side` of all scenes.
+StudyParameters with_wandering_and_side(StudyParameters others);
+
+inline constexpr NumberBounds lengths{0, 1e6}, sides_of_cubes{1e-6, 1e6};
+
 struct Wandering {
   std::vector<std::string> names;  ///< of meshes, or NAME:POLYGONS: one scene for each
   std::size_t polygons, objects, frames;
@@ -20,7 +27,8 @@ struct Wandering {
     double radius;  ///< of the mesh
   };
 
-  explicit Wandering(const StudyDefinition& definition);
+  /// Of a kind of study that has their parameters.
+  explicit Wandering(const StudyDefinition& definition, double side);
   Scene scene(const std::string& name) const;
 };
 

@@ -128,8 +128,8 @@ class Same(unittest.TestCase):
 
     def test_names(self):
         for kind in ("volumes", "strategies", "queries", "frames", "kernels", "methods", "configurations", "builds", "precisions",
-                     "parameters", "peers"):
-            lines = scenes.program("list", kind)[1].splitlines()
+                     "parameters", "peers", "studies", "study_parameters"):
+            lines = scenes.program("list", kind.replace("_", "-"))[1].splitlines()
             lines = [line for line in lines if not line.startswith("left out")]
             self.assertEqual([line.split()[0] for line in lines], list(getattr(bvlab, kind)()), kind)
 

@@ -29,7 +29,7 @@ From an idea to a figure:
 
 Boxes: bvlab.boxes(trace, method="auto"). Names, with what they are: bvlab.volumes(), strategies(),
 queries(), frames(), kernels(), methods(), configurations(), builds(), precisions(), parameters(),
-formula_meshes(), peers().
+formula_meshes(), peers(), studies(), study_parameters().
 A volume or a strategy of your own: bvlab.compile_in(volumes=["mine.hpp:Mine<float>"]).
 
 Lengths are in the units of the meshes, angles in quaternions, times in seconds. What the program
@@ -39,14 +39,14 @@ refuses is a ValueError with its line. The GIL is released while C++ runs.
 from ._bvlab import Mesh, Result, World, boxes, named_mesh, predict, read, replay
 from ._compiling import compile_in
 from ._names import (builds, configurations, formula_meshes, frames, kernels, methods, parameters, peers, precisions,
-                     queries, strategies, volumes)
+                     queries, strategies, studies, study_parameters, volumes)
 from ._poses import pairs_of, poses
 from ._records import figures, record
 from ._running import run
 
 __all__ = ["Mesh", "Result", "World", "boxes", "builds", "compile_in", "configurations", "figures", "formula_meshes",
            "frames", "kernels", "methods", "named_mesh", "pairs_of", "parameters", "peers", "poses", "precisions", "predict", "queries",
-           "read", "record", "replay", "run", "strategies", "volumes"]
+           "read", "record", "replay", "run", "strategies", "studies", "study_parameters", "volumes"]
 
 for _each in (Mesh, Result, World, boxes, named_mesh, predict, read, replay):
     _each.__module__ = __name__  # where they are to be found

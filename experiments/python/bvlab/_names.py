@@ -54,6 +54,16 @@ def parameters() -> dict[str, str]:
     return names("parameters")
 
 
+def studies() -> dict[str, str]:
+    """Kinds of studies, which are no product of replays, by name: descriptions."""
+    return names("studies")
+
+
+def study_parameters() -> dict[str, str]:
+    """Parameters of studies, by "kind.name": descriptions with bounds and defaults."""
+    return names("study-parameters")
+
+
 def formula_meshes() -> dict[str, str]:
     """Meshes made by formula, for named_mesh and definitions, by name: descriptions."""
     return names("meshes")

@@ -4,6 +4,7 @@ names the file or the option, nothing on standard output, no file left behind.""
 
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import unittest
@@ -417,6 +418,35 @@ class Definitions(ProgramTest):
             self.refuse_definition(given, "frames", "whole number")
         given = "name = 'x'\nkind = 'distance'\n[parameters]\nstrategies = 'frob'\n"
         self.refuse_definition(given, "frob", *names_of("strategies"))
+
+    def test_parameters_of_studies(self):
+        """Of each kind by the table that the program lists: what is no such value is refused by name."""
+        lines = self.run_bvlab("list", "study-parameters").stdout.splitlines()
+        defaults: dict = {}
+        for line in lines:
+            kind, name, what, several, more = re.fullmatch(
+                r"([a-z-]+)\.(\w+) +.*: (word|number|whole number)(s?)((?:, .*)?(?: \[.*\])?)", line).groups()
+            start = f"name = 'x'\nkind = '{kind}'\n[parameters]\n{name} = "
+            bad = {"word": [], "number": ["'x'", "nan", "inf"], "whole number": ["'x'", "nan", "1.5", "-1", "1e300"]}[what]
+            if ", of " in more:
+                bad.append("'frob'")
+            if not several:
+                bad.append("[1, 1]")
+            elif " [" in more:
+                bad.append("[]")
+            for value in bad:
+                with self.subTest(kind=kind, name=name, value=value):
+                    self.refuse_definition(start + value + "\n", f"bad.toml: {name}")
+            default = re.search(r" \[(.*)\]$", more)
+            if default and default[1] != "all":
+                values = [repr(each) if what == "word" else each for each in default[1].split(", ")]
+                defaults.setdefault(kind, []).append(f"{name} = " + (f"[{', '.join(values)}]" if several else values[0]))
+        self.assertEqual(sorted({line.split(".")[0] for line in lines}), sorted(names_of("studies")))
+        # Written out they are taken: what is refused is the figure.
+        for kind, written in defaults.items():
+            with self.subTest(kind=kind):
+                self.refuse_definition(f"name = 'x'\nkind = '{kind}'\n[parameters]\n" + "\n".join(written)
+                                       + "\n[[figure]]\nname = 'f'\nx = 'frob'\ny = 'frob'\n", "figure", "frob")
 
     def test_axes(self):
         def axis(text):

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Parameters of studies. Each kind of study has a table of them: the one source of defaults and
+/// refusals, and of what `bvlab list study-parameters` prints.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace bvlab {
+
+struct StudyParameter {
+  enum class Type { word, number, whole };
+
+  /// Of numbers.
+  struct Bounds {
+    double least = std::numeric_limits<double>::lowest();
+    double most = std::numeric_limits<double>::max();
+  };
+
+  std::string name;
+  Type type;
+  bool is_list;                       ///< or one value
+  std::vector<std::string> fallback;  ///< where none was written
+  std::string what;
+  Bounds bounds{};
+  /// Words that there are; where none stand here, whoever uses them looks.
+  std::vector<std::string> names{};
+  bool takes_files = false;  ///< besides them, .npy
+
+  /// What it is, between which bounds, and its default.
+  std::string description() const;
+
+  /// Throws Unusable, in one line that begins with the file, for values that it cannot have.
+  void check(const std::vector<std::string>& values, const std::string& file) const;
+};
+
+using StudyParameters = std::vector<StudyParameter>;
+
+/// One word, or as many as there are in a list.
+StudyParameter word_parameter(std::string name, std::string fallback, std::string what,
+                              std::vector<std::string> names = {});
+StudyParameter words_parameter(std::string name, std::vector<std::string> fallback,
+                               std::string what, std::vector<std::string> names = {});
+
+using NumberBounds = StudyParameter::Bounds;
+StudyParameter number_parameter(std::string name, double fallback, NumberBounds bounds,
+                                std::string what);
+StudyParameter numbers_parameter(std::string name, std::vector<double> fallback,
+                                 NumberBounds bounds, std::string what);
+StudyParameter whole_parameter(std::string name, double fallback, NumberBounds bounds,
+                               std::string what);
+StudyParameter wholes_parameter(std::string name, std::vector<double> fallback, NumberBounds bounds,
+                                std::string what);
+
+inline constexpr NumberBounds seeds{1, 1e9};
+
+/// Digits enough to read the same number again.
+std::string text_of(double value);
+
+/// The number that the text is. Throws Unusable, with the file and the name, where it is none.
+double number_of(const std::string& text, const std::string& name, const std::string& file);
+
+}  // namespace bvlab
