@@ -1,5 +1,10 @@
 # THE lists (volumes.hpp, strategies.hpp, queries.hpp, broadphase.hpp) as CMake sees them, so that each
-# entry can be compiled by itself.
+# entry can be compiled by itself. The units are to be named before anything is compiled, and a compiler
+# says neither which header defines a type nor, where it compiles for another machine, anything at all
+# while CMake runs. So C++ is read by regular expressions, all of them here, and lists_as_read.cpp.in has the
+# compiler hold what was read against the lists.
+set(BVLAB_LIST_INCLUDES "")
+set(BVLAB_LIST_CHECKS "")
 
 # bvlab_list(<out> <list header> <alias> <folder of the entries>): reads `using <alias> = TypeList<...>;`
 # and sets <out> to "type|id|header" for each type: its file name in units, and the header that
@@ -13,6 +18,13 @@ function(bvlab_list out list alias folder)
     message(FATAL_ERROR "${list}: no 'using ${alias} = TypeList<...>;'")
   endif()
   string(REGEX REPLACE "[ \n]+" "" types "${CMAKE_MATCH_1}")
+  set(instance ${alias})
+  string(REPLACE "<T,Contact>" "<float, Closed>" instances "${types}")
+  if(NOT instances STREQUAL types)
+    string(APPEND instance "<float, Closed>")
+  endif()
+  set(BVLAB_LIST_INCLUDES "${BVLAB_LIST_INCLUDES}#include \"${list}\"\n" PARENT_SCOPE)
+  set(BVLAB_LIST_CHECKS "${BVLAB_LIST_CHECKS}static_assert(std::is_same_v<${instance}, TypeList<${instances}>>);\n" PARENT_SCOPE)
   # Of templates over the list's own parameters the name alone.
   string(REPLACE "<T,Contact>" "" types "${types}")
   string(REPLACE "," ";" types "${types}")
@@ -34,6 +46,40 @@ function(bvlab_list out list alias folder)
     list(APPEND entries ${entry})
   endforeach()
   set(${out} ${entries} PARENT_SCOPE)
+endfunction()
+
+# bvlab_own_fronts(<out> <entries>): those strategies that name fronts of their own.
+function(bvlab_own_fronts out entries)
+  set(found "")
+  foreach(entry ${entries})
+    bvlab_split(strategy "${entry}")
+    file(REAL_PATH ${strategy_header} header BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
+    file(STRINGS ${header} own_fronts REGEX "using OwnFronts *=")
+    set(check "!has_own_fronts<${strategy}>")
+    if(own_fronts)
+      list(APPEND found "${entry}")
+      set(check "has_own_fronts<${strategy}>")
+    endif()
+    string(APPEND BVLAB_LIST_INCLUDES "#include \"${strategy_header}\"\n")
+    string(APPEND BVLAB_LIST_CHECKS "static_assert(${check});\n")
+  endforeach()
+  set(${out} ${found} PARENT_SCOPE)
+  set(BVLAB_LIST_INCLUDES "${BVLAB_LIST_INCLUDES}" PARENT_SCOPE)
+  set(BVLAB_LIST_CHECKS "${BVLAB_LIST_CHECKS}" PARENT_SCOPE)
+endfunction()
+
+# bvlab_outside(<out type> <out header> <"header.hpp:Type">): the header's place is relative to the project, or absolute.
+function(bvlab_outside type header given)
+  if(NOT given MATCHES "^(.+):([A-Za-z_][A-Za-z0-9_:]*(<.*>)?)$")
+    message(FATAL_ERROR "'${given}' is not header.hpp:Type")
+  endif()
+  set(${type} "${CMAKE_MATCH_2}" PARENT_SCOPE)
+  get_filename_component(place "${CMAKE_MATCH_1}" ABSOLUTE BASE_DIR ${PROJECT_SOURCE_DIR})
+  if(NOT EXISTS "${place}")
+    message(FATAL_ERROR "${given}: there is no ${place}")
+  endif()
+  set(${header} "${place}" PARENT_SCOPE)
 endfunction()
 
 # "type|id|header" of one type.
@@ -66,14 +112,7 @@ function(bvlab_configured variable only extra what)
     message(FATAL_ERROR "no ${what} '${unknown}' in the list")
   endif()
   foreach(each ${extra})
-    if(NOT each MATCHES "^(.+):([A-Za-z_][A-Za-z0-9_:]*(<.*>)?)$")
-      message(FATAL_ERROR "'${each}' is not header.hpp:Type")
-    endif()
-    set(type "${CMAKE_MATCH_2}")
-    get_filename_component(header "${CMAKE_MATCH_1}" ABSOLUTE BASE_DIR ${PROJECT_SOURCE_DIR})
-    if(NOT EXISTS "${header}")
-      message(FATAL_ERROR "${each}: there is no ${header}")
-    endif()
+    bvlab_outside(type header "${each}")
     bvlab_entry(entry "${type}" "${header}")
     list(APPEND kept "${entry}")
   endforeach()
