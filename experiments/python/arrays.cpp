@@ -41,10 +41,10 @@ bool is_sequence(const py::handle& given) {
   return true;
 }
 
-/// Sequences as lists of lists, each as long as it says, and nested as deep as there are axes: NumPy
-/// goes on through one that never ends, or that holds itself again and again.
-py::object as_lists(const py::handle& given, const std::string& name,
-                    const std::vector<Axis>& axes, std::size_t depth = 0) {
+/// Sequences as lists of lists, each as long as it says, and nested as deep as there are axes:
+/// NumPy goes on through one that never ends, or that holds itself again and again.
+py::object as_lists(const py::handle& given, const std::string& name, const std::vector<Axis>& axes,
+                    std::size_t depth = 0) {
   const auto as_it_is = py::reinterpret_borrow<py::object>(given);
   if (!is_sequence(given)) return as_it_is;
   if (depth == axes.size())
@@ -63,13 +63,13 @@ void refuse_masked(const py::handle& given, const std::string& name) {
     throw Unusable(name, "has masked entries");
 }
 
-void check_kind(const py::array& array, const std::string& name, Kind kind) {
+void check_kind(const py::array& array, const std::string& name, Numbers kind) {
   const char code = array.dtype().kind();
   const bool whole = code == 'i' || code == 'u';
-  if (whole || (kind == Kind::real && (code == 'f' || code == 'b'))) return;
+  if (whole || (kind == Numbers::real && (code == 'f' || code == 'b'))) return;
   // An empty list is an array of float64 to NumPy.
   if (code == 'f' && array.size() == 0) return;
-  throw Unusable(name, std::string(kind == Kind::real ? "real numbers" : "integers") +
+  throw Unusable(name, std::string(kind == Numbers::real ? "real numbers" : "integers") +
                            " are needed, not " + std::string(py::str(array.dtype())));
 }
 
@@ -84,10 +84,15 @@ bool fits(const py::array& array, const std::vector<Axis>& axes) {
 }  // namespace
 
 std::optional<py::list> listed(const py::handle& given, const std::string& name) {
-  if (PyList_CheckExact(given.ptr()) || PyTuple_CheckExact(given.ptr())) return py::list(given);
+  if (PyList_CheckExact(given.ptr()) || PyTuple_CheckExact(given.ptr())) {
+    PyObject* copy = PySequence_List(given.ptr());
+    if (!copy) throw py::error_already_set();
+    return py::reinterpret_steal<py::list>(copy);
+  }
   const py::ssize_t length = PyObject_Size(given.ptr());
   if (length < 0) {
-    if (PyErr_ExceptionMatches(PyExc_MemoryError) || PyErr_ExceptionMatches(PyExc_KeyboardInterrupt))
+    if (PyErr_ExceptionMatches(PyExc_MemoryError) ||
+        PyErr_ExceptionMatches(PyExc_KeyboardInterrupt))
       throw py::error_already_set();
     PyErr_Clear();
     return {};
@@ -103,12 +108,12 @@ std::optional<py::list> listed(const py::handle& given, const std::string& name)
   return entries;
 }
 
-py::array checked_array(const py::handle& given, const std::string& name, Kind kind,
+py::array checked_array(const py::handle& given, const std::string& name, Numbers kind,
                         const py::dtype& dtype, const std::vector<Axis>& axes) {
   // The common case: an array as it is wanted.
   if (py::isinstance<py::array>(given)) {
     const auto array = py::reinterpret_borrow<py::array>(given);
-    constexpr int wanted = py::array::c_style | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
+    constexpr int wanted = int{py::array::c_style} | int{py::detail::npy_api::NPY_ARRAY_ALIGNED_};
     if ((array.flags() & wanted) == wanted && fits(array, axes) &&
         Py_TYPE(given.ptr()) == py::detail::npy_api::get().PyArray_Type_ && array.dtype().is(dtype))
       return array;

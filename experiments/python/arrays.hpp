@@ -25,7 +25,7 @@ struct MadeByCalls {
   }
 };
 
-enum class Kind { real, integer };
+enum class Numbers { real, whole };
 
 /// A length that an axis may have, whatever it is; its name stands in messages.
 struct Axis {
@@ -40,13 +40,13 @@ std::optional<py::list> listed(const py::handle& given, const std::string& name)
 /// The array in `given`: of numbers of that kind and of these axes, in C order. Nothing is copied
 /// where it is so already and `dtype` is its type. Throws Unusable, in one line that begins with
 /// the name, for anything else; what is not finite is not looked for.
-py::array checked_array(const py::handle& given, const std::string& name, Kind kind,
+py::array checked_array(const py::handle& given, const std::string& name, Numbers kind,
                         const py::dtype& dtype, const std::vector<Axis>& axes);
 
 /// The same as an array of T.
 template <class T>
 py::array_t<T, py::array::c_style> array_of(const py::handle& given, const std::string& name,
-                                            Kind kind, const std::vector<Axis>& axes) {
+                                            Numbers kind, const std::vector<Axis>& axes) {
   return checked_array(given, name, kind, py::dtype::of<T>(), axes);
 }
 

@@ -17,7 +17,7 @@ namespace bvlab {
 namespace {
 
 std::vector<Vec3<double>> vertices_from(const py::handle& given) {
-  const auto array = array_of<double>(given, "vertices", Kind::real, {{"vertices"}, {"3", 3}});
+  const auto array = array_of<double>(given, "vertices", Numbers::real, {{"vertices"}, {"3", 3}});
   const auto count = static_cast<std::size_t>(array.shape(0));
   const double* values = array.data();
   std::vector<Vec3<double>> vertices(count);
@@ -32,7 +32,7 @@ std::vector<Vec3<double>> vertices_from(const py::handle& given) {
 std::vector<std::array<std::uint32_t, 3>> faces_from(const py::handle& given,
                                                      std::size_t vertices) {
   // Of 64 bits and signed, so that what is negative or too large is seen as that.
-  const auto array = array_of<std::int64_t>(given, "faces", Kind::integer, {{"faces"}, {"3", 3}});
+  const auto array = array_of<std::int64_t>(given, "faces", Numbers::whole, {{"faces"}, {"3", 3}});
   const auto count = static_cast<std::size_t>(array.shape(0));
   if (count == 0) throw Unusable("faces", "has no triangles");
   if (std::max(count, vertices) > std::numeric_limits<std::uint32_t>::max())
@@ -132,13 +132,11 @@ Meshes::Meshes(const py::handle& given) {
     if (!entries)
       throw Unusable("meshes", "a list of meshes is needed, not " +
                                    std::string(py::str(py::type::of(given).attr("__name__"))));
-    // The same object twice is one mesh, also where it is not ours.
+    // The same object twice is one mesh, also where it is not ours; `entries` keeps its address.
     std::unordered_map<PyObject*, std::size_t> known;
-    std::vector<py::object> kept;  // so that no other gets its address
     for (const auto& each : *entries) {
       const auto [at, fresh] = known.try_emplace(each.ptr(), all.size());
       all.push_back(fresh ? mesh_of(each) : all[at->second]);
-      kept.push_back(py::reinterpret_borrow<py::object>(each));
     }
   }
   if (all.empty()) throw Unusable("meshes", "at least one is needed");
@@ -160,7 +158,8 @@ Meshes::Meshes(const py::handle& given) {
 }
 
 void add_meshes(py::module_& module) {
-  py::class_<Mesh, std::shared_ptr<Mesh>>(module, "Mesh", py::module_local(), R"(Triangles over shared vertices; read-only.
+  py::class_<Mesh, std::shared_ptr<Mesh>>(module, "Mesh", py::module_local(),
+                                          R"(Triangles over shared vertices; read-only.
 
 Mesh(vertices, faces)    (n, 3) real, in any unit, and (m, 3) integer: indices of vertices
 Mesh(other)              anything with .vertices and .faces, as trimesh's meshes have

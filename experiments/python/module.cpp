@@ -40,7 +40,7 @@ PYBIND11_MODULE(_bvlab, module) {
          const std::vector<std::pair<std::string, py::ssize_t>>& axes) {
         std::vector<Axis> wanted;
         for (const auto& [axis, length] : axes) wanted.push_back({axis, length});
-        return array_of<double>(given, name, Kind::real, wanted);
+        return array_of<double>(given, name, Numbers::real, wanted);
       },
       py::arg("given"), py::arg("name"), py::arg("axes"),
       "float64, in C order; of each axis its name and length, any where negative.");

@@ -22,8 +22,7 @@ using namespace py::literals;
 
 /// What `replay` and `boxes` give.
 struct Result : MadeByCalls {
-  Result(py::object of_all, py::dict sums)
-      : answers(std::move(of_all)), totals(std::move(sums)) {}
+  Result(py::object of_all, py::dict sums) : answers(std::move(of_all)), totals(std::move(sums)) {}
 
   py::object answers, series = py::none(), frame_seconds = py::none();
   py::dict totals;
@@ -35,7 +34,7 @@ py::dict dictionary(const Totals& totals) {
 
 Trace trace_from(const py::handle& poses) {
   const auto array =
-      array_of<double>(poses, "poses", Kind::real, {{"frames"}, {"objects"}, {"7", 7}});
+      array_of<double>(poses, "poses", Numbers::real, {{"frames"}, {"objects"}, {"7", 7}});
   return checked_trace(static_cast<std::size_t>(array.shape(0)),
                        static_cast<std::size_t>(array.shape(1)),
                        {array.data(), array.data() + array.size()}, "poses");
@@ -61,7 +60,7 @@ struct Wanted {
 };
 
 std::shared_ptr<Result> play(const py::object& given_meshes, const py::object& given_poses,
-            const VariantWords& words, const Wanted& wanted) {
+                             const VariantWords& words, const Wanted& wanted) {
   Variant variant = variant_from(words);
   check_threads(wanted.threads);
   const Meshes meshes(given_meshes);
@@ -112,7 +111,7 @@ std::shared_ptr<Result> play_boxes(const py::array& array, const BoxReplayOption
 }
 
 std::shared_ptr<Result> boxes(const py::object& given, const std::string& method, bool coherent,
-             const std::string& precision, int threads, bool answers) {
+                              const std::string& precision, int threads, bool answers) {
   check_threads(threads);
   BoxReplayOptions options;
   options.method = method;
@@ -127,8 +126,9 @@ std::shared_ptr<Result> boxes(const py::object& given, const std::string& method
   const bool narrow = py::isinstance<py::array>(given) &&
                       py::reinterpret_borrow<py::array>(given).dtype().is(py::dtype::of<float>());
   const std::vector<Axis> axes{{"frames"}, {"boxes"}, {"6", 6}};
-  if (narrow) return play_boxes<float>(array_of<float>(given, "trace", Kind::real, axes), options);
-  return play_boxes<double>(array_of<double>(given, "trace", Kind::real, axes), options);
+  if (narrow)
+    return play_boxes<float>(array_of<float>(given, "trace", Numbers::real, axes), options);
+  return play_boxes<double>(array_of<double>(given, "trace", Numbers::real, axes), options);
 }
 
 py::dict predicted(const py::object& given_meshes, const py::object& given_poses,

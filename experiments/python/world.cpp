@@ -50,16 +50,16 @@ class PyWorld : public MadeByCalls {
 
   void move(const py::object& which, const py::object& pose) {
     if (PyLong_Check(which.ptr())) {
-      const auto row = array_of<double>(pose, "pose", Kind::real, {{"7", 7}});
+      const auto row = array_of<double>(pose, "pose", Numbers::real, {{"7", 7}});
       const std::uint32_t object = index(which);
       const Pose to = pose_of(row.data(), object);
       const Turn held(*this);
       place(object, to);
       return;
     }
-    const auto objects = checked(array_of<std::int64_t>(which, "objects", Kind::integer, {{"k"}}));
+    const auto objects = checked(array_of<std::int64_t>(which, "objects", Numbers::whole, {{"k"}}));
     const auto moves = moves_of(
-        objects, array_of<double>(pose, "poses", Kind::real,
+        objects, array_of<double>(pose, "poses", Numbers::real,
                                   {{"k", static_cast<py::ssize_t>(objects.size())}, {"7", 7}}));
     const Turn held(*this);  // all of them or none
     for (const auto& [object, to] : moves) place(object, to);
@@ -79,13 +79,13 @@ class PyWorld : public MadeByCalls {
 
   py::array_t<double> timed_steps(const py::object& which, const py::object& poses) {
     const auto indices =
-        array_of<std::int64_t>(which, "objects", Kind::integer, {{"steps"}, {"k"}});
+        array_of<std::int64_t>(which, "objects", Numbers::whole, {{"steps"}, {"k"}});
     const py::ssize_t steps = indices.shape(0), k = indices.shape(1);
     // An array without entries can promise any length.
     if (steps > std::numeric_limits<std::uint32_t>::max())
       throw Unusable("objects", "more steps than 32 bits number");
     const auto objects = checked(indices);  // before poses are asked for, which may change them
-    const auto moves = moves_of(objects, array_of<double>(poses, "poses", Kind::real,
+    const auto moves = moves_of(objects, array_of<double>(poses, "poses", Numbers::real,
                                                           {{"steps", steps}, {"k", k}, {"7", 7}}));
     std::vector<double> seconds;
     Signals signals;
