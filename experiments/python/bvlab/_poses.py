@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _bvlab
+from ._bvlab import _real_array
 
 ORDERS = {"wxyz": [0, 1, 2, 3], "xyzw": [3, 0, 1, 2]}
 ROUNDING = 1e-6  # by which a matrix may miss being a rotation
@@ -47,7 +47,7 @@ def pairs_of(objects: int) -> NDArray[np.uint32]:
 def _array(given: ArrayLike, name: str, shape: tuple[int | str, ...]) -> NDArray[np.float64]:
     """float64, finite, of that shape, in which a name stands for any length."""
     axes = [(str(n), -1 if isinstance(n, str) else n) for n in shape]
-    array = np.array(_bvlab._real_array(given, name, axes))  # what is checked is what is kept
+    array = np.array(_real_array(given, name, axes))  # what is checked is what is kept
     wrong = ~np.isfinite(array).reshape(*array.shape[:2], -1).all(axis=-1)
     if wrong.any():
         raise ValueError(f"{name}: not a finite number {_place(wrong)}")
