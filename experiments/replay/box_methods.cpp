@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "experiments/files/unusable.hpp"
+#include "experiments/replay/method_names.hpp"
 
 namespace bvlab {
 

@@ -35,7 +35,6 @@ struct MethodEntry {
 
 /// In the order of the list; generated.
 std::span<const MethodEntry* const> method_entries();
-std::vector<std::string> method_names();
 
 /// The method of that name for closed boxes; throws Unusable, naming those there are.
 template <class T>

@@ -10,6 +10,7 @@
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/box_methods.hpp"
+#include "experiments/replay/method_names.hpp"
 #include "experiments/scenes/boxes.hpp"
 #include "experiments/studies/study.hpp"
 

@@ -22,6 +22,7 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/box_peers.hpp"
 #include "experiments/replay/box_methods.hpp"
+#include "experiments/replay/method_names.hpp"
 #include "experiments/scenes/boxes.hpp"
 #include "experiments/studies/clocks.hpp"
 #include "experiments/studies/percentile.hpp"
