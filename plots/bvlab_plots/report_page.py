@@ -184,11 +184,12 @@ def facts_of(section):
 
 
 def html_of(section, anchor):
-    said = findings.sentence_of(section.rows)
+    said, unfinished = findings.sentence_of(section.rows), section.rows.attrs["unfinished"]
     figures = "".join(f'<a href="{link(file)}"><img src="{link(file)}" alt="{text(section.name)}: {text(Path(file).stem)}" '
                       'loading="lazy"></a>' for file in section.figures)
     return (f'<section id="{anchor}" class="experiment"><h2><a href="#{anchor}">{text(section.name)}</a></h2>'
             f'<p class="asks">{text(section.description)}</p>'
+            + (f"<p><strong>Unfinished: {text(unfinished)}.</strong></p>" if unfinished else "")
             + (f'<p class="says">{text(said)}</p>' if said else "")
             + "".join(f'<p class="results">{from_markdown(part)}</p>' for part in section.results)
             + f'<div class="figures">{figures}</div>{table_of(section)}{facts_of(section)}</section>')

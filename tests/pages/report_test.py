@@ -91,6 +91,14 @@ class Report(unittest.TestCase):
         for link in shown:
             self.assertTrue((out / link).is_file(), link)
 
+    def test_an_unfinished_record_says_so(self):
+        record, out = Path(self.temporary.name) / "broken-off", Path(self.temporary.name) / "unfinished"
+        shutil.copytree(record_of("peers-cgal"), record)
+        (record / "unfinished.json").write_text('{"what": "rows", "done": 0, "all": 9999}')
+        subprocess.run([ROOT / "plots" / "report", record, "--out", out, "--no-scenes"], capture_output=True, check=True)
+        self.assertRegex((out / "index.html").read_text(), r"Unfinished: \d+ of 9999 rows")
+        self.assertNotIn("Unfinished", self.page.read_text())
+
     def test_refused(self):
         done = subprocess.run([ROOT / "plots" / "report", self.out, "--out", self.out], capture_output=True, text=True,
                               check=False)
