@@ -200,7 +200,9 @@ void add_replay(CLI::App& app) {
                    "on: count n_u, n_v and n_p; times then include the counting")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
-  command->add_option("--out", arguments->out, "answers, as .npy");
+  command->add_option("--out", arguments->out,
+                      "answers, as .npy: touching uint8 and distance float64 (frames, pairs); "
+                      "contacts uint32 (k, 5) of frame, i, j, triangle of i, of j, sorted");
   command->add_option("--page", arguments->page,
                       "the scene in 3D, as one self-contained HTML file");
   command->add_option(

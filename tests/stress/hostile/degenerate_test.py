@@ -54,6 +54,12 @@ class Replay(ProgramTest):
             self.assertTrue(np.all(found >= 0))
         return found
 
+    def test_formats_of_answers_are_in_the_help(self):
+        """What `replay` above finds in the files."""
+        said = " ".join(self.take("replay", "--help").split())
+        self.assertIn("touching uint8 and distance float64 (frames, pairs)", said)
+        self.assertIn("contacts uint32 (k, 5) of frame, i, j, triangle of i, of j, sorted", said)
+
     def test_names_that_are_no_utf8(self):
         """What is written about them is: JSON, a page and X3D name them with U+FFFD in place of a byte."""
         mesh, trace = os.fsdecode(b"a\xff,b %20#?.off"), os.fsdecode(b"p\xfe&<.npy")
