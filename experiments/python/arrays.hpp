@@ -6,12 +6,15 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "experiments/files/unusable.hpp"
 
 namespace bvlab {
 
@@ -54,6 +57,11 @@ py::array_t<T, py::array::c_style> array_of(const py::handle& given, const std::
 template <class T, class Element>
 py::array_t<T> taken(std::vector<Element>&& values, std::vector<py::ssize_t> shape) {
   static_assert(sizeof(Element) % sizeof(T) == 0);
+  // An array without entries can have any lengths, and pybind11 multiplies them.
+  py::ssize_t bytes = sizeof(T);
+  for (const py::ssize_t length : shape)
+    if (__builtin_mul_overflow(bytes, std::max<py::ssize_t>(length, 1), &bytes))
+      throw Unusable("answers", "an array of such lengths cannot be had");
   auto owned = std::make_unique<std::vector<Element>>(std::move(values));
   // NumPy wants an address, also of nothing.
   static T nothing{};
