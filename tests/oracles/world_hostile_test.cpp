@@ -235,5 +235,22 @@ TEST(WorldThatComesAndGoes, ContactsAndCountsAreTheSameOverBinaryTrees) {
   expect_the_same_of_any_number_of_threads(binary_world<Margins>);
 }
 
+/// A world says nothing of how far apart bodies are whose boxes are apart.
+TEST(WorldThatComesAndGoes, DistancesAreAskedWhereBoxesOverlap) {
+  auto world = wide_world(1);
+  const auto asked = [&](double apart) {
+    world.move(0, *pose_from({0, 0, 0}, 1, 0, 0, 0));
+    world.move(1, *pose_from({apart, 0, 0}, 1, 0, 0, 0));
+    int taken = 0;
+    NotCounting counter;
+    world.update(
+        counter, [](const ObjectPair&) { return Distance(); },
+        [&](std::uint32_t, const ObjectPair&, const Distance&) { ++taken; }, [](std::uint32_t) {});
+    return taken;
+  };
+  EXPECT_EQ(asked(100), 0);
+  EXPECT_EQ(asked(0.1), 1);
+}
+
 }  // namespace
 }  // namespace bvlab
