@@ -34,7 +34,7 @@ def base_of(rows, over):
         base = rows[BEST[over](rows)]
         if base.empty:
             raise Refused(f"over {over}: there is none in these rows")
-        return base, set(VARIANT)
+        return base, tied(rows, VARIANT)
     base, names = rows, []
     for part in re.split(r",\s*(?=\w+\s*=)", over):
         match = CONDITION.match(part)
@@ -48,9 +48,9 @@ def base_of(rows, over):
 
 def denominators(rows, base, keys, best):
     """For each row the base's value where the keys are the same: the median of its repetitions, and of the best the
-    least of the variants'."""
-    which = keys + (["variant"] if best else [])
-    values = base.groupby(which).value.median() if which else pd.Series([base.value.median()])
+    least of the cells'."""
+    which = keys + ([*cell_columns(rows, {*keys, "variant"}), "variant"] if best else [])
+    values = base.groupby(which, dropna=False).value.median() if which else pd.Series([base.value.median()])
     if best:
         values = values.groupby(level=keys).min() if keys else pd.Series([values.min()])
     if not keys:

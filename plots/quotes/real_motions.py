@@ -48,6 +48,22 @@ def real_motions_table(record):
                      for motion, line in found.iterrows()]}
 
 
+@quotes("recommended-rule")
+def recommended_rule(record):
+    rows = records.read(record)
+    claim((rows.differing == 0).all(), "answers of ours agree")
+    rows = rows.assign(us=(rows.time_ns - rows.first_ns) / (rows.pairs * (1 - 1 / rows.frames)) / 1e3)
+    us = rows.groupby(["motion", "method"]).us.median().unstack()
+    candidates = us[["slab-boxes", "slab-boxes in small leaves", "oriented boxes"]].min(axis=1)
+    over, among = us["recommended"] / us.min(axis=1), us["recommended"] / candidates
+    fixed = us["slab-boxes"] / us.min(axis=1)
+    out = over.index.str.contains("left out")
+    claim(out.sum() == 6, "six motions were left out of the fit")
+    return {"motions": len(over), "cells": us.shape[1] - 1, "near": int((over <= NEAR).sum()), "worst": over.max(), "worst_at": over.idxmax(),
+            "among": int((among <= NEAR).sum()), "most_among": among.max(), "out": Interval(over[out]), "fixed": fixed.max(),
+            "roots": int((us["oriented boxes, from the roots"] < 0.9 * us["recommended"]).sum())}
+
+
 @quotes("boxes-changes")
 def boxes_changes(record):
     rows = records.read(record)

@@ -37,19 +37,20 @@ Script hostile_script(std::size_t bodies, int frames) {
     script.push_back(now);
     for (std::size_t i = 0; i < bodies; ++i) {
       const double chance = std::abs(unit(random));
-      if (!now[i]) {
-        if (chance < 0.2) now[i] = last[i];
+      auto& pose = now[i];
+      if (!pose) {
+        if (chance < 0.2) pose = last[i];
         continue;
       }
       if (chance < 0.05) {
-        now[i].reset();
+        pose.reset();
       } else if (chance < 0.1) {
-        now[i] = anywhere();
+        pose = anywhere();
       } else if (chance < 0.6) {
         const double by = chance < 0.4 ? 0.002 : 0.05;
-        now[i]->translation += by * Vec3<double>(unit(random), unit(random), unit(random));
+        pose->translation += by * Vec3<double>(unit(random), unit(random), unit(random));
       }
-      if (now[i]) last[i] = *now[i];
+      if (pose) last[i] = *pose;
     }
   }
   return script;
@@ -74,8 +75,8 @@ Truth truth_of(const Script& script, const std::vector<TriangleMesh>& meshes) {
 template <class World>
 void follow(World& world, const Script& script, std::size_t frame) {
   for (std::uint32_t i = 0; i < script[frame].size(); ++i)
-    if (script[frame][i])
-      world.move(i, *script[frame][i]);
+    if (const auto& pose = script[frame][i])
+      world.move(i, *pose);
     else
       world.take_out(i);
 }

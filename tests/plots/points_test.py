@@ -27,9 +27,10 @@ def with_peers(rows):
 
 
 class Points(unittest.TestCase):
-    def points(self, change=None, **keys):
+    def points(self, change=None, definition=None, **keys):
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()) as self.printed:
-            return points_of(records.read(own_record(folder, change=change), clock="processor"), Figure(name="test", **keys))
+            record = own_record(folder, change=change, definition=definition)
+            return points_of(records.read(record, clock="processor"), Figure(name="test", **keys))
 
     def at(self, points, x, series):
         (row,) = points[(points.x == x) & (points.series == series)].itertuples()
@@ -84,6 +85,33 @@ class Points(unittest.TestCase):
         self.assertAlmostEqual(self.at(points, 1, "quick").middle, 1 / 3 / 0.75)
         self.assertAlmostEqual(self.at(points, 10, "slow").middle, 2 / 0.75)
         self.assertFalse(((points.x == 10) & (points.series == "quick")).any())
+
+    def test_the_best_may_differ_in_all_that_the_axis_of_a_variant_sets(self):
+        """An axis `method` sets the leaf size beside the strategy: the best is that of all methods."""
+        methods = """
+name = "own"
+[[axis]]
+name = "degrees"
+values = [0.1, 1, 10]
+[[axis]]
+name = "volume"
+values = ["sphere", "obb"]
+[[axis]]
+name = "method"
+[[axis.value]]
+name = "recursive"
+strategy = "recursive"
+leaf_size = 1
+[[axis.value]]
+name = "deferred"
+strategy = "deferred"
+leaf_size = 4
+"""
+        points = self.points(lambda rows: rows.assign(method=rows.strategy, leaf_size=rows.strategy.map({"recursive": 1, "deferred": 4})),
+                             methods, x="degrees", y="time_ns", over="best of ours", series="volume, method")
+        self.assertAlmostEqual(self.at(points, 1, "sphere, recursive").middle, 1 / 0.75)
+        self.assertAlmostEqual(self.at(points, 1, "sphere, deferred").middle, 1)
+        self.assertAlmostEqual(self.at(points, 1, "obb, recursive").middle, 2 / 0.75)
 
     def test_peers_whose_answers_differ_bear_a_mark_where_all_are_shown(self):
         points = self.points(with_peers, x="degrees", y="time_ns", series="variant", peers="all")
