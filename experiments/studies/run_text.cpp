@@ -61,12 +61,20 @@ Definition checked_definition(const RunRequest& request) {
 
 std::filesystem::path run_text(RunRequest request, const Progress& progress) {
   if (const auto study = checked_study(request)) {
+    const bool is_new = request.record.empty() || !std::filesystem::exists(request.record);
     const auto folder = opened(request, [&](const std::string& held, const std::string&) {
       const auto before = study_from(held, "its definition");
       if (!before) throw Unusable("it is none of a study");
       check_extends(*before, *study);
     });
-    run_study(*study, folder, progress);
+    try {
+      run_study(*study, folder, progress);
+    } catch (const Unusable&) {
+      // A study knows its columns once it has begun: a figure that is refused leaves no record.
+      if (is_new && !std::filesystem::exists(folder / (study->name + ".csv")))
+        std::filesystem::remove_all(folder);
+      throw;
+    }
     return folder;
   }
   const Definition definition = checked_definition(request);
