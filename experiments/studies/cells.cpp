@@ -47,7 +47,7 @@ struct SettingOption {
 std::string trace_key(const Cell& cell) {
   std::string key;
   for (const auto& [name, value] : cell.parameters)
-    if (!is_of_variant(name)) key += name + "=" + value + ";";
+    if (!is_of_variant(name)) key.append(name).append("=").append(value).append(";");
   return key;
 }
 
@@ -127,8 +127,8 @@ Variant configured_variant_of(const Cell& cell) {
   return cell["configuration"].empty() ? variant : configured(variant, cell["configuration"]);
 }
 
-/// What is recommended depends on the meshes and the motion. It is found once for each of them, also
-/// where the cells are asked for again.
+/// What is recommended depends on the meshes and the motion. It is found once for each of them,
+/// also where the cells are asked for again.
 void set_recommended_of_motions(std::vector<Cell>& cells) {
   static std::map<std::string, Variant> known;
   for (auto& cell : cells) {
@@ -196,6 +196,7 @@ Prepared prepared(const Cell& cell) {
   }
   ready.meshes = meshes_of(cell);
   std::vector<Extent> extents;
+  extents.reserve(ready.meshes.size());
   for (const auto& mesh : ready.meshes) extents.push_back(extent_of(mesh));
   with_scene(cell, [&](const auto& scene) {
     auto array = scene.generate(extents, touches_any(ready.meshes, scene.objects));
