@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -88,10 +87,9 @@ class LargestFirst : public NoFront {
     while (!queue_.empty() && left_ > 0 && !satisfied) {
       std::array<NodePair, Traversal::W> taken;
       const std::size_t count = take(taken);
-      const std::uint64_t all = (std::uint64_t{2} << (count - 1)) - 1;
-      std::uint64_t open = ~traversal.culled(count, [&](std::size_t i) { return taken[i]; }) & all;
-      for (; open; open &= open - 1)
-        expand(traversal, taken[static_cast<std::size_t>(std::countr_zero(open))]);
+      const std::uint64_t culled = traversal.culled(count, [&](std::size_t i) { return taken[i]; });
+      for (std::size_t i = 0; i < count; ++i)
+        if (!(culled >> i & 1)) expand(traversal, taken[i]);
       satisfied = traversal.flush();
     }
     return satisfied;

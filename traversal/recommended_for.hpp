@@ -26,6 +26,7 @@
 #include "hierarchies/volumes/obb.hpp"
 #include "hierarchies/wide/obb_sibling_test.hpp"
 #include "traversal/counters.hpp"
+#include "traversal/queries/touching.hpp"
 #include "traversal/recommended.hpp"
 #include "traversal/wide/mixed_kernel.hpp"
 
@@ -60,9 +61,9 @@ struct RecommendedCandidate {
   std::string_view name;
   UnitCosts touching, contacts;
 
-  template <class Query>
-  const UnitCosts& costs() const {
-    return Query::one_hit_is_enough ? touching : contacts;
+  /// Of a query, by its name.
+  const UnitCosts& costs(std::string_view query) const {
+    return query == Touching::name ? touching : contacts;
   }
 };
 
@@ -96,8 +97,13 @@ struct SampledFrames {
   /// How many are counted.
   std::size_t size() const { return frames.size() / run * (run - uncounted); }
 };
-/// Meshes of more triangles in all are not built three times for a choice.
-inline constexpr std::size_t most_triangles_to_sample = 200'000;
+/// Those of a motion of so many frames. None where the meshes have more than 200 000 triangles in
+/// all: they are not built three times for a choice.
+inline SampledFrames samples_of(std::span<const TriangleMesh> meshes, std::size_t frames) {
+  std::size_t triangles = 0;
+  for (const auto& mesh : meshes) triangles += mesh.triangles.size();
+  return SampledFrames(triangles > 200'000 ? 0 : frames);
+}
 
 /// Calls `visit` with std::type_identity of the candidate for these meshes in unknown motion, and
 /// returns what it returns. O(triangles). For example, of bodies that all have one mesh:
@@ -145,16 +151,12 @@ decltype(auto) with_recommended(std::span<const TriangleMesh> meshes,
                                 Visit&& visit) {
   using Query = std::remove_cvref_t<decltype(make_query(std::size_t{0}))>;
   std::vector<std::vector<Pose>> samples;
-  for (const std::size_t frame : SampledFrames(frames.size()).frames)
+  for (const std::size_t frame : samples_of(meshes, frames.size()).frames)
     samples.push_back(frames[frame]);
-  std::size_t triangles = 0;
-  for (const auto& mesh : meshes) triangles += mesh.triangles.size();
-  if (samples.empty() || triangles > most_triangles_to_sample)
-    return with_recommended(meshes, visit);
+  if (samples.empty()) return with_recommended(meshes, visit);
   std::vector<double> cost;
   for_each_candidate([&]<class Best>(const RecommendedCandidate<Best>& candidate) {
-    cost.push_back(
-        expected_cost<Best>(meshes, samples, candidate.template costs<Query>(), make_query));
+    cost.push_back(expected_cost<Best>(meshes, samples, candidate.costs(Query::name), make_query));
   });
   const auto least = std::min_element(cost.begin(), cost.end()) - cost.begin();
   if (least == 0) return visit(std::type_identity<Recommended>());

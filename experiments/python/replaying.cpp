@@ -75,7 +75,7 @@ std::shared_ptr<Result> play(const py::object& given_meshes, const py::object& g
   options.after_frame = [&](std::size_t) { signals(); };
   auto [result, totals] = released([&] {
     require_finite_corners(trace, "poses", meshes.span());
-    Chosen chosen{variant, "", 0};
+    Chosen chosen{variant, ""};
     if (words.configuration)
       chosen = configured(variant, *words.configuration, meshes.span(), &trace);
     variant = chosen.variant;

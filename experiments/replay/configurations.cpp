@@ -54,9 +54,8 @@ constexpr Configuration list[] = {
      "touching and contacts, with margins: slab-box under the kernel siblings, built "
      "top-down-surface-area, 16 triangles a leaf; or the same built bottom-up, 4 a leaf; or obb "
      "under mixed, built bottom-up, fit tight, 4 a leaf: what costs least in counted samples of "
-     "the "
-     "motion, or suits the meshes where the motion is not known; distance: rss in binary trees, "
-     "built bottom-up, fit tight, one a leaf, recursive",
+     "the motion, or suits the meshes where the motion is not known; distance: rss in binary "
+     "trees, built bottom-up, fit tight, one a leaf, recursive",
      set_recommended},
     {"as-published",
      "the talk's (Li and Chen 1998): spheres in binary trees, one triangle a leaf, and a "
@@ -64,44 +63,26 @@ constexpr Configuration list[] = {
      set_as_published},
 };
 
-Chosen recommended_for_distances(const Variant& variant) {
-  return {variant,
-          "distances are sought by the volumes of triangles, which swept rectangles bound best", 0};
-}
-
 /// Of a motion that is not known.
 Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes) {
   set_recommended(variant);
-  if (variant.query == "distance") return recommended_for_distances(variant);
+  if (variant.query == "distance")
+    return {variant,
+            "distances are sought by the volumes of triangles, which swept rectangles bound best"};
   const double elongated = elongation(meshes);
   std::ostringstream measured;
   measured << std::setprecision(3) << elongated;
   if (elongated < long_triangles)
-    return {variant,
-            "triangles are hardly longer than wide (" + measured.str() +
-                "): boxes along the mesh's axes, cut by a slab, fit them and cost least",
-            0};
+    return {variant, "triangles are hardly longer than wide (" + measured.str() +
+                         "): boxes along the mesh's axes, cut by a slab, fit them and cost least"};
   return {as<RecommendedOriented>(variant),
           "triangles are long (" + measured.str() +
-              "): oriented boxes fit them, others are mostly empty",
-          0};
-}
-
-Trace part_of(const Trace& trace, std::span<const std::size_t> frames) {
-  Trace part{frames.size(), trace.objects, {}};
-  const std::size_t length = 7 * trace.objects;
-  for (const std::size_t frame : frames)
-    part.values.insert(part.values.end(), trace.values.begin() + frame * length,
-                       trace.values.begin() + (frame + 1) * length);
-  return part;
+              "): oriented boxes fit them, others are mostly empty"};
 }
 
 Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const Trace& trace) {
-  const SampledFrames samples(trace.frames);
-  std::size_t triangles = 0;
-  for (const auto& mesh : meshes) triangles += mesh.triangles.size();
-  if (variant.query == "distance" || samples.frames.empty() || trace.pairs() == 0 ||
-      triangles > most_triangles_to_sample)
+  const SampledFrames samples = samples_of(meshes, trace.frames);
+  if (variant.query == "distance" || samples.frames.empty() || trace.pairs() == 0)
     return recommended(variant, meshes);
   const Trace sampled = part_of(trace, samples.frames);
   ReplayOptions options;
@@ -113,7 +94,7 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
     const Variant tried = as<Best>(variant);
     // The program may have been configured without some volumes.
     if (wide_fan_out(tried.volume, tried.kernel) == 0) return;
-    const UnitCosts& unit = variant.query == "touching" ? candidate.touching : candidate.contacts;
+    const UnitCosts& unit = candidate.costs(variant.query);
     const auto series = replay(meshes, sampled, tried, options).series;
     double cost = 0;
     for (std::size_t k = 0; k < series.size(); ++k)
@@ -122,7 +103,7 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
     cost /= static_cast<double>(samples.size() * trace.pairs());
     costs << (costs.tellp() > 0 ? ", " : "") << candidate.name << ' ' << std::setprecision(3)
           << cost;
-    if (cost < least) least = cost, best = {tried, std::string(candidate.name), 0};
+    if (cost < least) least = cost, best = {tried, std::string(candidate.name)};
   });
   if (best.reason.empty()) return recommended(variant, meshes);
   best.reason += " cost least in " + std::to_string(samples.frames.size()) +
@@ -154,7 +135,7 @@ Variant configured(Variant variant, std::string_view configuration) {
 
 Chosen configured(Variant variant, std::string_view configuration,
                   std::span<const TriangleMesh> meshes, const Trace* trace) {
-  if (configuration != "recommended") return {configured(std::move(variant), configuration), "", 0};
+  if (configuration != "recommended") return {configured(std::move(variant), configuration), ""};
   const auto start = Clock::now();
   Chosen chosen = trace ? recommended(std::move(variant), meshes, *trace)
                         : recommended(std::move(variant), meshes);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <numeric>
 #include <random>
 #include <utility>
 
@@ -43,13 +44,6 @@ std::vector<std::size_t> window_starts(std::size_t frames, const PredictOptions&
   return starts;
 }
 
-Trace part_of(const Trace& trace, std::size_t first, std::size_t frames) {
-  const auto place = [&](std::size_t frame) {
-    return trace.values.begin() + static_cast<std::ptrdiff_t>(frame * trace.objects * 7);
-  };
-  return {frames, trace.objects, {place(first), place(first + frames)}};
-}
-
 /// Plays strategies over parts of a trace; hierarchies are built once.
 class Player {
  public:
@@ -62,7 +56,9 @@ class Player {
   Window play(std::string_view strategy, std::size_t first, std::size_t frames) const {
     Variant variant = variant_;
     variant.strategy = strategy;
-    const Trace part = part_of(trace_, first, frames);
+    std::vector<std::size_t> played_frames(frames);
+    std::iota(played_frames.begin(), played_frames.end(), first);
+    const Trace part = part_of(trace_, played_frames);
     Window window{first, {}, {}, timed(variant, part)};
     ReplayOptions options;
     options.count = Count::on;

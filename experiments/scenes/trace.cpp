@@ -19,6 +19,17 @@ void Trace::poses(std::size_t frame, std::span<Pose> poses) const {
     poses[i] = *pose_from({v[0], v[1], v[2]}, v[3], v[4], v[5], v[6]);
 }
 
+Trace part_of(const Trace& trace, std::span<const std::size_t> frames) {
+  const std::size_t length = 7 * trace.objects;
+  Trace part{frames.size(), trace.objects, {}};
+  part.values.reserve(frames.size() * length);
+  for (const std::size_t frame : frames) {
+    const double* const first = trace.values.data() + frame * length;
+    part.values.insert(part.values.end(), first, first + length);
+  }
+  return part;
+}
+
 std::span<const Pose> PosesInTurn::at(std::size_t frame) {
   const std::size_t length = 7 * trace_.objects;
   const double* v = trace_.values.data() + frame * length;

@@ -25,6 +25,9 @@ struct Trace {
   void poses(std::size_t frame, std::span<Pose> poses) const;
 };
 
+/// A trace of these frames alone, in their order.
+Trace part_of(const Trace& trace, std::span<const std::size_t> frames);
+
 /// A trace's poses, frame by frame. Who stands where it stood in the frame asked for before is not
 /// posed again: that is the work of no engine that is timed.
 class PosesInTurn {

@@ -27,9 +27,9 @@ def with_peers(rows):
 
 
 class Points(unittest.TestCase):
-    def points(self, change=None, definition=None, **keys):
+    def points(self, change=None, more="", **keys):
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()) as self.printed:
-            record = own_record(folder, change=change, definition=definition)
+            record = own_record(folder, more, change)
             return points_of(records.read(record, clock="processor"), Figure(name="test", **keys))
 
     def at(self, points, x, series):
@@ -89,13 +89,6 @@ class Points(unittest.TestCase):
     def test_the_best_may_differ_in_all_that_the_axis_of_a_variant_sets(self):
         """An axis `method` sets the leaf size beside the strategy: the best is that of all methods."""
         methods = """
-name = "own"
-[[axis]]
-name = "degrees"
-values = [0.1, 1, 10]
-[[axis]]
-name = "volume"
-values = ["sphere", "obb"]
 [[axis]]
 name = "method"
 [[axis.value]]

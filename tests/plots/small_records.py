@@ -106,12 +106,12 @@ values = ["recursive", "deferred"]
 """
 
 
-def own_record(folder, more="", change=None, definition=None):
+def own_record(folder, more="", change=None):
     """A record made here: 1000 ns a degree and a tenth more each repetition, boxes twice as long, deferred a quarter
-    less, of ten pairs; `change` changes its rows, `more` stands behind its definition, `definition` replaces that."""
+    less, of ten pairs; `change` changes its rows, `more` stands behind its definition."""
     record = Path(folder) / "own-record"
     record.mkdir()
-    (record / "definition.toml").write_text((definition or OWN) + more)
+    (record / "definition.toml").write_text(OWN + more)
     cells = [(d, v, s, r) for r in range(3) for s in ("recursive", "deferred") for v in ("sphere", "obb")
              for d in (0.1, 1, 10)]
     rows = pd.DataFrame(cells, columns=["degrees", "volume", "strategy", "repetition"])

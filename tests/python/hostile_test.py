@@ -309,7 +309,7 @@ class Arguments(unittest.TestCase):
             laughs = [laughs] * 10
         itself: list = []
         itself.append(itself)
-        for bad in (itertools.repeat([0, 0, 0]), Saying(3, itertools.repeat([0, 0, 0])), 
+        for bad in (itertools.repeat([0, 0, 0]), Saying(3, itertools.repeat([0, 0, 0])),
                     [[0, 0, 0], [0, 0, 0], Saying(3, itertools.repeat(0))], [Saying(3, itertools.count())] * 3, laughs, itself):
             for call in (lambda bad: bvlab.Mesh(bad, FACES), lambda bad: bvlab.Mesh(VERTICES, bad),
                          lambda bad: bvlab.replay([self.mesh], bad), bvlab.boxes, lambda bad: bvlab.poses(bad, bad, order="wxyz"),

@@ -61,7 +61,7 @@ class WideMargins {
     Kept& kept = kept_[p];
     kept.deadline = 0, kept.was_apart = kept.touched_again = false;
     kept.crossing.reset(), kept.rest = 0, kept.next_rest = 1;
-    kept.front.clear(), kept.pause = {}, front_sizes_[p] = 0;
+    clear_front(p), kept.pause = {};
   }
 
   /// The entries of the front of pair p, and of all pairs.
@@ -123,7 +123,7 @@ class WideMargins {
   void apart(std::size_t p, const ObjectPair& pair, double gap) {
     Kept& kept = kept_[p];
     answers_[p] = {unknown, epochs(pair), false};
-    kept.crossing.reset(), kept.front.clear(), front_sizes_[p] = 0;
+    kept.crossing.reset(), clear_front(p);
     kept.was_apart = true, kept.touched_again = false;
     extend_validity(p, pair, gap);
   }
@@ -177,7 +177,7 @@ class WideMargins {
         --kept.rest;
       else
         kept.crossing = found.crossing();
-      kept.front.clear(), front_sizes_[p] = 0;
+      clear_front(p);
       return;
     }
     if (found.front()) {
@@ -276,6 +276,8 @@ class WideMargins {
     kept.rest = kept.next_rest;
     kept.next_rest = std::min(4 * kept.next_rest, longest_rest);
   }
+
+  void clear_front(std::size_t p) { kept_[p].front.clear(), front_sizes_[p] = 0; }
 
   /// Changes whenever one of the bodies moves.
   std::uint32_t epochs(const ObjectPair& pair) const { return epochs_[pair.i] + epochs_[pair.j]; }
