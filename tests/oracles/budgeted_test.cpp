@@ -75,7 +75,9 @@ TEST_F(Budget, FanOutsAndFramesAnswerTheSame) {
           const auto some = within(volume, budget, fan_out, frame);
           EXPECT_LE(some.n_v, budget * truth_.size());
           for (std::size_t i = 0; i < truth_.size(); ++i)
-            if (some.known[i] != 2) ASSERT_EQ(some.known[i], truth_[i]) << volume << ' ' << fan_out;
+            if (some.known[i] != 2) {
+              ASSERT_EQ(some.known[i], truth_[i]) << volume << ' ' << fan_out;
+            }
         }
         const auto whole = within(volume, 1 << 20, fan_out, frame);
         EXPECT_EQ(whole.known, truth_) << volume << ' ' << fan_out << ' ' << name_of(frame);

@@ -23,7 +23,9 @@ TEST(SampledFrames, LieInTheMotionAndAreAtMostAQuarterOfIt) {
     std::size_t counted = 0;
     for (std::size_t k = 0; k < samples.frames.size(); ++k) {
       EXPECT_LT(samples.frames[k], length);
-      if (k > 0) EXPECT_GT(samples.frames[k], samples.frames[k - 1]) << "each frame once, in order";
+      if (k > 0) {
+        EXPECT_GT(samples.frames[k], samples.frames[k - 1]) << "each frame once, in order";
+      }
       if (SampledFrames::counted(k)) {
         EXPECT_EQ(samples.frames[k], samples.frames[k - 1] + 1);
         ++counted;
