@@ -196,8 +196,10 @@ inline __m512 every_sixth(const __m512 (&v)[6]) {
 }  // namespace detail
 template <>
 inline void load(Block<float>& block, const Box<float>* boxes) {
+  static_assert(sizeof(Box<float>) == 6 * sizeof(float));
+  const auto* numbers = reinterpret_cast<const float*>(boxes);
   __m512 v[6];
-  for (int k = 0; k < 6; ++k) v[k] = _mm512_loadu_ps(boxes->lo + 16 * k);
+  for (int k = 0; k < 6; ++k) v[k] = _mm512_loadu_ps(numbers + 16 * k);
   _mm512_store_ps(block.lo[0], detail::every_sixth<0>(v));
   _mm512_store_ps(block.lo[1], detail::every_sixth<1>(v));
   _mm512_store_ps(block.lo[2], detail::every_sixth<2>(v));
