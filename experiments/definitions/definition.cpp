@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/definitions/definition.hpp"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <charconv>
 #include <set>
 #include <sstream>
 
+#include "experiments/definitions/toml.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
 #include "experiments/scenes/scenes.hpp"

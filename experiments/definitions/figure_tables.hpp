@@ -3,12 +3,12 @@
 /// what they mean); here it is checked that it will be able to, before hours of measuring.
 #pragma once
 
-#include <toml++/toml.h>
-
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
+
+#include "experiments/definitions/toml.hpp"
 
 namespace bvlab {
 

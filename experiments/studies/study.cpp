@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/studies/study.hpp"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <stdexcept>
 
 #include "experiments/definitions/definition.hpp"
 #include "experiments/definitions/figure_tables.hpp"
+#include "experiments/definitions/toml.hpp"
 #include "experiments/files/unusable.hpp"
 
 namespace bvlab {

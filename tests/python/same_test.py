@@ -115,7 +115,7 @@ class Same(unittest.TestCase):
 
     def test_run(self):
         definition = {"name": "mine", "parameters": {"mesh": "torus", "polygons": 100, "objects": 3, "frames": 5},
-                      "axis": [{"name": "strategy", "values": ["recursive", "margins"]}]}
+                      "axis": [{"name": "strategy", "values": ["recursive", "deferred"]}]}
         with tempfile.TemporaryDirectory() as folder:
             folder, seen = Path(folder), []
             record = bvlab.run(definition, folder / "ours", counts=True, progress=lambda done, of: seen.append((done, of)))
