@@ -4,7 +4,7 @@
 import math
 
 import numpy as np
-from matplotlib.ticker import NullLocator
+from matplotlib.ticker import MaxNLocator, NullLocator
 
 from bvlab_plots.words import number
 
@@ -48,9 +48,11 @@ def decades(low, high, most=6):
 
 
 def log_ticks(low, high):
-    """At most seven round numbers on a logarithmic axis."""
+    """Two to seven round numbers on a logarithmic axis."""
     steps = (1, 2, 5) if high / low < 100 else (1, 3) if high / low < 1000 else (1,)
     ticks = [step * 10.0**p for p in range(-15, 16) for step in steps if low <= step * 10.0**p <= high]
+    if len(ticks) < 2:
+        ticks = [tick for tick in MaxNLocator(5).tick_values(low, high) if low <= tick <= high]
     return ticks[::max(1, math.ceil(len(ticks) / 7))]
 
 

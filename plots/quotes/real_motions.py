@@ -80,3 +80,20 @@ def boxes_changes(record):
     claim((on <= 1.05).all() and (beside <= 1).all(), "in the mean following costs at most 1.05 of starting over, and no rival is faster")
     return {"cases": len(on), "few": Interval(few), "worst": on.max(), "beside": Interval(beside), "told": Interval(told), "untold": untold.max(), "late": int((late > 1.05).sum()),
             "latest": late.max()}
+
+
+@quotes("boxes-changes-large")
+def boxes_changes_large(record):
+    rows = records.read(record)
+    claim((rows.differing == 0).all(), "all lists are that of auto")
+    auto = rows[(rows.method == "auto")].set_index(["set", "motion", "coherent"])
+    mean = auto.frame_ns.unstack()
+    ran = mean[mean["on"] > 0]
+    gone = mean[~(mean["on"] > 0)]
+    claim(set(gone.index.get_level_values("motion")) == {"few", "rare"}, "following is given up where few move")
+    claim((auto.overlaps.unstack()["off"][gone.index] > 5e6).all(), "following is given up in sets of more than five million pairs")
+    rivals = rows[(rows.method != "auto") & (rows.coherent != "told") & (rows.frame_ns > 0)].groupby(["set", "motion"]).frame_ns.min()
+    beside = (ran["on"] / rivals).dropna()
+    lost = beside.index[beside > 1]
+    claim(len(lost) == 1 and "cloth-funnel" in lost[0][0] and lost[0][1] == "rare", "a rival is faster for the rare movers of cloth-funnel alone")
+    return {"cases": len(mean), "given_up": len(gone), "on": Interval(ran["on"] / ran["off"]), "beside": Interval(beside), "lost": len(lost)}

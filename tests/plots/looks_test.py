@@ -8,9 +8,17 @@ import unittest
 
 from small_records import PLOTS
 
-from bvlab_plots import looks, style
+from bvlab_plots import looks, style, ticks
 
 STRANGERS = ["capsule", "periodic:2", "periodic:4", "periodic:8", "deferred:2", "deferred:4", "a library"]
+
+
+class Ticks(unittest.TestCase):
+    def test_every_logarithmic_axis_has_two_numbers(self):
+        for low, high in ((31, 43), (55.1, 61), (0.9, 1.1), (1, 1000), (1e-9, 1e9), (1.00001, 1.00002)):
+            shown = ticks.log_ticks(low, high)
+            self.assertTrue(2 <= len(shown) <= 7, (low, high, shown))
+            self.assertTrue(all(low <= tick <= high for tick in shown), (low, high, shown))
 
 
 class Looks(unittest.TestCase):
