@@ -147,11 +147,13 @@ class Reader {
 
   void check_size(const std::vector<Definition::Axis>& axes) const {
     std::size_t cells = 1;
-    for (const auto& axis : axes)
-      if ((cells *= axis.values.size()) > most_cells)
+    for (const auto& axis : axes) {
+      cells *= axis.values.size();
+      if (cells > most_cells)
         throw Unusable(name_, "axis '" + axis.name + "': the axes up to this one multiply into " +
                                   std::to_string(cells) + " cells; " + std::to_string(most_cells) +
                                   " are the most");
+    }
   }
 
   void check_series(const Definition& definition) const {
@@ -160,7 +162,7 @@ class Reader {
       bool known = false;
       const auto offer = [&, &key = key](const std::string& name) {
         known = known || name == key;
-        names += (names.empty() ? "" : ", ") + name;
+        names.append(names.empty() ? "" : ", ").append(name);
       };
       for (const auto& axis : definition.axes)
         if (!axis.is_parameter) offer(axis.name);
@@ -176,7 +178,7 @@ class Reader {
 
   /// Files and columns bear it.
   std::string name(const toml::node& node, const std::string& key) const {
-    const std::string value = string(node, key);
+    std::string value = string(node, key);
     if (value != one_line(value)) fail(node.source(), key + " holds a control character");
     return value;
   }
