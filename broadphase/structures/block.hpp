@@ -97,7 +97,7 @@ template <class Contact, class T>
       std::memcpy(&four, numbers + first, sizeof four);
       return four;
     };
-    auto four = all(0) == all(0);
+    auto four = all(0) < all(1);  // all bits are set
     for (int axis = 0; axis < 3; ++axis)
       four &= Contact::reaches(all(box.hi[axis]), held(block.lo[axis])) &
               Contact::reaches(held(block.hi[axis]), all(box.lo[axis]));
