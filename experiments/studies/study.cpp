@@ -121,7 +121,7 @@ void check(const StudyDefinition& definition) {
     const StudyParameter* parameter = find(all, key);
     if (!parameter) {
       std::string names;
-      for (const auto& each : all) names += (names.empty() ? "" : ", ") + each.name;
+      for (const auto& each : all) names.append(names.empty() ? "" : ", ").append(each.name);
       throw Unusable(definition.file, "unknown parameter '" + key + "' of kind " + definition.kind +
                                           "; there are " + names);
     }
