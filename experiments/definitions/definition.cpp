@@ -167,7 +167,9 @@ class Reader {
       for (const auto& axis : definition.axes)
         if (!axis.is_parameter) offer(axis.name);
       for (const auto& [name, ignored] : default_parameters()) offer(name);
-      if (!known) throw Unusable(name_, "series: unknown '" + key + "'; there are " + names);
+      if (!known)
+        throw Unusable(
+            name_, std::string("series: unknown '").append(key).append("'; there are ").append(names));
     }
   }
 

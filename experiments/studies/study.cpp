@@ -122,8 +122,12 @@ void check(const StudyDefinition& definition) {
     if (!parameter) {
       std::string names;
       for (const auto& each : all) names.append(names.empty() ? "" : ", ").append(each.name);
-      throw Unusable(definition.file, "unknown parameter '" + key + "' of kind " + definition.kind +
-                                          "; there are " + names);
+      throw Unusable(definition.file, std::string("unknown parameter '")
+                                          .append(key)
+                                          .append("' of kind ")
+                                          .append(definition.kind)
+                                          .append("; there are ")
+                                          .append(names));
     }
     parameter->check(values, definition.file);
   }
