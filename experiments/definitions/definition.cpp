@@ -169,7 +169,8 @@ class Reader {
       for (const auto& [name, ignored] : default_parameters()) offer(name);
       if (!known)
         throw Unusable(
-            name_, std::string("series: unknown '").append(key).append("'; there are ").append(names));
+            name_,
+            std::string("series: unknown '").append(key).append("'; there are ").append(names));
     }
   }
 
