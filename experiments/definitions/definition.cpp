@@ -157,21 +157,19 @@ class Reader {
   }
 
   void check_series(const Definition& definition) const {
-    for (const auto& [key, value] : definition.series) {
-      std::string names;
-      bool known = false;
-      const auto offer = [&, &key = key](const std::string& name) {
-        known = known || name == key;
-        names.append(names.empty() ? "" : ", ").append(name);
-      };
-      for (const auto& axis : definition.axes)
-        if (!axis.is_parameter) offer(axis.name);
-      for (const auto& [name, ignored] : default_parameters()) offer(name);
-      if (!known)
-        throw Unusable(
-            name_,
-            std::string("series: unknown '").append(key).append("'; there are ").append(names));
-    }
+    for (const auto& [key, value] : definition.series) check_series(key, definition);
+  }
+  void check_series(const std::string& key, const Definition& definition) const {
+    std::string names;
+    bool known = false;
+    const auto offer = [&](const std::string& name) {
+      known = known || name == key;
+      names += (names.empty() ? "" : ", ") + name;
+    };
+    for (const auto& axis : definition.axes)
+      if (!axis.is_parameter) offer(axis.name);
+    for (const auto& [name, ignored] : default_parameters()) offer(name);
+    if (!known) throw Unusable(name_, "series: unknown '" + key + "'; there are " + names);
   }
 
   std::string string(const toml::node& node, const std::string& key) const {

@@ -27,6 +27,15 @@ const StudyKind& kind_of(const StudyDefinition& definition) {
   throw Unusable(definition.file, "unknown kind '" + definition.kind + "'; there are " + names);
 }
 
+const StudyParameter& parameter_named(const std::string& key, const StudyParameters& all,
+                                      const StudyDefinition& definition) {
+  if (const StudyParameter* parameter = find(all, key)) return *parameter;
+  std::string names;
+  for (const auto& each : all) names += (names.empty() ? "" : ", ") + each.name;
+  throw Unusable(definition.file, "unknown parameter '" + key + "' of kind " + definition.kind +
+                                      "; there are " + names);
+}
+
 [[noreturn]] void fail(const std::string& file, const toml::node& node, const std::string& what) {
   throw Unusable(file, "line " + std::to_string(node.source().begin.line) + ": " + what);
 }
@@ -117,20 +126,8 @@ std::optional<StudyDefinition> study_from(const std::string& text, const std::st
 void check(const StudyDefinition& definition) {
   const StudyKind& kind = kind_of(definition);
   const StudyParameters all = kind.parameters();
-  for (const auto& [key, values] : definition.parameters) {
-    const StudyParameter* parameter = find(all, key);
-    if (!parameter) {
-      std::string names;
-      for (const auto& each : all) names.append(names.empty() ? "" : ", ").append(each.name);
-      throw Unusable(definition.file, std::string("unknown parameter '")
-                                          .append(key)
-                                          .append("' of kind ")
-                                          .append(definition.kind)
-                                          .append("; there are ")
-                                          .append(names));
-    }
-    parameter->check(values, definition.file);
-  }
+  for (const auto& [key, values] : definition.parameters)
+    parameter_named(key, all, definition).check(values, definition.file);
   if (!kind.check) return;
   try {
     kind.check(definition);
