@@ -25,8 +25,8 @@ def note_of(figure, points, made=""):
     sentences = [("a point for each cell: " if attrs["measured"] and not made else "") + head +
                  (f"{':' if made else ' of'} {over}" if over else "") + (f"; {bars}" if bars and figure.kind != "map" else "")]
     if attrs["timed"]:
-        clock = "processor time" if attrs["clock"] == "processor" and attrs["has_clock"] else "wall time"
-        if clock == "processor time" and attrs["of_frames"]:
+        clock = f"{attrs['clock']} time"
+        if attrs["clock"] == "processor" and attrs["of_frames"]:
             clock += f" (wall time: {', '.join(attrs['of_frames'])})"
         beside = attrs["beside"]
         sentences.append(clock + (f", {beside} of {attrs['drawn']} rows measured beside other work" if beside else ""))

@@ -192,6 +192,9 @@ def said_of(rows, value):
     """What a figure has to say of the rows it is drawn of."""
     timed = any(is_time(column) for column in value.columns)
     beside = int((rows["alone"] == "no").sum()) if timed and "alone" in rows else 0
-    return dict(drawn=len(rows), timed=timed, beside=beside,
-                of_frames=records.times_of_frames(" ".join(value.columns)), clock=rows.attrs.get("clock", ""), has_clock="wall_per_processor" in rows,
-                unfinished=rows.attrs.get("unfinished"))
+    if "wall_ns" in rows:  # beside it stand the processor's times, of single frames, too
+        clock, of_frames = "wall" if "wall_ns" in value.columns else "processor", []
+    else:
+        clock = "processor" if rows.attrs.get("clock") == "processor" and "wall_per_processor" in rows else "wall"
+        of_frames = records.times_of_frames(" ".join(value.columns))
+    return dict(drawn=len(rows), timed=timed, beside=beside, of_frames=of_frames, clock=clock, unfinished=rows.attrs.get("unfinished"))

@@ -202,6 +202,11 @@ leaf_size = 4
                 self.assertAlmostEqual(drawn / 10 if drawn > 1000 else drawn, middle)
                 self.assertIn(said, note_of(figure, points))
 
+    def test_where_wall_times_have_a_column_all_others_are_processor_times(self):
+        for y, said in (("time_ns", "Processor time."), ("p99_ns", "Processor time."), ("wall_ns", "Wall time.")):
+            points = self.points(lambda rows: rows.assign(wall_ns=2 * rows.time_ns, p99_ns=3 * rows.time_ns), x="degrees", y=y, series="variant")
+            self.assertTrue(note_of(Figure("a", "degrees"), points).endswith(said), y)
+
     def test_a_note_stands_below_the_legend(self):
         """Whatever the resolution: of six lines it covered the last."""
         keys = dict(x="degrees", y="time_ns, p99_ns, worst_ns", series="strategy", where=["volume=obb"], width="column")
