@@ -27,15 +27,6 @@ const StudyKind& kind_of(const StudyDefinition& definition) {
   throw Unusable(definition.file, "unknown kind '" + definition.kind + "'; there are " + names);
 }
 
-const StudyParameter& parameter_named(const std::string& key, const StudyParameters& all,
-                                      const StudyDefinition& definition) {
-  if (const StudyParameter* parameter = find(all, key)) return *parameter;
-  std::string names;
-  for (const auto& each : all) names += (names.empty() ? "" : ", ") + each.name;
-  throw Unusable(definition.file, "unknown parameter '" + key + "' of kind " + definition.kind +
-                                      "; there are " + names);
-}
-
 [[noreturn]] void fail(const std::string& file, const toml::node& node, const std::string& what) {
   throw Unusable(file, "line " + std::to_string(node.source().begin.line) + ": " + what);
 }
@@ -51,6 +42,15 @@ const StudyParameter* find(const StudyParameters& all, const std::string& key) {
   const auto found = std::find_if(all.begin(), all.end(),
                                   [&](const auto& parameter) { return parameter.name == key; });
   return found == all.end() ? nullptr : &*found;
+}
+
+const StudyParameter& parameter_named(const std::string& key, const StudyParameters& all,
+                                      const StudyDefinition& definition) {
+  if (const StudyParameter* parameter = find(all, key)) return *parameter;
+  std::string names;
+  for (const auto& each : all) names += (names.empty() ? "" : ", ") + each.name;
+  throw Unusable(definition.file, "unknown parameter '" + key + "' of kind " + definition.kind +
+                                      "; there are " + names);
 }
 
 }  // namespace
