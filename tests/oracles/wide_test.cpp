@@ -269,6 +269,31 @@ TEST(Wide, TouchingLasts) {
   EXPECT_LT(3 * looked_at, touching);
 }
 
+/// Boxes that share a plane and slide along it: no test in float is certain that they touch. The
+/// triangles that met last are tested exactly, and nothing is traversed until they have parted.
+TEST(Wide, TouchingInAPlaneLasts) {
+  const TriangleMesh mesh = formula_mesh("box", 12);
+  const WideHierarchy<SlabBox<float>, 16> hierarchy(mesh, builds::BottomUpLocal::topology(mesh, 1));
+  const std::vector<WideShape<SlabBox<float>, 16>> shapes(2, {&mesh, &hierarchy});
+  WidePairs<SlabBox<float>, 16, WideMargins> engine(shapes, all_object_pairs(2));
+  double side = 0;
+  for (const auto& vertex : mesh.vertices) side = std::max(side, 2 * vertex[0]);
+  std::size_t traversed = 0, touching = 0;
+  for (int f = 0; f < 600; ++f) {
+    PosesOfFrame frame(2);
+    frame[1].translation = Vec3<double>(side, f * 0x1p-9, f * 0x1p-10);
+    Counting counter;
+    bool found = false;
+    engine.frame(
+        frame, counter, [](std::size_t) { return Touching(); },
+        [&](std::size_t, const Touching& query) { found = query.touching(); });
+    EXPECT_EQ(found, surfaces_touch(mesh, frame)) << f;
+    touching += found, traversed += found && counter.n_p != 1;
+  }
+  EXPECT_GT(touching, 300u);
+  EXPECT_LT(10 * traversed, touching);
+}
+
 /// What rests, moves along together or is far from the rest is not tested again.
 TEST(Wide, RestIsNotTested) {
   for (const auto& [scene, truth] : scenes_with_truth()) {

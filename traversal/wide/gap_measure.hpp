@@ -13,9 +13,10 @@
 
 namespace bvlab {
 
-/// Triangles that cross for certain, by their indices in their meshes.
+/// Triangles that share a point, by their indices in their meshes.
 struct Crossing {
   std::uint32_t a, b;
+  bool certain;  ///< the filter in float decided it; otherwise the query's own test did
 };
 
 template <Batched S>
@@ -93,7 +94,7 @@ class GapMeasure {
     least_ = S(0.0f);
     return false;
   }
-  void crossing(std::uint32_t a, std::uint32_t b) { crossing_ = {a, b}; }
+  void crossing(const Crossing& found) { crossing_ = found; }
   const std::optional<Crossing>& crossing() const { return crossing_; }
   void triangles_are(float gap, std::size_t entry, const ReferenceSphere& reference) {
     least_ = stdx::min(least_, S(gap));

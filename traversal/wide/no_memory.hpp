@@ -11,7 +11,7 @@
 ///   require(body, pose)                     a traversal is about to need the body
 ///   answer_valid<Query>(pair, bodies)       whether the last answer holds, by one comparison
 ///   repeat(pair, query)                     gives a query the last answer
-///   cull<Query>(sieve, scene, counter)      decides pairs by what is kept
+///   cull<Query>(sieve, scene, counter, make_query)  decides pairs by what is kept
 ///   skips_directions(pair)                  see EarlyCulling::cull_by_directions
 ///   apart(pair, bodies, gap)                a direction has separated the pair
 ///   start<Query>(pair, bodies)              where a traversal starts
@@ -69,8 +69,8 @@ class NoMemory {
   }
   template <class Query>
   static void repeat(std::size_t, Query&) {}
-  template <class Query, class Counter>
-  static void cull(PairSieve& sieve, const PairScene& scene, Counter&) {
+  template <class Query, class Counter, class MakeQuery>
+  static void cull(PairSieve& sieve, const PairScene& scene, Counter&, MakeQuery&&) {
     scene.culling.cull_by_spheres(sieve, scene.pairs);
   }
   static constexpr bool skips_directions(std::size_t) { return false; }

@@ -110,10 +110,10 @@ class WideMargins {
   }
   /// Decides the pairs whose answers hold by the bound between reference poses and, where one hit
   /// is enough, those whose last crossing still exists.
-  template <class Query, class Counter>
-  void cull(PairSieve& sieve, const PairScene& scene, Counter& counter) {
+  template <class Query, class Counter, class MakeQuery>
+  void cull(PairSieve& sieve, const PairScene& scene, Counter& counter, MakeQuery&& make_query) {
     sieve.sift([&](std::size_t p) { return answer_valid_by_reference_pose(p, scene.pairs[p]); });
-    if constexpr (Query::one_hit_is_enough) cull_by_crossings(sieve, scene, counter);
+    if constexpr (Query::one_hit_is_enough) cull_by_crossings(sieve, scene, counter, make_query);
   }
   /// Pairs with a front, or that touched twice in a row, are not tested by directions.
   bool skips_directions(std::size_t p) const {
@@ -238,17 +238,19 @@ class WideMargins {
     return true;
   }
 
-  template <class Counter>
-  void cull_by_crossings(PairSieve& sieve, const PairScene& scene, Counter& counter) {
+  template <class Counter, class MakeQuery>
+  void cull_by_crossings(PairSieve& sieve, const PairScene& scene, Counter& counter,
+                         MakeQuery& make_query) {
     CrossingBatch batch;
+    const auto decide = [&](std::size_t p, bool crossing, double margin) {
+      if (crossing)
+        still_crossing(p, scene.pairs[p], margin);
+      else
+        lost_crossing(p);
+      sieve.put(static_cast<std::int32_t>(p), !crossing);
+    };
     const auto test = [&] {
-      batch.test(counter, [&](std::size_t p, double margin) {
-        if (margin > 0)
-          still_crossing(p, scene.pairs[p], margin);
-        else
-          lost_crossing(p);
-        sieve.put(static_cast<std::int32_t>(p), !(margin > 0));
-      });
+      batch.test(counter, [&](std::size_t p, double margin) { decide(p, margin > 0, margin); });
     };
     sieve.sift_slowly([&](std::size_t p) {
       const auto& crossing = kept_[p].crossing;
@@ -256,13 +258,20 @@ class WideMargins {
       const auto triangle = [&](std::uint32_t body, std::uint32_t index) {
         return scene.poses[body](scene.meshes[body]->corners(index));
       };
-      batch.add(p, triangle(scene.pairs[p].i, crossing->a),
-                triangle(scene.pairs[p].j, crossing->b));
-      if (batch.full()) test();
+      const Triangle a = triangle(scene.pairs[p].i, crossing->a),
+                     b = triangle(scene.pairs[p].j, crossing->b);
+      if (crossing->certain) {
+        batch.add(p, a, b);
+        if (batch.full()) test();
+      } else {
+        const Candidate candidate{&a, &b, crossing->a, crossing->b, 0};
+        counter.primitives(1);
+        decide(p, make_query(p).primitives(std::span(&candidate, 1)).satisfied, 0);
+      }
     });
     test();
   }
-  /// The triangles cross until the bodies have moved by `margin`.
+  /// The triangles cross, and go on to do so until the bodies have moved by `margin`.
   void still_crossing(std::size_t p, const ObjectPair& pair, double margin) {
     answers_[p] = {unknown, epochs(pair), true};
     kept_[p].deadline = 0, kept_[p].touched_again = true;

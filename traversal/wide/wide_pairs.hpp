@@ -158,7 +158,7 @@ class WidePairs {
     const std::uint64_t before = counter.n_v + counter.n_p;
     counter.tested(sieve.undecided().size());
     if constexpr (!wants_bound<Query>()) {
-      memory_.template cull<Query>(sieve, {pairs_, poses_, meshes_, culling_}, counter);
+      memory_.template cull<Query>(sieve, {pairs_, poses_, meshes_, culling_}, counter, make_query);
       counter.tested(culling_.cull_by_directions(
           sieve, pairs_, [&](std::size_t p) { return memory_.skips_directions(p); },
           [&](std::size_t p, double gap) { memory_.apart(p, pairs_[p], gap); }));

@@ -229,7 +229,7 @@ class WideTraversal {
       if (!query_->known(triangles.of_a(lane), triangles.of_b(lane))) continue;
       if constexpr (Measure::measures) {
         measure_.triangles(pair, true, entry);
-        measure_.crossing(triangles.of_a(lane), triangles.of_b(lane));
+        measure_.crossing({triangles.of_a(lane), triangles.of_b(lane), true});
       }
       return true;
     }
@@ -268,7 +268,11 @@ class WideTraversal {
 
   bool flush() {
     const std::size_t count = std::exchange(pending_, 0);
-    return query_->primitives(std::span(candidates_).first(count)).satisfied;
+    const Outcome outcome = query_->primitives(std::span(candidates_).first(count));
+    if constexpr (Measure::measures && Query::one_hit_is_enough)
+      if (outcome.witness < count)
+        measure_.crossing({candidates_[outcome.witness].a, candidates_[outcome.witness].b, false});
+    return outcome.satisfied;
   }
 
   static constexpr std::size_t at_most = 16;
