@@ -30,7 +30,9 @@ class PairPlaces {
       begin += own.room;
     }
     used_ = begin;
-    if (others_.size() < used_ + used_ / 8 + 16) resize_entries(used_ + used_ / 2 + 1024);
+    if (entries_.size() < used_ + used_ / 8 + 16) resize_entries(used_ + used_ / 2 + 1024);
+    pages::bring(entries_.data(),
+                 entries_.data() + used_);  // half of the time, where pages are new
     for (std::size_t place = 0; place < list.size(); ++place) {
       Own& own = own_[list[place].i];
       put(own.begin + own.count++, list[place].j, place);
@@ -64,12 +66,12 @@ class PairPlaces {
   void erase(Pair pair, PairList& list) {
     Own& own = own_[pair.i];
     const std::size_t entry = entry_of(pair), end = own.begin + --own.count;
-    const std::uint32_t place = places_[entry];
-    others_[entry] = others_[end], places_[entry] = places_[end];
+    const std::uint32_t place = entries_[entry].place;
+    entries_[entry] = entries_[end];
     const std::size_t last = list.size() - 1;
     if (place != last) {
       list[place] = list[last];
-      places_[entry_of(list[last])] = place;
+      entries_[entry_of(list[last])].place = place;
     }
     list.resize_down(last);
   }
@@ -78,11 +80,14 @@ class PairPlaces {
   bool sparse(const PairList& list) const { return used_ > 2 * list.size() + 4 * own_.size(); }
 
   std::size_t bytes() const {
-    return own_.capacity() * sizeof(Own) +
-           (others_.capacity() + places_.capacity()) * sizeof(std::uint32_t);
+    return own_.capacity() * sizeof(Own) + entries_.capacity() * sizeof(Entry);
   }
 
  private:
+  /// A pair of the box that owns it: the other box, and where the pair stands in the list.
+  struct Entry {
+    std::uint32_t other, place;
+  };
   struct Own {
     std::size_t begin = 0;
     std::uint32_t count = 0, room = 0;
@@ -96,13 +101,12 @@ class PairPlaces {
   }
   void fetch(Pair pair) const {
     const Own& own = own_[pair.i];
-    for (std::size_t entry = 0; entry < own.count && entry < 64; entry += 16)
-      __builtin_prefetch(others_.data() + own.begin + entry);
-    __builtin_prefetch(places_.data() + own.begin);
+    for (std::size_t entry = 0; entry < own.count && entry < 64; entry += 8)
+      __builtin_prefetch(entries_.data() + own.begin + entry);
   }
 
   void put(std::size_t entry, std::uint32_t other, std::size_t place) {
-    others_[entry] = other, places_[entry] = static_cast<std::uint32_t>(place);
+    entries_[entry] = {other, static_cast<std::uint32_t>(place)};
   }
   /// Sixteen at a time, without a branch between them.
   std::size_t entry_of(Pair pair) const {
@@ -110,26 +114,24 @@ class PairPlaces {
     std::size_t entry = own_[pair.i].begin;
     for (;; entry += some) {
       bool any = false;
-      for (std::size_t k = 0; k < some; ++k) any |= others_[entry + k] == pair.j;
+      for (std::size_t k = 0; k < some; ++k) any |= entries_[entry + k].other == pair.j;
       if (any) break;
     }
-    while (others_[entry] != pair.j) ++entry;
+    while (entries_[entry].other != pair.j) ++entry;
     return entry;
   }
   void move_to_the_end(Own& own) {
     const std::uint32_t room = 2 * own.room + 4;
-    if (used_ + room + 16 > others_.size()) resize_entries((used_ + room) * 5 / 4);
-    std::copy_n(others_.data() + own.begin, own.count, others_.data() + used_);
-    std::copy_n(places_.data() + own.begin, own.count, places_.data() + used_);
+    if (used_ + room + 16 > entries_.size()) resize_entries((used_ + room) * 5 / 4);
+    std::copy_n(entries_.data() + own.begin, own.count, entries_.data() + used_);
     own.begin = used_, own.room = room;
     used_ += room;
   }
   /// A search may look at sixteen past the last.
-  void resize_entries(std::size_t count) { others_.resize(count + 16), places_.resize(count + 16); }
+  void resize_entries(std::size_t count) { entries_.resize(count + 16); }
 
   LargeVector<Own> own_;
-  LargeVector<std::uint32_t> others_,
-      places_;  ///< of each pair: its other box, and where it stands
+  LargeVector<Entry> entries_;
   std::size_t used_ = 0;
 };
 

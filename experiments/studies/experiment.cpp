@@ -56,7 +56,7 @@ Row key_row(const Cell& cell) {
 /// What says which trace it is, and what of a variant its front depends on.
 bool matters_to_front(const std::string& name) {
   return !is_of_variant(name) || name == "volume" || name == "query" || name == "build" ||
-         name == "leaf_size" || name == "fit";
+         name == "leaf_size" || name == "fit" || name == "fan_out";
 }
 Row front_key(const Cell& cell) {
   Row row;

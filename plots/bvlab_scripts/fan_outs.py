@@ -34,6 +34,8 @@ def all_rows(record):
 def survival(record):
     """By motion, the share of a binary recursion's front that is there again in the next frame."""
     measured = pd.read_csv(record / f"{record.name}.coherence.csv")
+    if "fan_out" in measured:
+        measured = measured[measured.fan_out == 2]
     at = [tuple(motion.split(" / ")) if motion != "rest" else ("0", "0") for motion in MOTIONS]
     sums = measured.groupby([measured.step.str.removesuffix("body").astype(float), measured.degrees.astype(float)])[["kept", "entries"]].sum()
     return [sums.kept[float(step), float(degrees)] / sums.entries[float(step), float(degrees)] for step, degrees in at]

@@ -23,7 +23,7 @@ COSTS = ["n_u", "n_v", "n_p"]
 
 def read(record):
     """As law_unseen.read, a mesh being the setting."""
-    return law_unseen.read(record, setting="mesh")
+    return law_unseen.read(record, setting=("mesh",))
 
 
 def unit_costs(rows):

@@ -99,11 +99,12 @@ class Runs:
     first: int
 
 
-def read(record, setting="setting"):
-    """Runs of two lengths of the same seeds; `setting` is the column whose other seeds are a source."""
+def read(record, setting=("setting",)):
+    """Runs of two lengths of the same seeds; `setting` are the columns that tell settings apart, of which other seeds are a
+    source."""
     rows = law.read(record)
-    if setting in rows:
-        rows["setting"] = rows[setting]
+    if set(setting) <= set(rows):
+        rows["setting"] = rows[list(setting)].astype(str).agg(", ".join, axis=1)
     lengths = sorted(rows.frames.unique()) if "setting" in rows and "seed" in rows else []
     if len(lengths) != 2:
         raise Refused(f"{record}: has to have settings, seeds, and runs of two lengths")

@@ -33,7 +33,7 @@ SPECS = {
                                                            stressor="offset"), None),
     "triangles_error": ("triangles-error", dict(set=2), dict(test="moller", set="random"), None),
 }
-ELSEWHERE = {"tournament", "law_bullet"}  # have tests of their own
+ELSEWHERE = {"tournament", "law_bullet", "law_fan_outs"}  # have tests of their own
 BY_THEMSELVES = {"fan_outs"}  # as has this one, which says otherwise what is no record of its own
 PRINTS = {"hierarchies"}  # and draws nothing
 # Drawn together with others, without a name of their own; or on one line with all that are the same.
