@@ -135,10 +135,10 @@ double expected_cost(std::span<const TriangleMesh> meshes,
   typename Best::Pairs pairs(shapes, all_object_pairs(static_cast<std::uint32_t>(shapes.size())));
   double cost = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    Counting counter;
-    pairs.frame(samples[k], counter, make_query, [](auto&&...) {});
+    Counting counts;
+    pairs.frame(samples[k], counts, make_query, [](auto&&...) {});
     if (SampledFrames::counted(k))
-      cost += costs(pairs.pairs().size(), pairs.front_size(), counter.n_v, counter.n_p);
+      cost += costs(pairs.pairs().size(), pairs.front_size(), counts.n_v, counts.n_p);
   }
   return cost;
 }

@@ -4,6 +4,7 @@
 import numpy as np
 
 from bvlab_scripts import law_bullet
+from bvlab_scripts import law_fan_outs
 from bvlab_scripts import law_unseen
 from bvlab_scripts.law_unseen import ALONE, FULL, ITSELF, LAST, LATER, LAW, OTHERS, PREFIX, REGRESSION
 from quoting import Interval, claim, quotes
@@ -61,3 +62,32 @@ def heaps(record):
     return {"law": off(LAW), "last": off(LAST), "alone": off(ALONE), "time": 100 * np.median(law_bullet.off(timed[LAW], timed.measured)),
             "last_time": 100 * np.median(law_bullet.off(timed[LAST], timed.measured)), "others": off(LAST, OTHERS),
             "right": 100 * right.mean(), "held": held}
+
+
+@quotes("law-fan-outs")
+def wide_law(record):
+    """The law at fan-outs 2 to 16."""
+    kappa = law_unseen.fit_of_coherence().kappa
+    runs = law_fan_outs.read(record)
+    rows, fan_outs = runs.measured, law_fan_outs.fan_outs_of(runs)
+    said = law_fan_outs.predictions(runs, kappa)
+    claim(fan_outs == [2, 4, 8, 16], "fan-outs 2, 4, 8 and 16")
+    claim(rows.mesh.nunique() == 4 and rows.motion.nunique() == 5 and rows.seed.nunique() == 5, "four shapes, five motions, five seeds")
+
+    def off(name, fan_out, share=0.5, regime="easy"):
+        return law_fan_outs.off(runs, said[name], law_fan_outs.at(runs, fan_out, regime), share)
+    shown = {LAW: "the formula", LAST: "the speedup measured in the 20 frames", law_fan_outs.BINARY: "the formula, from binary trees and F",
+             ALONE: "R and c alone", law_fan_outs.SAME: "no change"}
+    claim(all(off(LAW, f, 0.95) < off(name, f, 0.95) for f in fan_outs for name in (LAST, LATER, ALONE, law_fan_outs.SAME)),
+          "the law's worst cells are the least bad")
+    claim(all(off(law_fan_outs.BINARY, f) > 2 * off(LAW, f) for f in fan_outs[1:]), "binary trees and F alone are worse")
+    lose = law_fan_outs.thresholds(runs)
+    held = [number for number, holds, _ in law_fan_outs.hypotheses(runs, said, kappa) if holds]
+    own = law_fan_outs.own_kappas(runs)
+    return {"rows": [[label, *(f"{off(name, f):.1f} ({off(name, f, 0.95):.0f})" for f in fan_outs)] for name, label in shown.items()],
+            "law": Interval([off(LAW, f) for f in fan_outs]), "law_two": off(LAW, 2), "law_sixteen": off(LAW, 16),
+            "last": Interval([off(LAST, f) for f in fan_outs]), "most": Interval([off(LAW, f, 0.95) for f in fan_outs]),
+            "worse": Interval([off(LAST, f, 0.95) / off(LAW, f, 0.95) for f in fan_outs]), "last_most": Interval([off(LAST, f, 0.95) for f in fan_outs]),
+            "binary": Interval([off(law_fan_outs.BINARY, f) for f in fan_outs[1:]]), "less": Interval([off(LAW, f, regime="less") for f in fan_outs]),
+            "kappa": Interval(list(own.values())), "lose_two": lose[2][0], "lose_wide": Interval([lose[f][0] for f in fan_outs[1:]]),
+            "cells": int(law_fan_outs.at(runs, 2).sum()), "less_cells": int(law_fan_outs.at(runs, 2, "less").sum()), "held": held}
