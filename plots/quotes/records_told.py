@@ -20,7 +20,7 @@ def all_records(folder):
     for name in names:
         rows = pd.read_csv(folder / name / f"{name}.csv", usecols=lambda column: column == "alone")
         if "alone" in rows:
-            timed, alone = timed + len(rows), alone + (rows.alone == "yes").sum()
+            timed, alone = timed + rows.alone.notna().sum(), alone + (rows.alone == "yes").sum()
     processors = pd.Series([machine["processor"].replace("(R)", "").removesuffix(" Processor") for machine in machines]).value_counts()
     claim({str(machine["cores"]) for machine in machines} == {"2"}, "machines of two cores")
     made = [provenance.made(machine) for machine in machines]
