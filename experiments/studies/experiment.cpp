@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <future>
 #include <map>
@@ -27,9 +28,7 @@
 namespace bvlab {
 namespace {
 
-std::string nanoseconds(double seconds) {
-  return std::to_string(static_cast<std::int64_t>(seconds * 1e9 + 0.5));
-}
+std::string nanoseconds(double seconds) { return std::to_string(std::llround(seconds * 1e9)); }
 
 std::string three_digits(double value) {
   char text[32];
@@ -635,7 +634,8 @@ void check_series_matches(const Definition& definition, const std::vector<Cell>&
     for (const Cell& cell : cells) there.insert(cell[name]);
     if (there.contains(value)) continue;
     std::string names;
-    for (const auto& each : there) names += (names.empty() ? "'" : ", '") + each + "'";
+    for (const auto& each : there)
+      names.append(names.empty() ? "'" : ", '").append(each).append("'");
     throw Unusable("series: " + name + " has no '" + value + "'; there are " + names);
   }
   throw Unusable("series: no cell is all that it says");

@@ -52,7 +52,10 @@ TEST(Wide, SupportsAreBounds) {
   for (int face = 0; face < 6; ++face)
     for (int i = 0; i + 1 < row; ++i)
       for (int j = 0; j + 1 < row; ++j) {
-        const auto* sample = &map.table()[static_cast<std::size_t>((face * row + i) * row + j)];
+        const auto* sample =
+            &map.table()[(static_cast<std::size_t>(face) * row + static_cast<std::size_t>(i)) *
+                             row +
+                         static_cast<std::size_t>(j)];
         const double between = (double(sample[0].height) + sample[1].height + sample[row].height +
                                 sample[row + 1].height) /
                                4;
@@ -127,6 +130,7 @@ struct SomePoints : MovingBody {
   void place(const Pose& pose) { MovingBody::set_pose(pose, Vec3<double>::Zero()); }
   std::vector<Vec3<double>> world() const {
     std::vector<Vec3<double>> world;
+    world.reserve(points.size());
     for (const auto& point : points) world.push_back(pose()(point));
     return world;
   }
@@ -298,6 +302,7 @@ TEST(Wide, TouchingInAPlaneLasts) {
 TEST(Wide, RestIsNotTested) {
   for (const auto& [scene, truth] : scenes_with_truth()) {
     std::vector<WideHierarchy<SlabBox<float>, 8>> hierarchies;
+    hierarchies.reserve(scene.meshes.size());
     for (const auto& mesh : scene.meshes)
       hierarchies.emplace_back(mesh, builds::BottomUpLocal::topology(mesh, 1));
     std::vector<WideShape<SlabBox<float>, 8>> shapes;
