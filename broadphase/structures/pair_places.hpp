@@ -12,6 +12,7 @@
 
 #include "broadphase/structures/pair_list.hpp"
 #include "hierarchies/geometry/large_vector.hpp"
+#include "hierarchies/geometry/pages.hpp"
 
 namespace bvlab {
 
@@ -31,8 +32,8 @@ class PairPlaces {
     }
     used_ = begin;
     if (entries_.size() < used_ + used_ / 8 + 16) resize_entries(used_ + used_ / 2 + 1024);
-    pages::bring(entries_.data(),
-                 entries_.data() + used_);  // half of the time, where pages are new
+    // Where pages are new, that halves the time.
+    pages::bring(entries_.data(), entries_.data() + used_);
     for (std::size_t place = 0; place < list.size(); ++place) {
       Own& own = own_[list[place].i];
       put(own.begin + own.count++, list[place].j, place);

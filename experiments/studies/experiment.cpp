@@ -634,9 +634,8 @@ void check_series_matches(const Definition& definition, const std::vector<Cell>&
     for (const Cell& cell : cells) there.insert(cell[name]);
     if (there.contains(value)) continue;
     std::string names;
-    for (const auto& each : there)
-      names.append(names.empty() ? "'" : ", '").append(each).append("'");
-    throw Unusable("series: " + name + " has no '" + value + "'; there are " + names);
+    for (const auto& each : there) names += (names.empty() ? "'" : "', '") + each;
+    throw Unusable("series: " + name + " has no '" + value + "'; there are " + names + "'");
   }
   throw Unusable("series: no cell is all that it says");
 }

@@ -119,16 +119,19 @@ def draw(cells, out):
     return style.save(figure, out, "fan-outs-savings")
 
 
+def colours(fan_outs):
+    return {fan_out: matplotlib.colormaps["viridis"](0.85 - 0.27 * i) for i, fan_out in enumerate(fan_outs)}
+
+
 def draw_coherence(cells, shares, out, figure=None, axes=None, names=("deferred", "raise", "margins"), name="fan-outs-coherence"):
     """Speedup against coherence, a line for each fan-out: median and range of cells; in tests above, in time below."""
     if figure is None:
         figure, axes = plt.subplots(2, len(names), figsize=(7.4, 4.6), sharex=True, sharey="row", layout="constrained")
     places = range(len(MOTIONS))
-    colours = [matplotlib.colormaps["viridis"](0.85 - 0.27 * i) for i in range(4)]
     for line, (what, label) in zip(axes, (("n_v", "tests"), ("time_ns", "time"))):
         for axis, strategy in zip(line, names):
             saved = savings(cells, what, strategy)
-            for colour, marker, fan_out in zip(colours, "os^D", AT_REST):
+            for (fan_out, colour), marker in zip(colours(AT_REST).items(), "os^D"):
                 values = saved.xs(fan_out, level="fan_out").groupby("motion")
                 least, middle, most = (of.reindex(MOTIONS) for of in (values.min(), values.median(), values.max()))
                 axis.plot(places, middle, color=colour, marker=marker, label=f"F = {fan_out}")

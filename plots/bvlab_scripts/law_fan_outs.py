@@ -8,10 +8,10 @@ what is said in experiments/definitions/law-fan-outs.md, whose hypotheses are nu
 intervals are those of law_unseen.py.
 """
 
-import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 
+from bvlab_scripts import fan_outs as reuse
 from bvlab_scripts import law, law_unseen
 from bvlab_plots import style
 from bvlab_plots.arguments import record_arguments
@@ -58,15 +58,11 @@ def transferred(source):
     return rows
 
 
-def predictions(runs, kappa):
-    """What each predictor says of the frames from `first` on; 1 where nothing was near in the prefix."""
-    source, first = runs.sources[PREFIX], runs.first
-    found = {LAW: law.predicted(source, kappa, first), BINARY: law.predicted(transferred(source), kappa, first),
-             ALONE: law_unseen.alone(source, first), LAST: source.tests_saved.to_numpy(),
-             LATER: (source.n_v_recursive * (first - 1) / first / (source.n_v - source.n_v_recursive / first)).to_numpy(),
-             SAME: np.ones(len(source))}
-    unknown = ~law_unseen.known(source).to_numpy()
-    return {name: np.where(unknown, 1, values) for name, values in found.items()}
+def predictions(runs, fit):
+    """law_unseen.predictions from the prefix at each fan-out, and the law's from binary trees."""
+    source = runs.sources[PREFIX]
+    return {**law_unseen.predictions(source, runs.first, fit),
+            BINARY: law_unseen.predictions(transferred(source), runs.first, fit)[LAW]}
 
 
 def fan_outs_of(runs):
@@ -140,21 +136,17 @@ def print_tables(runs, said, kappa):
     print_hypotheses(hypotheses(runs, said, kappa))
 
 
-def colours(fan_outs):
-    return {f: matplotlib.colormaps["viridis"](0.85 - 0.27 * i) for i, f in enumerate(fan_outs)}
-
-
 def draw(runs, said, out):
     """Predicted against measured, errors by fan-out, and speedup against coherence."""
     rows, fan_outs = runs.measured, fan_outs_of(runs)
     figure, axes = plt.subplots(1, 3, figsize=(10.2, 3.4))
     both = np.concatenate([said[LAW], rows.tests_saved])
     low, high = 0.9 * both.min(), 1.1 * both.max()
-    for (f, colour), marker in zip(colours(fan_outs).items(), "os^Dvp"):
+    for (f, colour), marker in zip(reuse.colours(fan_outs).items(), "os^Dvp"):
         here = (rows.fan_out == f).to_numpy()
         axes[0].plot(said[LAW][here], rows.tests_saved[here], linestyle="none", marker=marker, color=colour, markersize=2.5, alpha=0.5,
                      label=f"F = {f}")
-        near = rows[here & rows.survival.notna()]
+        near = rows[here & rows.survival.notna() & (rows.persistence == 0)]
         bins = near.groupby(np.digitize(near.survival, np.quantile(near.survival, np.linspace(0, 1, 11)[1:-1])))
         axes[2].plot(100 * (1 - bins.survival.median()), bins.tests_saved.median(), color=colour, marker=marker, markersize=3.5, linewidth=1.2)
     axes[0].plot([low, high], [low, high], color="black", linewidth=0.8)
@@ -167,7 +159,7 @@ def draw(runs, said, out):
         axis.set_minor_locator(plt.NullLocator())
     draw_errors(axes[1], runs, said, fan_outs)
     axes[2].axhline(1, color="black", linewidth=0.8)
-    axes[2].set(xscale="symlog", xlabel="share of the binary front lost a frame, %", ylabel="speedup in tests, medians", xlim=(0, 100))
+    axes[2].set(xscale="symlog", xlabel="share of the binary front lost a frame, %\n(motion does not persist)", ylabel="speedup in tests, medians", xlim=(0, 100))
     axes[2].set_xticks([0, 1, 10, 100], ["0", "1", "10", "all"])
     axes[2].minorticks_off()
     figure.tight_layout()
@@ -187,7 +179,7 @@ def draw_errors(axis, runs, said, fan_outs):
                       marker=marker, color="#1b1b1b" if k < 2 else f"C{k}", markersize=4, elinewidth=0.8,
                       markerfacecolor="white" if k == 1 else None, label=name)
     axis.set_xticks(range(len(fan_outs)), [str(f) for f in fan_outs])
-    axis.set(yscale="log", xlabel="fan-out F", ylabel="error, median (%)\n(half of the front survives)")
+    axis.set(yscale="log", xlabel="fan-out F", ylabel="error, median (%)\n(half of the front survives,\nmotion does not persist)")
     ticks = log_ticks(*axis.get_ylim())
     axis.set_yticks(ticks, [number(tick) for tick in ticks])
     axis.yaxis.set_minor_locator(plt.NullLocator())
@@ -195,9 +187,9 @@ def draw_errors(axis, runs, said, fan_outs):
 
 def main():
     arguments = record_arguments(__doc__, table_only=True)
-    kappa = law_unseen.fit_of_coherence().kappa
+    fit = law_unseen.fit_of_coherence()
     runs = read(arguments.record)
-    said = predictions(runs, kappa)
-    print_tables(runs, said, kappa)
+    said = predictions(runs, fit)
+    print_tables(runs, said, fit.kappa)
     if not arguments.table_only:
         print(draw(runs, said, arguments.out))

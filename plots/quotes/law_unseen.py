@@ -67,10 +67,10 @@ def heaps(record):
 @quotes("law-fan-outs")
 def wide_law(record):
     """The law at fan-outs 2 to 16."""
-    kappa = law_unseen.fit_of_coherence().kappa
+    fit = law_unseen.fit_of_coherence()
     runs = law_fan_outs.read(record)
     rows, fan_outs = runs.measured, law_fan_outs.fan_outs_of(runs)
-    said = law_fan_outs.predictions(runs, kappa)
+    said = law_fan_outs.predictions(runs, fit)
     claim(fan_outs == [2, 4, 8, 16], "fan-outs 2, 4, 8 and 16")
     claim(rows.mesh.nunique() == 4 and rows.motion.nunique() == 5 and rows.seed.nunique() == 5, "four shapes, five motions, five seeds")
 
@@ -82,7 +82,7 @@ def wide_law(record):
           "the law's worst cells are the least bad")
     claim(all(off(law_fan_outs.BINARY, f) > 2 * off(LAW, f) for f in fan_outs[1:]), "binary trees and F alone are worse")
     lose = law_fan_outs.thresholds(runs)
-    held = [number for number, holds, _ in law_fan_outs.hypotheses(runs, said, kappa) if holds]
+    held = [number for number, holds, _ in law_fan_outs.hypotheses(runs, said, fit.kappa) if holds]
     own = law_fan_outs.own_kappas(runs)
     return {"rows": [[label, *(f"{off(name, f):.1f} ({off(name, f, 0.95):.0f})" for f in fan_outs)] for name, label in shown.items()],
             "law": Interval([off(LAW, f) for f in fan_outs]), "law_two": off(LAW, 2), "law_sixteen": off(LAW, 16),

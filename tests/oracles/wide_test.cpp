@@ -249,6 +249,16 @@ bool surfaces_touch(const TriangleMesh& mesh, const PosesOfFrame& frame) {
   return false;
 }
 
+/// What an engine of two bodies answers.
+bool touch(WidePairs<SlabBox<float>, 16, WideMargins>& engine, const PosesOfFrame& frame,
+           Counting& counter) {
+  bool found = false;
+  engine.frame(
+      frame, counter, [](std::size_t) { return Touching(); },
+      [&](std::size_t, const Touching& query) { found = query.touching(); });
+  return found;
+}
+
 /// Two bodies deep in each other go on to touch without a look, and stop when they have come apart.
 TEST(Wide, TouchingLasts) {
   const TriangleMesh mesh = formula_mesh("icosphere", 320);
@@ -261,10 +271,7 @@ TEST(Wide, TouchingLasts) {
     PosesOfFrame frame(2);
     frame[1].translation = Vec3<double>(1.2 + 0.0004 * static_cast<double>(f), 0.31, 0.17);
     Counting counter;
-    bool found = false;
-    engine.frame(
-        frame, counter, [](std::size_t) { return Touching(); },
-        [&](std::size_t, const Touching& query) { found = query.touching(); });
+    const bool found = touch(engine, frame, counter);
     if (f % 20 == 0) EXPECT_EQ(found, surfaces_touch(mesh, frame)) << f;
     touching += found, looked_at += found && counter.n_v + counter.n_p > 0;
   }
@@ -287,10 +294,7 @@ TEST(Wide, TouchingInAPlaneLasts) {
     PosesOfFrame frame(2);
     frame[1].translation = Vec3<double>(side, f * 0x1p-9, f * 0x1p-10);
     Counting counter;
-    bool found = false;
-    engine.frame(
-        frame, counter, [](std::size_t) { return Touching(); },
-        [&](std::size_t, const Touching& query) { found = query.touching(); });
+    const bool found = touch(engine, frame, counter);
     EXPECT_EQ(found, surfaces_touch(mesh, frame)) << f;
     touching += found, traversed += found && counter.n_p != 1;
   }

@@ -9,8 +9,10 @@
 /// is shorter there, and is tried before the pair is.
 ///
 /// Bodies that touch go on touching until an edge that crosses a triangle can have left it. Then
-/// these two triangles are tested (triangle_margin.hpp), together with those of other pairs. Only
-/// if they no longer cross are the bodies traversed, first where they touched.
+/// these two triangles are tested (triangle_margin.hpp), together with those of other pairs.
+/// Triangles that meet without a margin, as faces in one plane do, are tested in every frame by the
+/// query's own test. Only if they no longer meet are the bodies traversed, first where they
+/// touched.
 ///
 /// After two near misses a pair keeps a front (WideFront). Later traversals retest only the entries
 /// whose gaps may have closed. Where that is most of them the pair keeps no front for sixteen

@@ -50,7 +50,8 @@ class WidePairs {
   }
 
   /// As AllPairs::frame. With one thread, `take` is called first for pairs that were decided early,
-  /// then for those traversed, as they end.
+  /// then for those traversed, as they end. A second query may be made for a pair, to test
+  /// triangles that a Memory kept; it is never passed to `take`.
   template <class Counter, class MakeQuery, class Take>
   void frame(std::span<const Pose> poses, Counter& counter, MakeQuery&& make_query, Take&& take) {
     using Query = std::remove_cvref_t<decltype(make_query(0))>;
