@@ -624,19 +624,22 @@ DrawnColumns drawn_columns(const Definition& definition, const std::vector<Cell>
   return drawn;
 }
 
+void check_some_cell_has(const std::string& name, const std::string& value,
+                         const std::vector<Cell>& cells) {
+  std::set<std::string> there;
+  for (const Cell& cell : cells) there.insert(cell[name]);
+  if (there.contains(value)) return;
+  std::string names;
+  for (const auto& each : there) names += (names.empty() ? "'" : ", '") + each + "'";
+  throw Unusable("series: " + name + " has no '" + value + "'; there are " + names);
+}
+
 /// A series that matches nothing would be noticed after the last cell.
 void check_series_matches(const Definition& definition, const std::vector<Cell>& cells) {
   if (!definition.has_series) return;
   for (const Cell& cell : cells)
     if (wants_series(definition, cell) || !cell["configuration"].empty()) return;
-  for (const auto& [name, value] : definition.series) {
-    std::set<std::string> there;
-    for (const Cell& cell : cells) there.insert(cell[name]);
-    if (there.contains(value)) continue;
-    std::string names;
-    for (const auto& each : there) names += (names.empty() ? "'" : "', '") + each;
-    throw Unusable("series: " + name + " has no '" + value + "'; there are " + names + "'");
-  }
+  for (const auto& [name, value] : definition.series) check_some_cell_has(name, value, cells);
   throw Unusable("series: no cell is all that it says");
 }
 
