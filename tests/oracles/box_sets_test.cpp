@@ -65,7 +65,7 @@ void check_set(const std::string& set, std::size_t count, int frame_count) {
   for (const std::string name :
        {"cgal", "cgal-1000", "fcl-tree", "fcl-ssap", "bullet-dbvt", "embree"})
     check_peer(name, frames, right, set);
-  for (const std::string name : {"physx-abp", "physx-pabp", "box3d"})
+  for (const std::string name : {"physx-abp", "physx-pabp", "box3d", "jolt"})
     if (make_box_peer(name)) check_peer(name, frames, right, set);
 }
 
