@@ -8,17 +8,28 @@
 #include <vector>
 
 #include "hierarchies/bounding_volume.hpp"
+#include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
 namespace bvlab {
+
+/// The volume around points, which are the corners of the triangles.
+template <BoundingVolume V>
+V fitted(std::span<const Vec3<double>> points, std::span<const Triangle> triangles, Fit fit) {
+  if constexpr (FittedTightly<V>)
+    if (fit == Fit::tight) return V::tight(points, triangles);
+  if constexpr (FittedToTriangles<V>)
+    return V::enclosing(points, triangles);
+  else
+    return V::enclosing(points);
+}
 
 /// Buffers of one thread, in cache lines of its own.
 template <BoundingVolume V>
 struct alignas(128) Fitting {
   std::vector<std::uint32_t> vertices;
-  std::vector<Vec3<double>> points;
-  std::vector<Triangle> triangles;
-  double reach = 0;  ///< of the volumes fitted so far, where the caller keeps it
+  LargeVector<Vec3<double>> points;
+  LargeVector<Triangle> triangles;
 
   /// Takes each vertex of the triangles once.
   void take_vertices(const TriangleMesh& mesh, std::span<const std::uint32_t> primitives) {
@@ -31,24 +42,9 @@ struct alignas(128) Fitting {
     if constexpr (FittedToTriangles<V> || FittedTightly<V>)
       for (const auto primitive : primitives) triangles.push_back(mesh.corners(primitive));
   }
-  /// Takes the three corners of each triangle: a vertex counts as often as it is a corner.
-  void take_corners(const TriangleMesh& mesh, std::span<const std::uint32_t> primitives) {
-    points.clear(), triangles.clear();
-    for (const auto primitive : primitives) {
-      triangles.push_back(mesh.corners(primitive));
-      for (const auto& corner : triangles.back()) points.push_back(corner);
-    }
-  }
 
   /// The volume around what was taken.
-  V volume(Fit fit) const {
-    if constexpr (FittedTightly<V>)
-      if (fit == Fit::tight) return V::tight(points, triangles);
-    if constexpr (FittedToTriangles<V>)
-      return V::enclosing(points, triangles);
-    else
-      return V::enclosing(points);
-  }
+  V volume(Fit fit) const { return fitted<V>(points, triangles, fit); }
 };
 
 }  // namespace bvlab

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "hierarchies/build/topology.hpp"
+#include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
@@ -76,9 +77,9 @@ class Splitter {
     Topology topology;
     const auto count = static_cast<std::uint32_t>(items_.size());
     if (threads.count() == 1 || count < worth_sharing)
-      topology.nodes = subtree({0, count});
+      topology.nodes = subtree({{0, count}, extent(items_)});
     else
-      topology.nodes = subtrees({0, count}, threads);
+      topology.nodes = subtrees({{0, count}, extent(items_)}, threads);
     topology.primitives.reserve(items_.size());
     for (const Item& item : items_)
       topology.primitives.push_back(static_cast<std::uint32_t>(index(item)));
@@ -86,64 +87,76 @@ class Splitter {
   }
 
  private:
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
   using Nodes = std::vector<Topology::Node>;
+  using Four = Eigen::Array4d;
+  /// How far the centroids of a range reach along each axis.
+  struct Extent {
+    Four lo = Four::Constant(infinite), hi = Four::Constant(-infinite);
+
+    void add(const Item& item) {
+      lo = lo.min(four(item, Item::centroid_at)), hi = hi.max(four(item, Item::centroid_at));
+    }
+  };
+  struct Range {
+    Topology::Node node;
+    Extent extent;
+  };
   /// Below this a thread takes longer to wake than a subtree does.
   static constexpr std::uint32_t worth_sharing = 1024, subtree_of_one = 256;
 
   bool is_leaf(std::uint32_t size) const { return size <= std::max(1u, options_.leaf_size); }
 
   /// What is below a range of the items, the left half first; node 0 is the range itself.
-  Nodes subtree(const Topology::Node& range) {
+  Nodes subtree(const Range& range) {
     Nodes nodes;
-    nodes.reserve(2 * std::size_t{range.count});
-    nodes.push_back(range);
-    std::vector<std::uint32_t> open{0};
+    nodes.reserve(2 * std::size_t{range.node.count} / std::max(1u, options_.leaf_size / 4));
+    nodes.push_back(range.node);
+    std::vector<std::pair<std::uint32_t, Extent>> open{{0, range.extent}};
     while (!open.empty()) {
-      const std::uint32_t node = open.back();
+      const auto [node, extent] = open.back();
       open.pop_back();
-      const auto [first, size] = nodes[node];
-      if (is_leaf(size)) continue;
-      const std::uint32_t left = split(items(first, size));
+      if (is_leaf(nodes[node].count)) continue;
+      const auto [left, right] = split({nodes[node], extent});
       const auto child = static_cast<std::uint32_t>(nodes.size());
       nodes[node] = {child, 0};
-      nodes.push_back({first, left});
-      nodes.push_back({first + left, size - left});
-      open.push_back(child + 1);
-      open.push_back(child);
+      nodes.push_back(left.node);
+      nodes.push_back(right.node);
+      open.emplace_back(child + 1, right.extent);
+      open.emplace_back(child, left.extent);
     }
     return nodes;
   }
 
   /// A range, split level by level until one thread does what is below it.
   struct Part {
-    Topology::Node range;
+    Range range;
     std::uint32_t child = 0;  ///< the first of two parts; 0 where there are none
     Nodes below;              ///< its subtree, where there are none
   };
-  Nodes subtrees(const Topology::Node& range, Threads& threads) {
+  Nodes subtrees(const Range& range, Threads& threads) {
     std::vector<Part> parts{{range, 0, {}}};
     for (std::size_t begin = 0, end; (end = parts.size()) > begin; begin = end) {
-      std::vector<std::uint32_t> left(end - begin);
+      std::vector<Halves> halves(end - begin);
       threads.share(end - begin, [&](std::size_t k, std::size_t) {
         Part& part = parts[begin + k];
-        const auto [first, size] = part.range;
+        const std::uint32_t size = part.range.node.count;
         if (size <= subtree_of_one || is_leaf(size))
           part.below = subtree(part.range);
         else
-          left[k] = split(items(first, size));
+          halves[k] = split(part.range);
       });
       for (std::size_t k = begin; k < end; ++k)
-        if (const std::uint32_t here = left[k - begin]; here > 0) {
-          const auto [first, size] = parts[k].range;
+        if (const auto& [left, right] = halves[k - begin]; left.node.count > 0) {
           parts[k].child = static_cast<std::uint32_t>(parts.size());
-          parts.push_back({{first, here}, 0, {}});
-          parts.push_back({{first + here, size - here}, 0, {}});
+          parts.push_back({left, 0, {}});
+          parts.push_back({right, 0, {}});
         }
     }
     // In the order in which one thread would have come to them.
     Nodes nodes;
-    nodes.reserve(2 * std::size_t{range.count});
-    nodes.push_back(range);
+    nodes.reserve(2 * std::size_t{range.node.count});
+    nodes.push_back(range.node);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> open{{0, 0}};  // a node, its part
     while (!open.empty()) {
       const auto [node, k] = open.back();
@@ -159,8 +172,8 @@ class Splitter {
         continue;
       }
       nodes[node] = {next, 0};
-      nodes.push_back(parts[part.child].range);
-      nodes.push_back(parts[part.child + 1].range);
+      nodes.push_back(parts[part.child].range.node);
+      nodes.push_back(parts[part.child + 1].range.node);
       open.emplace_back(next + 1, part.child + 1);
       open.emplace_back(next, part.child);
     }
@@ -168,42 +181,46 @@ class Splitter {
   }
 
   using Items = std::span<Item>;
-  Items items(std::uint32_t first, std::uint32_t size) {
-    return Items(items_).subspan(first, size);
+
+  static Extent extent(std::span<const Item> range) {
+    Extent extent;
+    for (const Item& item : range) extent.add(item);
+    return extent;
   }
 
-  /// Orders the range so that its first part goes to the left child; gives that part's size, which
-  /// is neither zero nor all.
-  std::uint32_t split(Items range) const {
-    const auto box = box_of_centroids(range);
+  struct Halves {
+    Range left{{0, 0}, {}}, right{{0, 0}, {}};
+  };
+  /// Orders the range so that its first part goes to the left child. Neither part is empty.
+  Halves split(const Range& range) {
+    const Vec3<double> sides = (range.extent.hi - range.extent.lo).template head<3>();
     Eigen::Index longest = 0;
-    (box.max() - box.min()).maxCoeff(&longest);
-    std::size_t left;
-    if (options_.axis == SplitAxis::longest) {
-      left = split(range, [longest](const Item& item) { return centroid(item)[longest]; });
-    } else {
-      const Vec3<double> axis = principal(range, box, longest);
-      left = split(range, [&axis](const Item& item) { return axis.dot(centroid(item)); });
-    }
-    return static_cast<std::uint32_t>(left);
+    sides.maxCoeff(&longest);
+    if (options_.axis == SplitAxis::longest)
+      return split(
+          range.node, [longest](const Item& item) { return centroid(item)[longest]; },
+          range.extent.lo[longest], range.extent.hi[longest]);
+    const Items all = items(range.node);
+    const Vec3<double> axis = principal(all, sides, longest);
+    const auto key = [&axis](const Item& item) { return axis.dot(centroid(item)); };
+    double low = infinite, high = -low;
+    for (const Item& item : all) low = std::min(low, key(item)), high = std::max(high, key(item));
+    return split(range.node, key, low, high);
   }
+  Items items(const Topology::Node& node) { return Items(items_).subspan(node.first, node.count); }
 
+  /// The keys are between `low` and `high`.
   template <class Key>
-  std::size_t split(Items range, const Key& key) const {
-    double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;
-    for (const Item& item : range) {
-      const double k = key(item);
-      low = std::min(low, k), high = std::max(high, k), sum += k;
-    }
+  Halves split(const Topology::Node& node, const Key& key, double low, double high) {
+    const Items range = items(node);
+    Extent left_extent, right_extent;
     std::size_t left = 0;
     if (low < high && options_.at != SplitAt::median) {
-      const double cut = options_.at == SplitAt::mean     ? sum / static_cast<double>(range.size())
+      const double cut = options_.at == SplitAt::mean     ? mean_of(range, key)
                          : options_.at == SplitAt::middle ? low / 2 + high / 2
                                                           : cheapest_cut(range, key, low, high);
-      left = static_cast<std::size_t>(
-          std::partition(range.begin(), range.end(),
-                         [&](const Item& item) { return key(item) < cut; }) -
-          range.begin());
+      left = partition(
+          range, [&](const Item& item) { return key(item) < cut; }, left_extent, right_extent);
     }
     if (left == 0 || left == range.size()) {
       left = range.size() / 2;
@@ -211,11 +228,38 @@ class Splitter {
                        range.end(), [&](const Item& a, const Item& b) {
                          return key(a) < key(b) || (key(a) == key(b) && index(a) < index(b));
                        });
+      left_extent = extent(range.first(left)), right_extent = extent(range.subspan(left));
     }
-    return left;
+    const auto count = static_cast<std::uint32_t>(left);
+    return {{{node.first, count}, left_extent},
+            {{node.first + count, node.count - count}, right_extent}};
   }
 
-  using Four = Eigen::Array4d;
+  /// std::partition, with the extents of both parts: each item is read once.
+  template <class IsLeft>
+  static std::size_t partition(Items range, const IsLeft& is_left, Extent& left, Extent& right) {
+    auto first = range.begin(), last = range.end();
+    while (true) {
+      while (first != last && is_left(*first)) left.add(*first), ++first;
+      if (first == last) break;
+      --last;
+      while (first != last && !is_left(*last)) right.add(*last), --last;
+      right.add(*first);
+      if (first == last) break;
+      left.add(*last);
+      std::swap(*first, *last);
+      ++first;
+    }
+    return static_cast<std::size_t>(first - range.begin());
+  }
+
+  template <class Key>
+  static double mean_of(Items range, const Key& key) {
+    double sum = 0;
+    for (const Item& item : range) sum += key(item);
+    return sum / static_cast<double>(range.size());
+  }
+
   static Eigen::Map<const Four> four(const Item& item, std::size_t at) {
     return Eigen::Map<const Four>(item.numbers.data() + at);
   }
@@ -223,18 +267,11 @@ class Splitter {
     return Eigen::Map<const Vec3<double>>(item.numbers.data() + Item::centroid_at);
   }
   static double index(const Item& item) { return item.numbers[Item::centroid_at + 3]; }
-  static constexpr double infinite = std::numeric_limits<double>::infinity();
 
-  static Eigen::AlignedBox3d box_of_centroids(Items range) {
-    Four lo = Four::Constant(infinite), hi = -lo;
-    for (const Item& item : range)
-      lo = lo.min(four(item, Item::centroid_at)), hi = hi.max(four(item, Item::centroid_at));
-    return {lo.head<3>().matrix(), hi.head<3>().matrix()};
-  }
-
-  Vec3<double> principal(Items range, const Eigen::AlignedBox3d& box, Eigen::Index longest) const {
+  /// `sides` are those of the centroids' box.
+  static Vec3<double> principal(Items range, const Vec3<double>& sides, Eigen::Index longest) {
     Vec3<double> along_box = Vec3<double>::Unit(longest);
-    const double scale = box.diagonal().norm();
+    const double scale = sides.norm();
     if (!(scale > 0) || !std::isfinite(scale)) return along_box;
     Vec3<double> mean = Vec3<double>::Zero();
     for (const Item& item : range) mean += centroid(item) / static_cast<double>(range.size());
@@ -271,7 +308,8 @@ class Splitter {
       std::array<Bin, count> bins;
       const double per_unit = count / (high - low);
       for (const Item& item : range) {
-        // Where the range is so small or large that the quotient overflows, all are in the last bin.
+        // Where the range is so small or large that the quotient overflows, all are in the last
+        // bin.
         const double at = (key(item) - low) * per_unit;
         Bin& bin = bins[at < count ? static_cast<std::size_t>(at) : count - 1];
         bin.lo = bin.lo.min(four(item, Item::lo_at)), bin.hi = bin.hi.max(four(item, Item::hi_at)),
@@ -299,7 +337,7 @@ class Splitter {
   }
 
   const TopDown& options_;
-  std::vector<Item> items_;
+  LargeVector<Item> items_;
 };
 
 }  // namespace detail

@@ -52,7 +52,7 @@ struct SlabBox {
   }
 
   /// The slab is the thinner one of those across the mean normal and across the direction that the
-  /// surface faces most.
+  /// surface faces most; of a lone triangle they are the same.
   static SlabBox enclosing(std::span<const Vec3<double>> points,
                            std::span<const Triangle> triangles)
     requires(!Batched<S>)
@@ -66,8 +66,12 @@ struct SlabBox {
       mean += normal;
       if (area > 0) facing += normal * normal.transpose() / area;
     }
-    box.cut(Eigen::SelfAdjointEigenSolver<Mat3<double>>(facing).eigenvectors().col(2), points);
     const double length = mean.norm();
+    if (triangles.size() == 1 && length > 0) {
+      box.cut(mean / length, points);
+      return box;
+    }
+    box.cut(Eigen::SelfAdjointEigenSolver<Mat3<double>>(facing).eigenvectors().col(2), points);
     if (length > 0) {
       SlabBox other = box;
       other.cut(mean / length, points);

@@ -16,6 +16,7 @@
 #include <cstring>
 #include <vector>
 
+#include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/wide/fitting.hpp"
 #include "hierarchies/wide/lanes.hpp"
@@ -64,20 +65,20 @@ class BlockHierarchy {
     const WideTopology topology =
         collapsed(mesh, binary, fan_out, std::min<std::uint32_t>(leaf_size, fan_out));
     nodes_.resize(topology.nodes.size()), node_spheres_.resize(topology.nodes.size());
-    std::vector<Fitting<V>> fitting(threads.count());
+    const OrderedTriangles triangles(mesh, topology, threads);
+    std::vector<Reach> reach(threads.count());
     threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
       const auto& node = topology.nodes[i];
       assert(node.count <= fan_out);
-      const V volume = volume_around(mesh, topology, node.begin, node.end, fit, fitting[worker]);
+      const V volume = triangles.template volume<V>(node.begin, node.end, fit);
       const auto children = static_cast<std::uint8_t>((1u << node.count) - 1);
       nodes_[i] = {volume, size_of(volume), 0, 0, children, node.leaf};
-      node_spheres_[i] = NodeSphere(fitting[worker].points);
-      fitting[worker].reach =
-          std::max(fitting[worker].reach, static_cast<double>(reach_of(volume)));
+      node_spheres_[i] = NodeSphere(triangles.points(node.begin, node.end));
+      reach[worker].add(volume);
     });
     put_in_blocks(topology);
     keep_triangles(mesh, topology);
-    reach_ = reach_of_all(mesh, fitting);
+    reach_ = reach_of_all<scalar>(mesh, reach);
   }
 
   std::size_t size() const { return nodes_.size(); }
@@ -158,12 +159,12 @@ class BlockHierarchy {
     }
   }
 
-  std::vector<Node> nodes_;
-  std::vector<NodeSphere> node_spheres_;
-  std::vector<Row> rows_;
-  std::vector<Block> blocks_;
-  std::vector<TriangleLanes<scalar, 4>> corners_;
-  std::vector<std::uint32_t> triangles_;
+  LargeVector<Node> nodes_;
+  LargeVector<NodeSphere> node_spheres_;
+  LargeVector<Row> rows_;
+  LargeVector<Block> blocks_;
+  LargeVector<TriangleLanes<scalar, 4>> corners_;
+  LargeVector<std::uint32_t> triangles_;
   double reach_ = 0;
   MeshSphere sphere_;
   SupportMap supports_;

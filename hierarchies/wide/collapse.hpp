@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "hierarchies/build/topology.hpp"
+#include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
 namespace bvlab {
@@ -38,7 +39,7 @@ class Collapsing {
   Collapsing(const TriangleMesh& mesh, const Topology& binary) : binary_(binary) {
     const std::size_t n = binary.nodes.size();
     surface_.resize(n), begin_.resize(n), end_.resize(n);
-    std::vector<Eigen::AlignedBox3d> boxes(n);
+    LargeVector<Eigen::AlignedBox3d> boxes(n);
     for (std::size_t i = n; i-- > 0;) {
       const auto& [first, count] = binary.nodes[i];
       if (count == 0) {
@@ -134,11 +135,11 @@ class Collapsing {
   }
 
   const Topology& binary_;
-  std::vector<double> surface_;
-  std::vector<std::uint32_t> begin_, end_;
+  LargeVector<double> surface_;
+  LargeVector<std::uint32_t> begin_, end_;
   std::vector<bool> leaf_;
   std::vector<std::size_t> first_cut_;  // the index of each node's first in cuts_
-  std::vector<Cut> cuts_;
+  LargeVector<Cut> cuts_;
 };
 
 }  // namespace detail

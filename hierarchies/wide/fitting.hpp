@@ -10,6 +10,8 @@
 #include "hierarchies/bounding_volume.hpp"
 #include "hierarchies/fitting.hpp"
 #include "hierarchies/geometry/enclosing_sphere.hpp"
+#include "hierarchies/geometry/large_vector.hpp"
+#include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/written_out.hpp"
 #include "hierarchies/wide/collapse.hpp"
 
@@ -22,7 +24,8 @@ struct MeshSphere {
 
   MeshSphere() = default;
   explicit MeshSphere(const TriangleMesh& mesh) {
-    std::vector<Vec3<double>> corners;
+    LargeVector<Vec3<double>> corners;
+    corners.reserve(3 * mesh.triangles.size());
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
       for (const auto& corner : mesh.corners(i)) corners.push_back(corner);
     centre = enclosing_sphere(corners).centre;
@@ -38,7 +41,7 @@ struct alignas(16) NodeSphere {
 
   NodeSphere() = default;
   /// About the centre of their box.
-  explicit NodeSphere(const std::vector<Vec3<double>>& points) {
+  explicit NodeSphere(std::span<const Vec3<double>> points) {
     Vec3<double> low = points[0], high = points[0];
     for (const auto& point : points)
       for (int i = 0; i < 3; ++i)
@@ -54,21 +57,52 @@ struct alignas(16) NodeSphere {
   }
 };
 
-/// The volume around primitives `begin` to `end` of the topology.
-template <BoundingVolume V>
-V volume_around(const TriangleMesh& mesh, const WideTopology& topology, std::uint32_t begin,
-                std::uint32_t end, Fit fit, Fitting<V>& own) {
-  own.take_corners(mesh, std::span(topology.primitives).subspan(begin, end - begin));
-  return own.volume(fit);
-}
+/// Corners of a mesh's triangles in the order of a topology: those below a node lie side by side,
+/// and a vertex stands there as often as it is a corner.
+class OrderedTriangles {
+ public:
+  OrderedTriangles(const TriangleMesh& mesh, const WideTopology& topology, Threads& threads)
+      : triangles_(topology.primitives.size()) {
+    threads.share(triangles_.size(), [&](std::size_t k, std::size_t) {
+      triangles_[k] = mesh.corners(topology.primitives[k]);
+    });
+  }
+
+  const Triangle& operator[](std::size_t k) const { return triangles_[k]; }
+  /// Of primitives `begin` to `end` of the topology.
+  std::span<const Triangle> triangles(std::uint32_t begin, std::uint32_t end) const {
+    return std::span(triangles_).subspan(begin, end - begin);
+  }
+  std::span<const Vec3<double>> points(std::uint32_t begin, std::uint32_t end) const {
+    static_assert(sizeof(Triangle) == 3 * sizeof(Vec3<double>));
+    return {triangles_[begin].data(), 3 * std::size_t{end - begin}};
+  }
+  template <BoundingVolume V>
+  V volume(std::uint32_t begin, std::uint32_t end, Fit fit) const {
+    return fitted<V>(points(begin, end), triangles(begin, end), fit);
+  }
+
+ private:
+  LargeVector<Triangle> triangles_;
+};
+
+/// How far volumes reach, one number for each thread, in cache lines of their own.
+struct alignas(128) Reach {
+  double farthest = 0;
+
+  template <BoundingVolume V>
+  void add(const V& volume) {
+    farthest = std::max(farthest, static_cast<double>(reach_of(volume)));
+  }
+};
 
 /// The largest distance of any vertex and of any fitted volume from the mesh's own origin.
-template <BoundingVolume V>
-double reach_of_all(const TriangleMesh& mesh, const std::vector<Fitting<V>>& fitting) {
+template <Scalar S>
+double reach_of_all(const TriangleMesh& mesh, const std::vector<Reach>& of_volumes) {
   double reach = 0;
-  for (const auto& each : fitting) reach = std::max(reach, each.reach);
+  for (const auto& each : of_volumes) reach = std::max(reach, each.farthest);
   for (const auto& v : mesh.vertices) reach = std::max(reach, stable_norm(v));
-  return reach * (1 + 8 * unit_roundoff<typename V::scalar>);
+  return reach * (1 + 8 * unit_roundoff<S>);
 }
 
 }  // namespace bvlab

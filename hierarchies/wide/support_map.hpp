@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/scalar.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
@@ -41,6 +42,8 @@ class SupportMap {
     std::vector<bool> used(mesh.vertices.size(), false);
     for (const auto& triangle : mesh.triangles)
       for (const std::uint32_t v : triangle) used[v] = true;
+    for (auto& coordinates : points_)
+      coordinates.reserve(used.size() + stdx::native_simd<double>::size());
     for (std::size_t v = 0; v < used.size(); ++v)
       if (used[v])
         for (int k = 0; k < 3; ++k) points_[k].push_back(mesh.vertices[v][k] - centre[k]);
@@ -101,7 +104,7 @@ class SupportMap {
 
   std::vector<SupportSample> samples_;
   double farthest_ = 0;
-  std::array<std::vector<double>, 3> points_;  // only during construction, coordinate by coordinate
+  std::array<LargeVector<double>, 3> points_;  // only during construction, coordinate by coordinate
 };
 
 }  // namespace bvlab

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/wide/fitting.hpp"
 #include "hierarchies/wide/lanes.hpp"
@@ -61,7 +62,8 @@ class WideHierarchy {
     nodes_.resize(topology.nodes.size());
     node_spheres_.resize(topology.nodes.size());
     siblings_.resize(topology.nodes.size());
-    std::vector<Fitting<V>> fitting(threads.count());
+    const OrderedTriangles triangles(mesh, topology, threads);
+    std::vector<Reach> reach(threads.count());
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       if (topology.nodes[i].leaf) leaves_.push_back(static_cast<std::uint32_t>(i));
     corners_.resize(leaves_.size());
@@ -69,20 +71,21 @@ class WideHierarchy {
     threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
       const auto& node = topology.nodes[i];
       assert(node.count <= F);
-      const V volume = volume_around(mesh, topology, node.begin, node.end, fit, fitting[worker]);
+      const V volume = triangles.template volume<V>(node.begin, node.end, fit);
+      reach[worker].add(volume);
       const auto lanes = static_cast<std::uint16_t>((1u << node.count) - 1);
       nodes_[i] = {volume, size_of(volume), node.first, lanes, node.leaf};
-      node_spheres_[i] = NodeSphere(fitting[worker].points);
+      node_spheres_[i] = NodeSphere(triangles.points(node.begin, node.end));
     });
     threads.share_out(nodes_.size(), 8,
                       [&](std::size_t begin, std::size_t end, std::size_t worker) {
                         for (std::size_t i = begin; i < end; ++i)
-                          put_children(i, mesh, topology, fit, fitting[worker]);
+                          put_children(i, topology, triangles, fit, reach[worker]);
                       });
     threads.share(leaves_.size(), [&](std::size_t leaf, std::size_t) {
-      keep_triangles(leaf, mesh, topology, topology.nodes[leaves_[leaf]]);
+      keep_triangles(leaf, topology, triangles);
     });
-    reach_ = reach_of_all(mesh, fitting);
+    reach_ = reach_of_all<scalar>(mesh, reach);
   }
 
   std::size_t size() const { return nodes_.size(); }
@@ -110,35 +113,36 @@ class WideHierarchy {
 
  private:
   /// Called when all nodes have their volumes.
-  void put_children(std::size_t i, const TriangleMesh& mesh, const WideTopology& topology, Fit fit,
-                    Fitting<V>& own) {
+  void put_children(std::size_t i, const WideTopology& topology, const OrderedTriangles& triangles,
+                    Fit fit, Reach& reach) {
     const auto& node = topology.nodes[i];
+    V volume;  // of the last child, in vacant lanes
     for (int lane = 0; lane < F; ++lane) {
-      const std::uint32_t k = node.first + std::min<std::uint32_t>(lane, node.count - 1);
-      const V volume =
-          node.leaf ? volume_around(mesh, topology, k, k + 1, fit, own) : nodes_[k].volume;
+      const std::uint32_t k = node.first + static_cast<std::uint32_t>(lane);
+      if (lane < static_cast<int>(node.count))
+        volume = node.leaf ? triangles.template volume<V>(k, k + 1, fit) : nodes_[k].volume;
       put_lane(siblings_[i].volumes, lane, volume);
       siblings_[i].size[lane] = size_of(volume);
-      own.reach = std::max(own.reach, static_cast<double>(reach_of(volume)));
+      reach.add(volume);
     }
-    own.reach = std::max(own.reach, static_cast<double>(reach_of(nodes_[i].volume)));
   }
 
-  void keep_triangles(std::size_t leaf, const TriangleMesh& mesh, const WideTopology& topology,
-                      const WideTopology::Node& node) {
+  void keep_triangles(std::size_t leaf, const WideTopology& topology,
+                      const OrderedTriangles& triangles) {
+    const WideTopology::Node& node = topology.nodes[leaves_[leaf]];
     nodes_[leaves_[leaf]].first = static_cast<std::uint32_t>(leaf * F);
     for (int lane = 0; lane < F; ++lane) {
       const std::uint32_t k = node.first + std::min<std::uint32_t>(lane, node.count - 1);
       triangles_[leaf * F + static_cast<std::size_t>(lane)] = topology.primitives[k];
-      corners_[leaf].put(static_cast<std::size_t>(lane), mesh.corners(topology.primitives[k]));
+      corners_[leaf].put(static_cast<std::size_t>(lane), triangles[k]);
     }
   }
 
-  std::vector<Node> nodes_;
-  std::vector<NodeSphere> node_spheres_;
-  std::vector<Siblings> siblings_;
-  std::vector<TriangleLanes<scalar, F>> corners_;
-  std::vector<std::uint32_t> triangles_;
+  LargeVector<Node> nodes_;
+  LargeVector<NodeSphere> node_spheres_;
+  LargeVector<Siblings> siblings_;
+  LargeVector<TriangleLanes<scalar, F>> corners_;
+  LargeVector<std::uint32_t> triangles_;
   std::vector<std::uint32_t> leaves_;  // the node of each leaf, in the order of corners_
   double reach_ = 0;
   MeshSphere sphere_;
