@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -96,6 +97,16 @@ std::string now(const char* format) {
   return text;
 }
 
+/// What the steady clock, by which frames are timed, tells: "processor" under
+/// experiments/processor_time.c, else "wall". The raw clock runs at least nearly as fast as wall
+/// time since the machine was started.
+std::string clock_name() {
+  timespec steady{}, raw{};
+  clock_gettime(CLOCK_MONOTONIC, &steady);
+  clock_gettime(CLOCK_MONOTONIC_RAW, &raw);
+  return steady.tv_sec < raw.tv_sec / 2 ? "processor" : "wall";
+}
+
 /// null where it is unknown, as in a folder without its history.
 nlohmann::ordered_json known(const std::string& commit) {
   return commit.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(commit);
@@ -145,6 +156,7 @@ nlohmann::ordered_json machine() {
                                  {"flags", build_facts::flags},
                                  {"libraries", build_facts::libraries},
                                  {"bvlab", build_facts::version},
+                                 {"clock", clock_name()},
                                  {"date", now("%Y-%m-%dT%H:%M:%SZ")},
                                  {"commit", known(build_facts::commit)},
                                  {"changes", changes()}};
@@ -152,9 +164,9 @@ nlohmann::ordered_json machine() {
   return json;
 }
 
-/// What a program is, beside the machine that it runs on.
-constexpr const char* of_program[] = {"compiler", "flags",   "libraries", "bvlab",
-                                      "commit",   "changes", "outside"};
+/// What a program is and by which clock it times, beside the machine that it runs on.
+constexpr const char* of_program[] = {"compiler", "flags",  "libraries", "bvlab",
+                                      "clock",    "commit", "changes",   "outside"};
 
 /// Of what went on with a record, all that differs from what was there; changes anywhere are
 /// changes.

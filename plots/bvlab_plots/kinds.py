@@ -15,8 +15,9 @@ class Rows:
         self.record, self.known = record, {}
 
     def of(self, figure):
-        # Of single frames nobody knows the processor's share: beside them means are of the same clock.
-        clock = "wall" if records.times_of_frames(f"{figure.y} {figure.value}") else "processor"
+        # Where frames were timed by the wall clock nobody knows the processor's share: beside them means are of the same clock.
+        of_frames = records.times_of_frames(f"{figure.y} {figure.value}")
+        clock = "wall" if of_frames and records.clock_of_frames(self.record) == "wall" else "processor"
         key = figure.table, figure.clock or clock
         if key not in self.known:
             self.known[key] = records.read(self.record, key[0], clock=key[1])

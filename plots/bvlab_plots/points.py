@@ -195,6 +195,8 @@ def said_of(rows, value):
     if "wall_ns" in rows:  # beside it stand the processor's times, of single frames, too
         clock, of_frames = "wall" if "wall_ns" in value.columns else "processor", []
     else:
-        clock = "processor" if rows.attrs.get("clock") == "processor" and "wall_per_processor" in rows else "wall"
-        of_frames = records.times_of_frames(" ".join(value.columns))
+        by_processor = rows.attrs.get("clock_of_frames") == "processor"
+        corrected = rows.attrs.get("clock") == "processor" and "wall_per_processor" in rows
+        clock = "processor" if by_processor or corrected else "wall"
+        of_frames = [] if by_processor else records.times_of_frames(" ".join(value.columns))
     return dict(drawn=len(rows), timed=timed, beside=beside, of_frames=of_frames, clock=clock, unfinished=rows.attrs.get("unfinished"))

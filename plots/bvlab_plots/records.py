@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bvlab_plots import words
+from bvlab_plots import provenance, words
 from bvlab_plots.looks import STYLES
 from bvlab_plots.refused import Refused
 
@@ -40,7 +40,7 @@ def read(record, table="", needs=(), clock="wall"):
     has others, and where nothing was timed.
 
     attrs: name and kind (of the study, "" for an experiment), definition (a dictionary), settings (the columns that
-    say what was run), units (of each column: ns, B, radii, °, or ""), clock (of times), unfinished (nothing, or "31 of
+    say what was run), units (of each column: ns, B, radii, °, or ""), clock (of times), clock_of_frames (of single frames), unfinished (nothing, or "31 of
     216 rows"). Refused where it is no record, where a column that is needed is not there,
     and where answers of an experiment were not compared.
     """
@@ -85,12 +85,20 @@ def read(record, table="", needs=(), clock="wall"):
         raise Refused(f"{record}: has no {', '.join(missing)}: it is the record of something else")
     rows = in_order(rows, definition, settings)
     rows.attrs.update(name=name, kind=kind, definition=definition, settings=settings, units=units, clock=clock,
-                      unfinished=unfinished)
+                      clock_of_frames=clock_of_frames(record), unfinished=unfinished)
     return rows
 
 
+def clock_of_frames(record):
+    """The clock by which single frames were timed: "processor" where machine.json says so (the run had
+    experiments/processor_time.c) and no part of the record was made by another, else "wall"."""
+    machine = provenance.machine_of(record)
+    changed = any("clock" in part for part in machine.get("later", []))
+    return "processor" if machine.get("clock") == "processor" and not changed else "wall"
+
+
 def times_of_frames(text):
-    """The columns named in an expression that are times of single frames: wall times in every record."""
+    """The columns named in an expression that are times of single frames."""
     return [name for name in dict.fromkeys(re.findall(r"\b\w+_ns\b", text)) if name in OF_FRAMES]
 
 

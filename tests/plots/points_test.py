@@ -3,6 +3,7 @@
 
 import contextlib
 import io
+import json
 import tempfile
 import unittest
 
@@ -201,6 +202,16 @@ leaf_size = 4
                 drawn = points[(points.x == 1) & points.series.str.startswith("sphere recursive")].middle.iloc[0]
                 self.assertAlmostEqual(drawn / 10 if drawn > 1000 else drawn, middle)
                 self.assertIn(said, note_of(figure, points))
+
+    def test_frames_timed_by_the_processor_s_clock_are_no_wall_times(self):
+        machine = {"clock": "processor"}
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+            path = own_record(folder, change=lambda rows: rows.assign(worst_ns=7 * rows.time_ns))
+            for held, said in ((machine, "Processor time"), ({}, "Wall time"), (machine | {"later": [{"clock": "wall"}]}, "Wall time")):
+                (path / "machine.json").write_text(json.dumps(held))
+                record = kinds.Rows(path)
+                figure = Figure("a", "degrees", y="time_ns, worst_ns", series="variant")
+                self.assertIn(said, note_of(figure, points_of(record.of(figure), figure)))
 
     def test_where_wall_times_have_a_column_all_others_are_processor_times(self):
         for y, said in (("time_ns", "Processor time."), ("p99_ns", "Processor time."), ("wall_ns", "Wall time.")):

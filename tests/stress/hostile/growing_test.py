@@ -5,6 +5,7 @@ it is; and what is refused before the first cell."""
 import csv
 import hashlib
 import json
+import os
 import pathlib
 import signal
 import subprocess
@@ -119,6 +120,20 @@ class Grows(GrowTest):
         self.assertEqual(grown["later"][0]["commit"], first["commit"])
         self.assertIn("grow.toml", grown["later"][0]["command"])
         self.assertEqual(grown["changes"], first["changes"] or False)
+
+    def test_the_clock_of_frames_is_known(self):
+        source, library = ROOT / "experiments/processor_time.c", self.folder / "processor_time.so"
+        subprocess.run(["cc", "-O2", "-shared", "-fPIC", source, "-o", library], check=True)
+        self.write("grow.toml", definition(more='measures = ["frames"]'))
+        # A sanitizer's library wants to be the first; here it need not be.
+        environment = os.environ | {"LD_PRELOAD": str(library), "ASAN_OPTIONS": "verify_asan_link_order=0"}
+        subprocess.run([BVLAB, "run", "grow.toml", "--record", "record"], cwd=self.folder, env=environment, check=True,
+                       capture_output=True)
+        machine = json.loads((self.folder / "record/machine.json").read_text())
+        self.assertEqual((machine["clock"], machine.get("later")), ("processor", None))
+        self.run_it(definition(repetitions=3, more='measures = ["frames"]'))
+        machine = json.loads((self.folder / "record/machine.json").read_text())
+        self.assertEqual([part["clock"] for part in machine["later"]], ["wall"])
 
 
 class Killed(GrowTest):
