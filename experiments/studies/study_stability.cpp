@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The stability map: false answers to "do they touch" of every volume, strategy and precision, and
-/// of every peer, under every stressor. The truth is found by brute force in rational numbers.
-/// Volumes of wide trees (slab-box) are compared in the frame of one of the bodies, others in the
-/// world.
+/// of every peer, under every stressor; and of the configurations with names. The truth is found by
+/// brute force in rational numbers.
 #include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,6 +10,7 @@
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/peers.hpp"
+#include "experiments/replay/configurations.hpp"
 #include "experiments/studies/stressors.hpp"
 #include "experiments/studies/study.hpp"
 
@@ -81,8 +81,9 @@ class Map {
       const Progress& progress)
       : settings_(settings_of(definition)),
         record_(definition, folder,
-                {"stressor", "level", "source", "volume", "strategy", "precision", "answers",
-                 "touching", "false_positives", "false_negatives"},
+                {"stressor", "level", "source", "volume", "strategy", "precision", "fan_out",
+                 "frame", "kernel", "configuration", "answers", "touching", "false_positives",
+                 "false_negatives"},
                 2, progress) {}
 
   void run() {
@@ -103,22 +104,30 @@ class Map {
 
  private:
   void ours(const StressCase& stress) {
-    for (const auto& variant : stressed_variants())
-      add("bvlab", variant.volume, variant.strategy, variant.precision,
-          replay(stress.meshes, stress.trace, variant, {}).touching);
+    for (const auto& variant : stressed_variants()) add(stress, variant, "");
+    for (const auto& configuration : configurations())
+      add(stress, configured({}, configuration.name, stress.meshes, &stress.trace).variant,
+          std::string(configuration.name));
+  }
+  void add(const StressCase& stress, const Variant& variant, const std::string& configuration) {
+    add({"bvlab", variant.volume, variant.strategy, variant.precision,
+         std::to_string(variant.fan_out), variant.frame, variant.kernel, configuration},
+        replay(stress.meshes, stress.trace, variant, {}).touching);
   }
 
   void theirs(const StressCase& stress) {
     for (const Peer& peer : peers()) {
       if (!peer.answers("touching") || peer.takes_solids) continue;
-      add(std::string(peer.name), "", "", "", in_a_child(settings_.frames, settings_.seconds, [&] {
+      Row of_peer(8);
+      of_peer[0] = peer.name;
+      add(std::move(of_peer), in_a_child(settings_.frames, settings_.seconds, [&] {
             return peer.replay(stress.meshes, stress.trace, "touching", {}).touching;
           }));
     }
   }
 
-  void add(const std::string& source, const std::string& volume, const std::string& strategy,
-           const std::string& precision, const std::optional<Answers>& answers) {
+  /// `row`: from `source` to `configuration`.
+  void add(Row row, const std::optional<Answers>& answers) {
     std::size_t touching = 0, positives = 0, negatives = 0;
     for (std::size_t i = 0; i < truth_.size(); ++i) {
       touching += truth_[i];
@@ -126,9 +135,11 @@ class Map {
       positives += (*answers)[i] > truth_[i], negatives += (*answers)[i] < truth_[i];
     }
     const auto count = [&](std::size_t n) { return answers ? std::to_string(n) : std::string(); };
-    record_.add({key_[0], key_[1], source, volume, strategy, precision,
-                 std::to_string(answers ? truth_.size() : 0), std::to_string(touching),
-                 count(positives), count(negatives)});
+    row.insert(row.begin(), key_.begin(), key_.end());
+    for (const auto& field : {std::to_string(answers ? truth_.size() : 0), std::to_string(touching),
+                              count(positives), count(negatives)})
+      row.push_back(field);
+    record_.add(std::move(row));
   }
 
   Settings settings_;
