@@ -194,8 +194,9 @@ std::vector<Box<float>> cloth(std::size_t count, Maker& make) {
 }  // namespace
 
 std::vector<std::string> box_set_names() {
-  return {"random",    "sphere-packed", "adjacent", "sphere-sparse", "clusters",    "mixed",
-          "elongated", "flock",         "pile",     "triangles",     "swept-edges", "cloth"};
+  return {"random",      "sphere-packed", "adjacent",  "sphere-sparse", "clusters",
+          "mixed",       "elongated",     "flock",     "pile",          "triangles",
+          "swept-edges", "cloth",         "uniform-1", "uniform-8",     "uniform-64"};
 }
 std::vector<std::string> box_motion_names() {
   return {"still", "drift", "rigid",      "breathe", "part",   "same",    "few",
@@ -231,6 +232,11 @@ std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count,
       return make.around(make.in_cube(), extent);
     }
     if (name == "flock") return make.around(make.in_cube(), make.edges(0.8f * spacing));
+    for (const int overlapped :
+         {1, 8, 64})  // edges a and b overlap where centres are (a + b) / 2 apart
+      if (name == "uniform-" + std::to_string(overlapped))
+        return make.around(make.in_cube(),
+                           make.edges(0.5f * std::cbrt(static_cast<float>(overlapped)) * spacing));
     if (name == "pile") {  // heaped towards the floor
       Centre c = make.in_cube();
       c[2] *= 0.3f * c[2];

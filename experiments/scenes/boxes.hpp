@@ -3,7 +3,8 @@
 /// koziara2005bounding: `random` (over-packed, k = O(n^2)), `sphere-packed` (the same on a sphere),
 /// `adjacent` (cubes that touch exactly), `sphere-sparse` (k = O(n)). Sets it left out: `clusters`,
 /// `mixed` (sizes over six decades), `elongated`, `flock` (velocities correlated), `pile` (most
-/// boxes at rest); and real ones: `triangles`, the boxes of a bunny's triangles; `swept-edges`,
+/// boxes at rest), `uniform-C` (each box overlaps C others in the mean, of any number: k = nC/2); and
+/// real ones: `triangles`, the boxes of a bunny's triangles; `swept-edges`,
 /// those of its edges, each swept by a motion of three edge lengths, and `cloth`, the same of a
 /// crumpled sheet, as continuous collision detection asks for them (some forty pairs a box).
 #pragma once

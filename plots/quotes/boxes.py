@@ -198,3 +198,27 @@ def exponents(*folders):
     claim(all(abs(float(line[1]) - (2 if line[0] in packed else 1)) < 0.1 for line in lines),
           "pairs grow as the square on over-packed sets")
     return {"rows": lines}
+
+
+@quotes("boxes-exponents")
+def powers(record):
+    """t = a n^x k^y by least squares of logarithms over sizes and overlaps, for each method, from scratch and coherent."""
+    rows = records.read(record)
+    records.wrong_answers(rows)
+    rows = rows[(rows.frame_ns > 0) & (rows.peer == "")]
+    cells = rows.groupby(["method", "coherent", "set", "boxes"])[["frame_ns", "overlaps"]].median().reset_index()
+    lines, off, found = [], [], {}
+    for method, group in cells.groupby("method", sort=False):
+        line = [f"`{method}`"]
+        for coherent in ("off", "on"):
+            here = group[group.coherent == coherent]
+            known = np.column_stack([np.ones(len(here)), np.log(here.boxes), np.log(here.overlaps)])
+            answer = np.linalg.lstsq(known, np.log(here.frame_ns), rcond=None)[0]
+            found[method, coherent] = answer[1:]
+            off.append(np.exp(np.abs(known @ answer - np.log(here.frame_ns)).max()))
+            line += [f"{answer[1]:.2f}", f"{answer[2]:.2f}"]
+        lines.append(line)
+    lines.sort(key=lambda line: float(line[1]) + float(line[2]))
+    sums = {key: sum(value) for key, value in found.items()}
+    claim(min(value for key, value in sums.items() if key[0] in ("blocks", "auto")) < 1.2, "ours grow nearly as n + k does")
+    return {"rows": lines, "off": max(off), "sums": Interval(pd.Series(sums)), "cells": len(cells) // len(found)}
