@@ -298,14 +298,16 @@ std::vector<Variant> stressed_variants() {
       variants.push_back(std::move(variant));
     });
   };
+  unsigned cell = 0;
   for (const auto& volume : volumes())
     for (const auto& strategy : strategies()) {
       add({}, volume.name, strategy.name);
       // Every fan-out and both frames, but each by some of the volumes and strategies alone.
       Variant wide;
-      wide.fan_out = 4u << variants.size() % 3;
-      wide.frame = name_of(variants.size() % 2 ? Frame::world : Frame::body);
+      wide.fan_out = 4u << cell % 3;
+      wide.frame = name_of(cell / 3 % 2 ? Frame::world : Frame::body);
       add(wide, volume.name, strategy.name);
+      ++cell;
     }
   for (const char* kernel : {"siblings", "mixed"}) {
     Variant wide;

@@ -60,6 +60,21 @@ def boxes_motions(record):
     return {"sweeps": Interval(sweeps), "middle": sweeps.median(), "blocks": Interval(saved[saved.method == "blocks"].left)}
 
 
+@quotes("boxes-motions-packed")
+def boxes_motions_packed(record):
+    rows = records.read(record)
+    records.wrong_answers(rows)
+    rows = rows[(rows.peer == "") & (rows.frame_ns > 0)]
+    time = rows.groupby(["set", "boxes", "method", "coherent", "motion"]).frame_ns.median().unstack("coherent")
+    published = time.drop("blocks", level="method")
+    by_motion = published["off"].unstack("motion")
+    fastest = by_motion.groupby(["set", "boxes"]).idxmin().applymap(lambda place: place[2])
+    claim((fastest.nunique(axis=1) == 1).all(), "the fastest published method is the same in every motion")
+    over = time["on"].xs("blocks", level="method") / time["off"].xs("blocks", level="method")
+    return {"apart": by_motion.max(axis=1).div(by_motion.min(axis=1)).max(), "left": Interval(published["on"] / published["off"]),
+            "blocks": Interval(over), "frames": rows.frames.iloc[0]}
+
+
 def unit_costs(rows):
     """C_u, C_v, C_p in nanoseconds: those by which recursions' times are off least, in squares of shares; none below 0."""
     rows = rows[rows.strategy == "recursive"]

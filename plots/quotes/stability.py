@@ -18,10 +18,11 @@ def stability(record):
     claim(fcl.idxmax() == "fcl-kios" and fcl["fcl-obb"] == fcl["fcl-obbrss"], "kIOS errs most of FCL's trees")
     claim(set(rows[(rows.peer == "embree") & (rows.wrong > 0)].stressor) == {"tiny"}, "Embree errs where all is denormal")
     mine = rows[rows.peer == ""]
-    claim(not {"slab-box", "raise", "recommended"} & ({*mine.volume} | {*mine.strategy}), "slab-box, raise and recommended are not in the map")
+    claim({"slab-box", "raise", "recommended"} <= {*mine.volume, *mine.strategy, *mine.configuration}, "slab-box, raise and recommended are in the map")
+    claim({*mine.fan_out.astype(int)} == {2, 4, 8, 16} and mine.frame.nunique() == 2 and mine.kernel.nunique() == 3, "every fan-out, frame and kernel is in the map")
     others = fcl.drop(["fcl-kios", "fcl-obb", "fcl-obbrss"])
     return {"levels": len(rows[["stressor", "level"]].drop_duplicates()), "frames": rows.answers.iloc[0],
-            "volumes": mine.volume.nunique(), "strategies": mine.strategy.nunique(), "exact": ours.answers["exact"], "float64": ours.false_positives["float64"],
+            "volumes": mine.volume.nunique(), "strategies": mine.strategy.nunique(), "variants": int((mine.precision == "exact").sum() / len(rows[["stressor", "level"]].drop_duplicates())), "exact": ours.answers["exact"], "float64": ours.false_positives["float64"],
             "float32": ours.false_positives["float32"], "answers": peers.answers.iloc[0], "obb": fcl["fcl-obb"],
             "missed": peers.false_negatives["fcl-obb"], "kios": fcl["fcl-kios"], "others": Interval(others),
             **{name: peers.wrong[name] for name in ("cgal", "ode", "bullet", "embree")}}

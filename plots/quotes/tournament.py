@@ -4,6 +4,7 @@
 from functools import cache
 
 import quoting
+from bvlab_plots import records
 from bvlab_scripts import tournament
 from quoting import Interval, claim, quotes
 
@@ -97,3 +98,30 @@ def scenes(record):
     tails = middle.tail_ns.unstack("method")
     claim((tails[called(OURS, SOURCE)] < tails[peers].min(axis=1)).all(), "recommended has the least 99th percentile")
     return {"rows": lines, "lead": Interval(beside.ratio), "seeds": rows.seed.nunique(), "repetitions": rows.repetition.nunique()}
+
+
+@quotes("tournament-peers")
+def tournament_peers(record):
+    """Every library from source in one program: microseconds a pair, later frames, median of seeds and repetitions."""
+    rows = records.read(record)
+    claim((rows.alone != "no").all(), "the rows were timed alone")
+    claim((rows[rows.peer == ""].differing == 0).all(), "answers of ours agree")
+    rows = rows.assign(us=rows.later_ns / rows.later_pairs / 1e3)
+    places = rows[["work", "polygons"]].drop_duplicates().itertuples(index=False, name=None)
+    us = rows.groupby(["work", "polygons", "method"]).us.median().unstack().loc[list(places), list(rows.method.unique())]
+    libraries = [method for method in us if not method.startswith(("recommended", "wide"))]
+    times = us[libraries].min(axis=1) / us.recommended
+    touching = times[~times.index.get_level_values("work").str.startswith("contacts")]
+    roots = (us[libraries].min(axis=1) / us["wide, from the roots"])[touching.index]
+    contacts = times.drop(touching.index)
+    claim(set(us[libraries].idxmin(axis=1)) <= {"PhysX", "OPCODE, coherent"}, "PhysX or OPCODE's coherent mode is the fastest library")
+    wrong = rows[rows.differing > 0].groupby("method").differing.max()
+    claim(set(rows[rows.differing > 0].work) == {"contacts, near"} and set(wrong.index) == {"Coal, obb", "Coal, obbrss", "OPCODE"}, "Coal and OPCODE differ, in contacts alone")
+    lines, last = [], None
+    for (work, polygons), line in us.iterrows():
+        cells = [f"{line[method]:.2g}" if line[method] == line[method] else "" for method in ("recommended", "wide, from the roots", *libraries)]
+        lines.append(["" if work == last else work, str(polygons), *cells, f"{times[work, polygons]:.1f}"])
+        last = work
+    return {"rows": lines, "touching": Interval(touching), "five": int((touching >= 5).sum()), "cells": len(touching), "roots": Interval(roots),
+            "contacts": Interval(contacts), "coal": int(wrong["Coal, obb"]), "opcode": int(wrong["OPCODE"]), "seeds": rows.seed.nunique(),
+            "repetitions": rows.repetition.nunique()}

@@ -3,12 +3,26 @@
 /// and tree, and the cheaper precisions miss no contact.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "experiments/replay/replay.hpp"
 #include "experiments/studies/stressors.hpp"
 #include "traversal/primitives/precisions.hpp"
 
 namespace bvlab {
 namespace {
+
+/// Every fan-out, both frames and every kernel are stressed.
+TEST(Stability, VariantsAreOfEveryKind) {
+  std::set<std::string> kinds;
+  for (const auto& variant : stressed_variants()) {
+    kinds.insert(std::to_string(variant.fan_out));
+    kinds.insert(variant.frame);
+    kinds.insert(variant.kernel);
+  }
+  EXPECT_EQ(kinds, (std::set<std::string>{"2", "4", "8", "16", "world", "body", "gathered",
+                                          "siblings", "mixed"}));
+}
 
 class Stressed : public testing::TestWithParam<Stressor> {};
 
