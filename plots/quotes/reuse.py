@@ -18,6 +18,7 @@ def reuse(record):
     cells = fan_outs.read(record)
     rest = fan_outs.at_rest(cells)
     rows = fan_outs.all_rows(record)
+    claim((rows.alone == "yes").all(), "the times of fan-outs are of rows that were alone")
     found = {word: Interval(rest.xs(fan_out, level="fan_out")) for fan_out, word in WORDS.items()}
     for name, short in NAMES.items():
         for what, measure in (("n_v", ""), ("time_ns", "_time")):

@@ -100,6 +100,11 @@ def scenes(record):
     return {"rows": lines, "lead": Interval(beside.ratio), "seeds": rows.seed.nunique(), "repetitions": rows.repetition.nunique()}
 
 
+def short_us(us):
+    """Two digits, "" where there is no time."""
+    return "" if us != us else f"{us:.0f}" if us >= 10 else f"{us:.2g}"
+
+
 @quotes("tournament-peers")
 def tournament_peers(record):
     """Every library from source in one program: microseconds a pair, later frames, median of seeds and repetitions."""
@@ -119,7 +124,7 @@ def tournament_peers(record):
     claim(set(rows[rows.differing > 0].work) == {"contacts, near"} and set(wrong.index) == {"Coal, obb", "Coal, obbrss", "OPCODE"}, "Coal and OPCODE differ, in contacts alone")
     lines, last = [], None
     for (work, polygons), line in us.iterrows():
-        cells = [f"{line[method]:.2g}" if line[method] == line[method] else "" for method in ("recommended", "wide, from the roots", *libraries)]
+        cells = [short_us(line[method]) for method in ("recommended", "wide, from the roots", *libraries)]
         lines.append(["" if work == last else work, str(polygons), *cells, f"{times[work, polygons]:.1f}"])
         last = work
     return {"rows": lines, "touching": Interval(touching), "five": int((touching >= 5).sum()), "cells": len(touching), "roots": Interval(roots),
