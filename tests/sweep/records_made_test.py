@@ -76,7 +76,7 @@ class Made(unittest.TestCase):
             return list(csv.DictReader(file))
 
     def test_what_is_out_of_date_is_made(self):
-        self.hold("old", command="bvlab run elsewhere --counts")
+        self.hold("old", '[[figure]]\nname = "a"\nkind = "bars"\n', command="bvlab run elsewhere --counts")
         self.hold("study", 'kind = "boxes"\n')
         self.hold("new", commit="b")
         self.hold("others", command="experiments/builds elsewhere")
