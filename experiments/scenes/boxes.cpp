@@ -211,6 +211,7 @@ std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count,
   if (name == "cloth") return cloth(count, make);
   const float spacing = 1 / std::cbrt(static_cast<float>(std::max<std::size_t>(count, 1)));
   std::vector<Centre> centres;
+  centres.reserve(20);
   for (int k = 0; k < 20; ++k) centres.push_back(make.in_cube());
   const auto one = [&]() -> Box<float> {
     if (name == "random") return make.around(make.in_cube(), make.edges(0.095f));

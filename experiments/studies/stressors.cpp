@@ -51,8 +51,9 @@ class Stage {
                  double lift) {
     const TriangleMesh& a = case_.meshes[0];
     const TriangleMesh& b = case_.meshes[1];
-    const Pose pose_a = *pose_from(move_a, turn_a.w(), turn_a.x(), turn_a.y(), turn_a.z());
-    const Pose pose_b = *pose_from(Vector::Zero(), turn_b.w(), turn_b.x(), turn_b.y(), turn_b.z());
+    const Pose pose_a = pose_from(move_a, turn_a.w(), turn_a.x(), turn_a.y(), turn_a.z()).value();
+    const Pose pose_b =
+        pose_from(Vector::Zero(), turn_b.w(), turn_b.x(), turn_b.y(), turn_b.z()).value();
     const Triangle face =
         a.corners(static_cast<std::size_t>(below(static_cast<int>(a.triangles.size()))));
     const Vector p = pose_a(face[0]), q = pose_a(face[1]), r = pose_a(face[2]);

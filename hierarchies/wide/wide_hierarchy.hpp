@@ -116,11 +116,14 @@ class WideHierarchy {
   void put_children(std::size_t i, const WideTopology& topology, const OrderedTriangles& triangles,
                     Fit fit, Reach& reach) {
     const auto& node = topology.nodes[i];
-    V volume;  // of the last child, in vacant lanes
+    const auto of_child = [&](std::uint32_t k) -> V {
+      return node.leaf ? triangles.template volume<V>(k, k + 1, fit) : nodes_[k].volume;
+    };
+    V volume = of_child(node.first);
     for (int lane = 0; lane < F; ++lane) {
-      const std::uint32_t k = node.first + static_cast<std::uint32_t>(lane);
-      if (lane < static_cast<int>(node.count))
-        volume = node.leaf ? triangles.template volume<V>(k, k + 1, fit) : nodes_[k].volume;
+      // Vacant lanes repeat the last child.
+      if (const auto k = static_cast<std::uint32_t>(lane); k > 0 && k < node.count)
+        volume = of_child(node.first + k);
       put_lane(siblings_[i].volumes, lane, volume);
       siblings_[i].size[lane] = size_of(volume);
       reach.add(volume);
