@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Boxes, pairs of them, and what it means that two overlap.
+/// Axis-aligned boxes, pairs of boxes, and the two senses in which boxes overlap.
 ///
-/// A frame is a span of boxes as a box trace holds them: `lo x y z, hi x y z`, one after the other.
-/// Methods copy them into arrays of their own, in their own order, so a frame is read and never
-/// kept.
+/// A frame is a span of boxes laid out as in a box trace: `lo x y z, hi x y z`, box after box.
+/// Methods copy the boxes into arrays of their own, in an order of their own; they read a frame
+/// during a call and never keep a reference to it.
 #pragma once
 
 #include <cmath>
@@ -49,9 +49,9 @@ struct Closed {
   }
 };
 
-/// Boxes without their upper faces: touching does not count. Two boxes overlap where, on every
-/// axis, each starts before the other ends; so a box of zero extent overlaps what it lies strictly
-/// inside of, and not itself.
+/// Half-open boxes [lo, hi): touching does not count. Two boxes overlap where, on every axis, each
+/// starts before the other ends. So a box of zero extent overlaps every box in whose interior it
+/// lies, but not itself.
 struct HalfOpen {
   static constexpr std::string_view name = "half-open";
   template <class S>
@@ -67,13 +67,13 @@ bool overlap(const Box<T>& a, const Box<T>& b) {
          Contact::reaches(a.hi[2], b.lo[2]) & Contact::reaches(b.hi[2], a.lo[2]);
 }
 
-/// Where a frame breaks what every method relies on.
+/// A box that breaks the precondition of every method: its index and what is wrong.
 struct BoxFault {
   std::size_t box;
   std::string_view what;
 };
 
-/// The first box that is not finite or not ordered, if there is one.
+/// The first box with a NaN, an infinity or lo > hi; nothing where every box is valid.
 template <class T>
 std::optional<BoxFault> first_fault(Boxes<T> boxes) {
   for (std::size_t i = 0; i < boxes.size(); ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What a broad-phase method is, and the laws it keeps.
+/// The concept of a broad-phase method, and the laws that every method keeps.
 #pragma once
 
 #include <concepts>
@@ -10,14 +10,14 @@
 
 namespace bvlab {
 
-/// Finds which boxes of a frame overlap, frame after frame. Laws, checked by tests/laws for every
-/// entry of `Methods`:
-///   exactness    the pairs are those, and only those, that `overlap<Contact>` holds for;
-///   uniqueness   each stands once, with i < j, contiguous; in the same order in every run;
-///   freedom      frames may differ in anything: boxes may jump, appear and disappear;
-///   steadiness   once frames stop growing, nothing is allocated.
-/// Boxes must be free of faults (`first_fault`). The pairs stay valid until the next call. Made
-/// with `Coherence::off`, a method forgets every frame, and keeps its memory.
+/// Finds the overlapping pairs of boxes in each frame of a sequence. Laws, checked by tests/laws
+/// for every entry of `Methods`:
+///   exactness    a pair is listed if and only if `overlap<Contact>` holds for it;
+///   uniqueness   each pair is listed once, with i < j; the order is the same in every run;
+///   freedom      successive frames are arbitrary: boxes may jump, appear and disappear;
+///   steadiness   once frames stop growing, a frame allocates nothing.
+/// Boxes must be valid (see `first_fault`). The returned span is valid until the next call. With
+/// `Coherence::off` a method uses nothing of earlier frames; it keeps only its buffers.
 template <class M>
 concept BroadPhaseMethod = std::constructible_from<M, const MethodSettings&> &&
                            requires(M method, Boxes<typename M::Scalar> boxes) {
@@ -33,9 +33,9 @@ concept ReportsChanges = BroadPhaseMethod<M> && requires(const M method) {
   { method.changes() } -> std::same_as<PairChanges>;
 };
 
-/// A method that can be told which boxes moved: `update` gives what `overlapping` does, where no
-/// box but those told, and new ones, differs from the last frame. An index may stand there twice,
-/// or though its box did not move.
+/// A method that accepts a list of the boxes that moved: `update` returns what `overlapping` would,
+/// provided that all other boxes, except new ones, are as in the last frame. `moved` may list an
+/// index twice, or list a box that did not move.
 template <class M>
 concept TakesMoved = BroadPhaseMethod<M> && requires(M method, Boxes<typename M::Scalar> boxes,
                                                      std::span<const std::uint32_t> moved) {

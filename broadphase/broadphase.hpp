@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// THE list of broad-phase methods. A new one is a header under methods/ and a line here (see
-/// broad_phase_method.hpp for what it has to offer); commands, tests and benchmarks walk the list.
+/// THE list of broad-phase methods. A new method is a header under methods/ and a line here (its
+/// interface: broad_phase_method.hpp); commands, tests and benchmarks iterate over the list.
 #pragma once
 
 #include "broadphase/broad_phase_method.hpp"
@@ -31,7 +31,7 @@ using Methods = TypeList<
     Sweep2<T, Contact>,
     Sweep3<T, Contact>,
     Sweep4<T, Contact>,
-    // the field's
+    // other methods from the literature
     SortAndSweep<T, Contact>,
     Sap<T, Contact>,
     Grid<T, Contact>,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What a broad-phase method is told when it is made.
+/// The settings with which a broad-phase method is constructed.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace bvlab {
 
-/// Whether a frame may use what the frames before it left behind.
+/// Whether a method may use results of earlier frames.
 enum class Coherence { off, on };
 
-/// Whether the pairs that began and ended are reported besides all pairs.
+/// Whether a method also lists the pairs that began and ended.
 enum class Changes { unreported, reported };
 
 /// How ends are sorted from scratch: by the digits of their keys, O(n), or by comparing them,
@@ -23,11 +23,11 @@ struct MethodSettings {
   Coherence coherence = Coherence::on;
   Changes changes = Changes::unreported;
   int threads = 1;
-  Sort sort = Sort::radix;      ///< of `hash`, the sweeps and `sort-and-sweep`
-  std::uint32_t cutoff = 1000;  ///< where `hybrid` stops dividing and scans
+  Sort sort = Sort::radix;      ///< used by `hash`, the sweeps and `sort-and-sweep`
+  std::uint32_t cutoff = 1000;  ///< below so many boxes `hybrid` scans
 };
 
-/// The pairs of this frame that the last one had not, and the other way round; any order.
+/// Pairs that overlap in this frame but not in the last, and vice versa; in any order.
 struct PairChanges {
   std::span<const Pair> began;
   std::span<const Pair> ended;

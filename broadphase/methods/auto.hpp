@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Picks a method from what it sees. Few boxes are swept along one axis, where putting them into
-/// spatial order would cost more than comparing. All others go to `blocks`, which itself chooses:
-/// from the spread of sizes, into how many classes it sorts; from overlap and motion, whether it
-/// keeps the list, changes it in place, follows the boxes and for how many frames, or starts over.
+/// Picks a method by the number of boxes. Up to 64 are swept along one axis, which costs less than
+/// sorting them into spatial order. More go to `blocks`, which makes its own choices: how many size
+/// classes to sort into, from the spread of sizes; whether to keep the list, change it in place,
+/// follow the boxes (and for how many frames) or start over, from overlap and motion.
 #pragma once
 
 #include <string>
@@ -26,15 +26,15 @@ class Auto {
   std::span<const Pair> overlapping(Boxes<T> boxes) {
     return note(boxes, choose(boxes) ? sweep_.overlapping(boxes) : blocks_.overlapping(boxes));
   }
-  /// The same where no box moved but these (Blocks::update).
+  /// As `overlapping`, where only the boxes in `moved` moved (see Blocks::update).
   std::span<const Pair> update(Boxes<T> boxes, std::span<const std::uint32_t> moved) {
-    // What was swept meanwhile, `blocks` did not see.
+    // `blocks` has not seen the frames that were answered by the sweep.
     const bool seen = !small_;
     if (choose(boxes)) return note(boxes, sweep_.overlapping(boxes));
     return note(boxes, seen ? blocks_.update(boxes, moved) : blocks_.overlapping(boxes));
   }
   PairChanges changes() const { return blocks_.changes(); }
-  /// What the last frame was answered by, and what was seen.
+  /// Which method answered the last frame, and the figures it was chosen by.
   std::string reason() const {
     if (small_) return "sort-and-sweep: " + std::to_string(count_) + " boxes are few";
     const std::size_t tenths = count_ ? 10 * found_ / count_ : 0;
@@ -45,7 +45,7 @@ class Auto {
   }
 
  private:
-  /// Whether they are few enough for the sweep.
+  /// Whether the boxes are few enough for the sweep, which cannot report changes.
   bool choose(Boxes<T> boxes) {
     return small_ = boxes.size() <= few && settings_.changes == Changes::unreported;
   }
@@ -54,7 +54,7 @@ class Auto {
     return pairs;
   }
 
-  /// Measured: where the two cost the same, from scratch and coherent.
+  /// The measured break-even of the two methods, both with coherence and without.
   static constexpr std::size_t few = 64;
 
   MethodSettings settings_;

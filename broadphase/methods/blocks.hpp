@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Our own method. From scratch: boxes in spatial order, sixteen to a block, the tree of blocks
-/// joined with itself by vector comparisons; O(n) to sort and O(n + k) to join where boxes are
-/// alike (JoinedBlocks).
+/// Our own method. From scratch it sorts boxes into spatial order, packs sixteen to a block, and
+/// joins the tree of blocks with itself by vector comparisons: O(n) to sort and O(n + k) to join
+/// where boxes are alike (JoinedBlocks).
 ///
-/// With coherence, what is done follows what moved:
+/// With coherence, the work depends on what moved since the last frame:
 ///
-/// - nothing moved: the boxes are compared with the last frame's, and the list stands.
-/// - a few moved: the tree is asked for the pairs that *change*, and the list is changed in place
-///   (ChangedBlocks). Who knows which boxes moved says so (`update`), and the others are not even
-///   looked at.
-/// - moved steadily: *followed* within fat boxes (FollowedBlocks). A frame costs one look at every
-///   box and under two nanoseconds a candidate, in the cache. For how many frames fat boxes are
-///   made is chosen so that those frames and making the next candidates cost least together.
+/// - nothing moved: the boxes are compared with the last frame's, and the list is kept.
+/// - a few moved: the tree is queried for the pairs that *change*, and the list is changed in place
+///   (ChangedBlocks). A caller who knows which boxes moved passes them (`update`); the others are
+///   not even read.
+/// - moved steadily: boxes are *followed* within fat boxes (FollowedBlocks). A frame reads every
+///   box once and compares each candidate, in under two nanoseconds in the cache. Fat boxes
+///   last for the number of frames that costs least, including the search for the next candidates.
 /// - jumped, moved far, or so many overlap that starting over costs less: from scratch.
 ///
-/// Every choice is made from counts, never from clocks, so the same frames give the same list.
+/// Every choice depends on counts, never on clocks, so the same frames give the same list.
 ///
-/// A frame that begins to follow takes two to four times as long as one from scratch. There are no
-/// more than two of these, and one more in each 256 frames, however boxes move: fewer than one
-/// frame in a hundred of a long run. All others are to cost no more than starting over.
+/// A frame that begins to follow takes two to four times as long as one from scratch. There are at
+/// most two of these at first, and one more per 256 frames, however boxes move: fewer than one
+/// frame in a hundred of a long run. All others are meant to cost no more than starting over.
 #pragma once
 
 #include <algorithm>
@@ -47,14 +47,14 @@ class Blocks {
         joined_(settings),
         changed_(joined_, pairs_),
         followed_(settings, joined_, pairs_) {}
-  // Its parts refer to each other.
+  // Not copyable: its parts refer to each other.
   Blocks(const Blocks&) = delete;
   Blocks& operator=(const Blocks&) = delete;
 
   std::span<const Pair> overlapping(Boxes<T> boxes) { return next_frame(boxes, nullptr); }
 
-  /// The same where no box moved but those of `moved`, and those that are new: no other is looked
-  /// at while few are told. An index may stand there twice, or though its box did not move.
+  /// As `overlapping`, where only the boxes in `moved` and new ones differ from the last frame;
+  /// where these are few, no other box is read. Duplicates and boxes that did not move are allowed.
   std::span<const Pair> update(Boxes<T> boxes, std::span<const std::uint32_t> moved) {
     return next_frame(boxes, &moved);
   }
@@ -64,9 +64,9 @@ class Blocks {
     return {pairs_.began.view(), pairs_.ended.view()};
   }
 
-  /// What the last frame was answered by.
+  /// Why the last frame was answered as it was, for people to read.
   std::string_view reason() const { return reason_; }
-  /// Into how many classes of size and shape boxes were last sorted.
+  /// The number of classes of size and shape in the last spatial order.
   std::uint32_t classes() const { return joined_.order().classes(); }
 
   std::size_t bytes() const {
@@ -77,13 +77,13 @@ class Blocks {
  private:
   using Moved = std::span<const std::uint32_t>;
 
-  /// How a sample of the boxes moved since the last frame, beside how large they are.
+  /// How far a sample of the boxes moved since the last frame, and how large they are.
   struct Motion {
     double extent[3] = {}, step[3] = {};  ///< sums, without those that jumped
     std::size_t seen = 0, jumped = 0, moved = 0;
   };
 
-  /// `told`: which boxes moved, where that is known.
+  /// `told`: the indices of the boxes that moved, or null where that is unknown.
   std::span<const Pair> next_frame(Boxes<T> boxes, const Moved* told) {
     pairs_.begin_frame();
     saved_up_ = std::min(saved_up_ + 1, 2 * frames_a_beginning);
@@ -97,13 +97,13 @@ class Blocks {
     joined_.from_scratch(boxes, pairs_);
     reason_ = "from scratch: no earlier frame to use, boxes jumped, or too many pairs change";
   }
-  /// What is kept besides the tree and the list.
+  /// Stops and forgets everything but the tree and the list.
   void stop() {
     changed_.stop(), followed_.stop();
     last_frame_.forget();
   }
 
-  /// Brings the answer of the last frame up to this one; false where from scratch is better.
+  /// Updates the list to this frame; false where starting from scratch costs less.
   bool advance(Boxes<T> boxes, const Moved* told) {
     if (count_ == 0 || boxes.empty()) return false;
     if (8 * distance(boxes.size(), count_) > boxes.size() + 64) return false;
@@ -113,7 +113,7 @@ class Blocks {
       --waiting_;
       return false;
     }
-    // The tree holds the last frame's boxes.
+    // Here the tree holds the boxes of the last frame.
     const Motion motion = sample(boxes);
     if (many_jumped(motion)) return in_vain();
     if (BlockCosts::few_times * motion.moved > motion.seen)
@@ -161,7 +161,7 @@ class Blocks {
     return true;
   }
 
-  /// What the others may cost for starting over to cost no less.
+  /// The most that an update may cost to be preferred to starting over.
   double affordable() const { return 0.7 * cost_of_starting_over(); }
   double cost_of_starting_over() const {
     using Cost = BlockCosts;
@@ -206,14 +206,14 @@ class Blocks {
     reason_ = "followed: new candidates for the frames to come";
     return true;
   }
-  /// Looking at how boxes moved costs something, too: the more often it led to nothing, the longer
-  /// it is left alone, up to seven frames.
+  /// Sampling the motion costs time, too: each time it leads to nothing, the number of frames until
+  /// the next sample grows, up to seven.
   bool in_vain() {
     waiting_ = wait_ = std::min(7, 2 * wait_ + 1);
     return false;
   }
 
-  /// Boxes that jump stand in the wrong leaves: these few leave the others as they are.
+  /// Boxes that jumped lie in the wrong leaves; up to this many barely affect the tree.
   bool many_jumped(const Motion& motion) const {
     const double share = static_cast<double>(motion.jumped) /
                          static_cast<double>(std::max<std::size_t>(motion.seen, 1));
@@ -246,8 +246,8 @@ class Blocks {
       }
     return motion;
   }
-  /// For how many frames fat boxes are best made; 0 where starting over costs less. `ahead`: in how
-  /// many frames before them, of which each is to cost less than starting over.
+  /// The best horizon in frames; 0 where starting over costs less. `ahead`: the number of frames in
+  /// which its candidates are found, each of which must cost less than starting over.
   int best_horizon(const Motion& motion, int ahead = 0) const {
     using Cost = BlockCosts;
     const double n = static_cast<double>(count_), k = static_cast<double>(pairs_.all.size());
@@ -267,7 +267,7 @@ class Blocks {
                        Cost::fat_box * n + (1 + growth) / 2 * join + Cost::candidate * candidates,
                    cost = follow + begin / frames;
       if (ahead > 0 && follow + begin / ahead > cost_of_starting_over()) continue;
-      // There is no time to prepare what follows the shortest margins.
+      // With the shortest margins there is no time to prepare the next candidates.
       const bool rather = followed_.restless() && horizon == shortest;
       if (cost < (rather ? most : best)) best = cost, horizon = frames;
     }
@@ -283,10 +283,10 @@ class Blocks {
   ChangedBlocks<T, Contact> changed_;
   FollowedBlocks<T, Contact> followed_;
   std::vector<std::uint32_t> moved_;
-  int wait_ = 0, waiting_ = 0;  ///< frames to start over without asking
-  /// Frames for which one may begin to follow.
+  int wait_ = 0, waiting_ = 0;  ///< frames to start over without sampling
+  /// One beginning is allowed per so many frames.
   static constexpr int frames_a_beginning = 256;
-  int saved_up_ = 2 * frames_a_beginning;  ///< frames, less those that beginnings have used up
+  int saved_up_ = 2 * frames_a_beginning;  ///< frames not yet used up by beginnings
 };
 
 }  // namespace bvlab

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Every box against every other: n(n-1)/2 comparisons, and the definition of the right answer.
+/// Compares every box with every other: n(n-1)/2 tests, the reference for all other methods.
 #pragma once
 
 #include "broadphase/settings.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A binary tree of fattened boxes into which boxes are inserted one by one where they enlarge it
-/// least (BibTeX: catto2019dynamic). A box that leaves its fat box, a tenth of its size wider, is
-/// taken out and inserted again; then every box asks the tree. O(n log n + k) a frame where the
-/// tree stays balanced, which nothing but the cost rule sees to.
+/// A binary tree of fat boxes, into which boxes are inserted one by one where they enlarge it least
+/// (BibTeX: catto2019dynamic). A fat box is a tenth of its box wider on each side; a box that
+/// leaves it is removed and inserted again. Then every box queries the tree: O(n log n + k) a frame
+/// where the tree is balanced, which only the cost rule aims at.
 #pragma once
 
 #include <vector>
@@ -39,7 +39,7 @@ class DynamicTree {
       }
     for (auto k = static_cast<std::uint32_t>(leaf_.size()); k < boxes.size(); ++k) {
       const std::uint32_t node = make_node();
-      nodes_[node] = {fat(boxes[k]), none, none, k};  // parent, right; its box stands for left
+      nodes_[node] = {fat(boxes[k]), none, none, k};  // parent, right; left holds its box index
       leaf_.push_back(node);
       put_in(node);
     }
@@ -52,7 +52,7 @@ class DynamicTree {
   struct Node {
     Box<T> box;
     std::uint32_t parent = none, right = none;
-    std::uint32_t left = none;  ///< of a leaf, whose right is none: its box
+    std::uint32_t left = none;  ///< of a leaf, whose right is none: the index of its box
   };
   bool is_leaf(std::uint32_t node) const { return nodes_[node].right == none; }
 
@@ -67,7 +67,7 @@ class DynamicTree {
     return a.lo[0] >= b.lo[0] && a.lo[1] >= b.lo[1] && a.lo[2] >= b.lo[2] && a.hi[0] <= b.hi[0] &&
            a.hi[1] <= b.hi[1] && a.hi[2] <= b.hi[2];
   }
-  /// Half the surface, as a measure of what asking a node costs.
+  /// Half the surface area, a measure of the expected cost of visiting a node.
   static double area(const Box<T>& b) {
     double e[3];
     for (int axis = 0; axis < 3; ++axis)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A uniform grid: every box is copied into the cells it lies in, and the boxes of a cell are
-/// compared sixteen at a time. A pair is reported where the later of the two lower corners lies, so
-/// once. O(n + k) where boxes are alike and spread out; cells grow where they are not.
+/// A uniform grid: every box is listed in each cell that it overlaps, and the boxes of a cell are
+/// compared sixteen at a time. A pair is reported once, in the cell of the componentwise maximum of
+/// the two lower corners. O(n + k) where boxes are alike and spread out; else cells grow.
 #pragma once
 
 #include <vector>
@@ -27,7 +27,7 @@ class Grid {
     pairs_.clear();
     if (boxes.empty()) return pairs_.view();
     voxels_ = Voxels<T>(boxes, {true, true, true});
-    // Cells beyond about one a box would be empty: several share one then.
+    // More than about one cell a box would be empty; so cells share table entries.
     bits_ = std::bit_width(boxes.size());
     fill(boxes);
     for (std::size_t c = 0; c + 1 < starts_.size(); ++c)
@@ -49,7 +49,7 @@ class Grid {
     }
     for (const std::uint32_t cell : mine_) visit(cell);
   }
-  /// Row by row, and round again after 2^bits cells.
+  /// The cell's table entry: row by row, modulo 2^bits.
   std::uint32_t place(std::int64_t x, std::int64_t y, std::int64_t z) const {
     const auto row = static_cast<std::uint64_t>(z) * static_cast<std::uint64_t>(voxels_.count(1)) +
                      static_cast<std::uint64_t>(y);

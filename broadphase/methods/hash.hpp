@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// HASH2 (koziara2005bounding): voxels of the boxes' average size, hashed; the boxes of each bucket
-/// stand sorted along x and are scanned. A pair is reported where the later of the two lower
-/// corners lies, so once. O(n log n + k) for boxes that are alike and spread out, O(n^2) for those
-/// that crowd. Boxes wander from bucket to bucket, so coherence changes nothing.
+/// are sorted along x and scanned. A pair is reported once, in the voxel of the componentwise
+/// maximum of the two lower corners. O(n log n + k) for boxes that are alike and spread out, O(n^2)
+/// for crowded ones. Boxes migrate between buckets, so coherence has no effect.
 #pragma once
 
 #include "broadphase/settings.hpp"

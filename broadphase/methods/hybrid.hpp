@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// HYBRID, the streamed segment tree (BibTeX: zomorodian2002fast): two boxes overlap where on every
-/// axis one contains the other's lower end. The tree over lower ends is never stored: boxes are
-/// partitioned in place while recursing, an interval that spans a node descends to the next axis,
-/// and below the cutoff a scan along x decides. O(n log^3 n + k) time, O(n) space. The tree is made
-/// top down, so coherence changes nothing.
+/// axis one contains the other's lower end. The segment tree over lower ends is never stored: boxes
+/// are partitioned in place during the recursion, an interval that spans a node descends to the
+/// next axis, and below the cutoff boxes are scanned along x. O(n log^3 n + k) time, O(n) space.
+/// The tree is made top down in each frame, so coherence has no effect.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,7 @@ class Hybrid {
   };
   using Items = std::span<Item>;
 
-  /// Equal lower ends are told apart by index, so that of two boxes just one contains the other's.
+  /// Equal lower ends are ordered by index, so that exactly one of two boxes contains the other's.
   static bool before(const Item& a, const Item& b, int axis) {
     return a.box.lo[axis] != b.box.lo[axis] ? a.box.lo[axis] < b.box.lo[axis] : a.id < b.id;
   }
@@ -49,8 +49,8 @@ class Hybrid {
     return !before(point, interval, axis) && point.box.lo[axis] <= interval.box.hi[axis];
   }
 
-  /// Finds the pairs in which the interval contains the point's lower end on `axis` and both
-  /// overlap on the axes below; on those above they do. Lower ends of points lie in [lo, hi).
+  /// Finds the pairs whose interval contains the point's lower end on `axis` and that overlap on
+  /// the lower axes; on higher axes they do already. Points have lower ends in [lo, hi).
   void descend(Items points, Items intervals, T lo, T hi, int axis) {
     if (points.empty() || intervals.empty()) return;
     if (axis == 0 || std::min(std::ssize(points), std::ssize(intervals)) < cutoff_)
@@ -103,7 +103,7 @@ class Hybrid {
           report(*q, *i, axis);
         ++i;
       } else if (p->id == i->id) {
-        // One box, here as point and as interval: what starts later on either side.
+        // The same box as point and as interval: pair it with the boxes that start later.
         for (auto q = p; q != points.end() && q->box.lo[0] <= i->box.hi[0]; ++q)
           report(*q, *i, axis);
         ++i;
@@ -115,7 +115,7 @@ class Hybrid {
       }
   }
 
-  /// Both overlap along x.
+  /// Reports the pair if it overlaps on the axes below `axis`; on x it does already.
   void report(const Item& point, const Item& interval, int axis) {
     if (point.id == interval.id) return;
     for (int below = 1; below < axis; ++below)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A linear BVH: a binary tree over the boxes in Morton order, halved at every node, its bounds
-/// computed bottom up; every box then goes down it (BibTeX: lauterbach2009fast). O(n) to sort, O(n
-/// log n + k) to ask. With coherence the order is kept while the tree's bounds grow by less than a
+/// A linear BVH: a complete binary tree over the boxes in Morton order, fitted bottom up and
+/// queried by every box (BibTeX: lauterbach2009fast). O(n) to sort, O(n log n + k) for the
+/// queries. With coherence the order is kept and the tree refitted until its bounds have grown by
 /// half.
 #pragma once
 
@@ -48,7 +48,7 @@ class Lbvh {
     for (std::uint32_t k = leaves_ - 1; k > 0; --k)
       nodes_[k] = enclosing(nodes_[2 * k], nodes_[2 * k + 1]);
   }
-  /// The summed half circumference of the nodes a few levels above the leaves.
+  /// The sum of the extents, over all axes, of nodes a few levels above the leaves.
   double spread() const {
     double sum = 0;
     for (std::uint32_t k = std::max(1u, leaves_ / 8); k < std::max(2u, leaves_ / 4); ++k)
@@ -57,8 +57,8 @@ class Lbvh {
           sum += static_cast<double>(nodes_[k].hi[axis]) - static_cast<double>(nodes_[k].lo[axis]);
     return sum;
   }
-  /// The leaves after leaf p that overlap it: down the tree, past every subtree that ends before
-  /// it.
+  /// Reports the leaves after leaf p that overlap it, by descending into each later subtree whose
+  /// bounds do.
   void ask(std::uint32_t p) {
     const Box<T>& box = nodes_[leaves_ + p];
     std::uint32_t node = leaves_ + p;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Incremental sweep and prune on three axes (BibTeX: cohen1995icollide): the ends of all boxes
-/// stay sorted on every axis, an insertion sort repairs them, and each swap of a lower with an
-/// upper end is a pair that begins or ends on that axis. O(n + swaps) a frame; the trap is a frame
-/// with O(n^2) swaps, so past 64 swaps a box everything is sorted and swept again.
+/// Incremental sweep and prune on three axes (BibTeX: cohen1995icollide): the ends of all boxes are
+/// kept sorted on every axis and repaired by insertion sort; a swap of a lower with an upper end is
+/// a pair that may begin or that ends. O(n + swaps) a frame; a frame may need O(n^2) swaps, so
+/// beyond 64 swaps a box everything is sorted and swept again.
 #pragma once
 
 #include "broadphase/methods/sort_and_sweep.hpp"
@@ -33,8 +33,8 @@ class Sap {
   }
 
  private:
-  /// A box's end on an axis: twice its index, plus one for the upper end. Where keys are equal
-  /// lower ends come first: what touches overlaps.
+  /// A box's end on an axis; `what` is twice its index, plus one for the upper end. Of equal keys
+  /// lower ends come first, so that touching boxes overlap.
   struct End {
     decltype(sort_key(T{})) key;
     std::uint32_t what;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Boxes sorted by where they start on one axis; each is compared, sixteen at a time, with those
-/// that start before it ends. O(n) sorting and O(n m) comparisons, m the boxes that one box meets
-/// on the axis (BibTeX: baraff1992thesis, terdiman2018boxpruning). With coherence the order is
-/// repaired instead of made.
+/// Sort and sweep along one axis: boxes are sorted by their lower ends, and each is compared,
+/// sixteen at a time, with those that start before it ends. O(n) to sort and O(n m) comparisons, m
+/// the boxes that overlap one on the axis (BibTeX: baraff1992thesis, terdiman2018boxpruning). With
+/// coherence the order is repaired.
 #pragma once
 
 #include <vector>
@@ -35,7 +35,7 @@ class SortAndSweep {
   }
 
  private:
-  /// The axis on which boxes cover the least of their range, so that fewest meet on it.
+  /// The axis on which the boxes' extents are the smallest share of their range.
   static int sparsest_axis(Boxes<T> boxes) {
     int best = 0;
     double best_cover = std::numeric_limits<double>::infinity();
@@ -54,7 +54,7 @@ class SortAndSweep {
   void copy_in_order(Boxes<T> boxes) {
     const auto order = sorted_(static_cast<std::uint32_t>(boxes.size()),
                                [&](std::uint32_t k) { return boxes[k].lo[axis_]; });
-    // One block of sentinels beyond the last box ends every sweep.
+    // One block of sentinels after the last box ends every sweep.
     const std::size_t padded = order.size() + block_width;
     for (int axis = 0; axis < 3; ++axis) lo_[axis].resize(padded), hi_[axis].resize(padded);
     ids_.resize(padded);
@@ -80,7 +80,7 @@ class SortAndSweep {
           return V(values.data() + first + part, stdx::element_aligned);
         };
         auto mask = Contact::reaches(V(end), load(lo_[0]));
-        // Sorted, so this holds for closed boxes; half-open ones may end where both start.
+        // For closed boxes this follows from the order; half-open ones may end where both start.
         if constexpr (!std::is_same_v<Contact, Closed>)
           mask = mask && Contact::reaches(load(hi_[0]), V(lo_[0][k]));
         for (int axis = 1; axis < 3; ++axis) {

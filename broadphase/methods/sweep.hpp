@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The sweeps of koziara2005bounding (section 3.3): a plane goes through the boxes along z; whoever
-/// enters asks a store of the rectangles that are in for those it overlaps, and leaves it again at
-/// its other end. O(n log n) for the ends, and what the store costs. With coherence the sorted ends
-/// are kept and repaired by insertion sort.
+/// The plane sweeps of koziara2005bounding (section 3.3): a plane moves along z; a box that it
+/// enters queries a store of the rectangles in the plane for overlaps and is inserted; a box that
+/// it leaves is removed. O(n log n) to sort the ends, plus the cost of the store. With coherence
+/// the sorted ends are kept and repaired by insertion sort.
 #pragma once
 
 #include "broadphase/structures/pair_list.hpp"
@@ -29,7 +29,7 @@ class Sweep {
     for (std::size_t first = 0, last; first < ends.size(); first = last) {
       for (last = first; last < ends.size() && ends[last].key == ends[first].key; ++last)
         if (ends[last].id < n) enter(boxes, ends[last].id);
-      // Whoever ends where another starts touches it, so all that start come before all that end.
+      // Touching boxes overlap: at equal keys, all boxes that start come before all that end.
       for (std::size_t k = first; k < last; ++k)
         if (ends[k].id >= n) store_.remove(ends[k].id - n);
     }

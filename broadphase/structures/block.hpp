@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Sixteen boxes side by side, one array per coordinate, compared with one box at once: six vector
+/// Sixteen boxes in arrays, one array per coordinate, compared with one box at once: six vector
 /// comparisons in AVX-512, and the same code for narrower registers. Empty lanes hold a sentinel
-/// that overlaps nothing. Found pairs are packed to the left as they are written (the means of
-/// published box pruning, BibTeX: terdiman2018boxpruning).
+/// that overlaps nothing. Pairs are packed to the left as they are written, as in published box
+/// pruning (BibTeX: terdiman2018boxpruning).
 #pragma once
 
 #include <algorithm>
@@ -40,7 +40,7 @@ struct alignas(64) Block {
   }
 };
 
-/// Starts after everything and ends before everything.
+/// The sentinel: lo is +infinity and hi is -infinity, so it overlaps nothing.
 template <class T>
 constexpr Box<T> nowhere() {
   constexpr T far = std::numeric_limits<T>::infinity();
@@ -57,8 +57,8 @@ Box<T> enclosing(const Box<T>& a, const Box<T>& b) {
   return both;
 }
 
-/// The lanes of `block` whose boxes overlap `box`. Six comparisons of sixteen lanes, or twelve of
-/// eight; the block is read where it stands.
+/// The lanes of `block` whose boxes overlap `box`: six comparisons of sixteen lanes, or twelve of
+/// eight, in AVX-512; the block is read in place.
 template <class Contact, class T>
 [[gnu::always_inline]] inline LaneMask overlapping_lanes(const Block<T>& block, const Box<T>& box) {
 #ifdef __AVX512F__
@@ -107,7 +107,7 @@ template <class Contact, class T>
 #endif
 }
 
-/// What encloses every lane; empty lanes do not count.
+/// The box that encloses all lanes; empty lanes have no effect.
 template <class T>
 inline Box<T> bounds(const Block<T>& block) {
   Box<T> all;
@@ -126,7 +126,7 @@ inline Box<T> bounds(const Block<T>& block) {
 }
 #ifdef __AVX512F__
 namespace detail {
-// The mask forms with nothing masked: GCC warns of uninitialised operands inside the plain ones.
+// Masked intrinsics with full masks: for the plain ones GCC warns of uninitialised operands.
 inline __m512 least_of(__m512 a, __m512 b) { return _mm512_maskz_min_ps(0xffff, a, b); }
 template <int Order>
 inline __m512 quarters(__m512 a) {
@@ -136,7 +136,7 @@ template <int Order>
 inline __m512 within(__m512 a) {
   return _mm512_maskz_permute_ps(0xffff, a, Order);
 }
-/// The least lane of each: of a, b, c, d in lanes 0, 1, 2, 3.
+/// The smallest lanes of a, b, c and d, in lanes 0, 1, 2 and 3.
 inline __m128 least_lanes(__m512 a, __m512 b, __m512 c, __m512 d) {
   const auto pairs = [](__m512 x, __m512 y) {  // x's quarters folded into two, then y's
     return least_of(_mm512_maskz_shuffle_f32x4(0xffff, x, y, 0x44),
@@ -151,7 +151,7 @@ inline __m128 least_lanes(__m512 a, __m512 b, __m512 c, __m512 d) {
       0xf, _mm512_setr_epi32(0, 4, 8, 12, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0), m));
 }
 }  // namespace detail
-/// The same with the six reductions done together.
+/// The same, with all six reductions done together.
 template <>
 inline Box<float> bounds(const Block<float>& block) {
   const __m512 sign = _mm512_set1_ps(-0.0f);
@@ -167,15 +167,15 @@ inline Box<float> bounds(const Block<float>& block) {
 }
 #endif
 
-/// Sixteen boxes that follow each other in a frame.
+/// Loads sixteen consecutive boxes of a frame.
 template <class T>
 inline void load(Block<T>& block, const Box<T>* boxes) {
   for (int lane = 0; lane < block_width; ++lane) block.put(lane, boxes[lane]);
 }
 #ifdef __AVX512F__
 namespace detail {
-/// Lane l takes number 6 l + component of the 96: which of each register pair's 32, and from which
-/// pair.
+/// Lane l takes the number 6 l + Component of the 96 in `v`: `index` says which of the 32 of a
+/// register pair, `lanes_from` which pair.
 template <int Component>
 inline __m512 every_sixth(const __m512 (&v)[6]) {
   alignas(64) static constexpr auto at = [] {
@@ -209,8 +209,8 @@ inline void load(Block<float>& block, const Box<float>* boxes) {
 }
 #endif
 
-/// Writes a pair for every lane of `lanes`: its entry of `ids` and `id`, the smaller first. Up to
-/// sixteen pairs are touched from `out` on; returns the end of those that count.
+/// Writes a pair for every lane of `lanes`: ids[lane] and `id`, the smaller first. May write to
+/// sixteen places from `out` on; returns the end of the valid ones.
 inline Pair* write_pairs(Pair* out, std::uint32_t id, const std::uint32_t* ids, LaneMask lanes) {
 #ifdef __AVX512F__
   const __m512i packed =
@@ -231,8 +231,8 @@ inline Pair* write_pairs(Pair* out, std::uint32_t id, const std::uint32_t* ids, 
 #endif
 }
 
-/// Writes `first` + lane for every lane of `lanes`, and `other` as often. Room as for
-/// `write_pairs`; returns how many they are.
+/// Writes `first` + lane to `out` and `other` to `others` for every lane of `lanes`. Both need room
+/// for sixteen; returns the number of lanes.
 inline std::size_t write_lanes(std::uint32_t* out, std::uint32_t* others, std::uint32_t first,
                                std::uint32_t other, LaneMask lanes) {
 #ifdef __AVX512F__
@@ -250,8 +250,8 @@ inline std::size_t write_lanes(std::uint32_t* out, std::uint32_t* others, std::u
 #endif
 }
 
-/// Writes a pair of slots for every lane of `lanes`: lane l stands for slot `first` + l, whose box
-/// is ids[l]; the slot of the smaller id first. Room as for `write_pairs`.
+/// Writes a pair of slots for every lane of `lanes`: `slot`, whose box is `id`, and `first` + lane,
+/// whose box is ids[lane]; the slot of the smaller id first. Room as for `write_pairs`.
 inline Pair* write_pairs_by_id(Pair* out, std::uint32_t slot, std::uint32_t id, std::uint32_t first,
                                const std::uint32_t* ids, LaneMask lanes) {
 #ifdef __AVX512F__

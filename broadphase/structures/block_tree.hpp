@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A tree of blocks over boxes in spatial order: sixteen boxes to a leaf, sixteen nodes to a
-/// parent, no pointers, since the children of node k are 16k .. 16k+15 one level down. It has n/16
-/// leaves and n/240 other blocks: 28 bytes a box in all in float. Joined with itself by comparing
-/// sixteen nodes at once.
+/// parent, without pointers, since the children of node k are 16k .. 16k+15 one level down. It has
+/// n/16 leaves and n/240 other blocks, about 30 bytes a box in float with the indices. It is joined
+/// with itself by comparisons of sixteen nodes at once.
 #pragma once
 
 #include <vector>
@@ -58,7 +58,7 @@ class BlockTree {
     return ids_.data() + std::size_t{leaf} * block_width;
   }
 
-  /// What the tree takes leaf k to lie in: as wide as its boxes or wider.
+  /// The stored bounds of leaf k: they enclose its boxes, perhaps loosely.
   Box<T> leaf_bounds(std::uint32_t k) const {
     return levels_[1][k / block_width].box(k % block_width);
   }
@@ -78,8 +78,8 @@ class BlockTree {
     return leaves() ? sum / (3.0 * leaves()) : 0;
   }
 
-  /// Makes the box in this slot, sixteen to a leaf, and every level above as wide as `box`, which
-  /// encloses what stood there.
+  /// Enlarges the box in this slot, sixteen to a leaf, and its bounds on every level above, to
+  /// enclose `box`.
   void widen(std::uint32_t slot, const Box<T>& box) {
     std::size_t node = slot;
     for (std::size_t level = 0; level < depth_; ++level, node /= block_width) {
@@ -89,7 +89,7 @@ class BlockTree {
     }
   }
 
-  /// Makes the bounds of this leaf, and every level above, as wide as `box`.
+  /// Enlarges the bounds of this leaf, and on every level above, to enclose `box`.
   void widen_above(std::uint32_t leaf, const Box<T>& box) {
     std::size_t node = leaf;
     for (std::size_t level = 1; level < depth_; ++level, node /= block_width) {
@@ -101,8 +101,8 @@ class BlockTree {
     }
   }
 
-  /// Recomputes the bounds of these leaves, which are in ascending order, and of what is above
-  /// them. Leaves nothing of the list.
+  /// Recomputes the bounds of these leaves, given in ascending order, and of their ancestors.
+  /// Clears the list.
   void refit(std::vector<std::uint32_t>& nodes) {
     for (std::size_t level = 1; level < depth_; ++level) {
       std::size_t parents = 0;
@@ -117,7 +117,7 @@ class BlockTree {
     nodes.clear();
   }
 
-  /// Fills the leaves with the boxes in this order; then the levels above.
+  /// Fills the leaves with the boxes in this order, then fits the levels above.
   void build(std::span<const Keyed<std::uint32_t>> order, Boxes<T> boxes, Threads& threads) {
     resize_levels((order.size() + block_width - 1) / block_width);
     std::fill(ids_.begin() + static_cast<std::ptrdiff_t>(order.size()), ids_.end(), no_box);
@@ -137,7 +137,7 @@ class BlockTree {
     refit_above();
   }
 
-  /// Adds empty leaves for so many boxes; returns the first of their slots.
+  /// Adds empty leaves for `count` boxes; returns the first of their slots.
   std::uint32_t add_slots(std::size_t count) {
     const std::uint32_t first = slots();
     resize_leaves(leaves() + static_cast<std::uint32_t>((count + block_width - 1) / block_width));
@@ -145,7 +145,7 @@ class BlockTree {
     return first;
   }
 
-  /// Makes room for that many leaves; new ones are empty.
+  /// Sets the number of leaves; new ones are empty.
   void resize_leaves(std::uint32_t count) {
     const std::size_t had = leaves();
     resize_levels(count);
@@ -155,7 +155,7 @@ class BlockTree {
         ids_.end(), no_box);
   }
 
-  /// Recomputes every level above the leaves' bounds.
+  /// Refits every level above the leaves' bounds.
   void refit_above() {
     for (std::size_t level = 2; level < depth_; ++level)
       for (std::size_t k = 0; k < levels_[level - 1].size(); ++k)
@@ -169,8 +169,8 @@ class BlockTree {
     refit_above();
   }
 
-  /// Calls visit(a, first, lanes) for leaves a whose bounds overlap those of the leaves `first` +
-  /// lane for every lane of `lanes`: a itself, and later ones. Each such pair is visited once.
+  /// Calls visit(a, first, lanes) for leaves a whose bounds overlap those of leaf `first` + lane
+  /// for every lane of `lanes`. Only a itself and later leaves are given, so each pair comes once.
   template <class Visit>
   void join(Visit&& visit) const {
     if (leaves() > 0) join_self(depth_ - 1, 0, visit);
@@ -180,7 +180,7 @@ class BlockTree {
   struct Part {
     std::uint32_t a, b;
   };
-  /// What the join consists of, in its order.
+  /// The parts of the join, in its order.
   void join_parts(std::vector<Part>& parts) const {
     parts.clear();
     const auto add = [&](std::uint32_t a, std::uint32_t first, LaneMask lanes) {
@@ -202,14 +202,14 @@ class BlockTree {
     if (leaves() > 0) find_below(depth_ - 1, 0, box, visit);
   }
 
-  /// Which leaves overlap which of some boxes.
+  /// The result of a batched query: pairs of a leaf and a box whose bounds overlap.
   struct Finds {
-    std::vector<std::uint32_t> leaves, boxes;  ///< side by side, by box; `count` of them
+    std::vector<std::uint32_t> leaves, boxes;  ///< of each pair, ordered by box; `count` of them
     std::size_t count = 0;
     std::vector<std::uint32_t> spare_leaves, spare_boxes;
   };
-  /// The leaves whose bounds overlap each of these boxes. All boxes go down a level before the
-  /// next: loops are long, and none ends with a single box, which no processor foresees.
+  /// The leaves whose bounds overlap each of these boxes. All boxes descend one level before the
+  /// next: this makes long loops, where a loop per box would end in a mispredicted branch.
   void find(std::span<const Box<T>> boxes, Finds& finds) const {
     finds.count = leaves() > 0 ? boxes.size() : 0;
     finds.leaves.resize(std::max(finds.leaves.size(), finds.count));
@@ -251,7 +251,7 @@ class BlockTree {
     return empty;
   }
 
-  /// What new leaves and their ids are is left open; blocks above them are empty.
+  /// New leaves and their ids are uninitialised; new blocks above them are empty.
   void resize_levels(std::size_t count) {
     std::size_t depth = 2;
     for (std::size_t nodes = blocks_over(count); nodes > 1; nodes = blocks_over(nodes)) ++depth;
@@ -262,7 +262,7 @@ class BlockTree {
     for (std::size_t level = 1; level < depth; ++level, nodes = blocks_over(nodes)) {
       const std::size_t had = levels_[level].size();
       levels_[level].resize(nodes, empty_block());
-      // Lanes past the last child must overlap nothing, whatever stood there.
+      // Lanes past the last child must overlap nothing, whatever they held before.
       if (nodes > 0 && nodes <= had)
         for (std::size_t lane = children_of_last(level); lane < block_width; ++lane)
           levels_[level].back().put(static_cast<int>(lane), nowhere<T>());
@@ -270,7 +270,7 @@ class BlockTree {
     ids_.resize(count * block_width);
   }
 
-  /// Down to the nodes of level kDown, which are visited.
+  /// Recurses down to level kDown, whose nodes are passed to `visit`.
   template <std::size_t kDown = 0, class Visit>
   void join_self(std::size_t level, std::uint32_t a, Visit& visit) const {
     if (level == kDown) return visit(a, a, LaneMask{1});

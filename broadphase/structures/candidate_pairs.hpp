@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Pairs that may overlap, and the list of those that do. Boxes stand in slots, as rows. A frame
+/// Candidate pairs and the test which of them overlap. Boxes are held in slots, as rows. Each frame
 /// compares every candidate, under two nanoseconds each in the cache, and writes the list anew.
 ///
-/// 8 bytes a candidate, and one more where changes are reported.
+/// 8 bytes per candidate, and one more where changes are reported.
 #pragma once
 
 #include <vector>
@@ -18,27 +18,27 @@ namespace bvlab {
 template <class T, class Contact>
 class CandidatePairs {
  public:
-  /// No candidates any more; rows stay, and so does the list.
+  /// Removes all candidates; rows are kept.
   void clear() {
     candidates_.clear();
     hits_known_ = false;
   }
   std::size_t size() const { return candidates_.size(); }
   /// Pairs of slots, the one whose box has the smaller index in the frame first. May be written to
-  /// until they are compared.
+  /// until the next comparison.
   PairList& list() { return candidates_; }
 
   LargeVector<Row<T>>& rows() { return rows_; }
   const LargeVector<Row<T>>& rows() const { return rows_; }
 
-  /// `a` and `b` are slots with these box indices; the pair must not be there yet.
+  /// Adds a candidate: slots `a` and `b` with their box indices. It must not be in the list yet.
   void add(std::uint32_t a, std::uint32_t id_a, std::uint32_t b, std::uint32_t id_b) {
     candidates_.push(id_a < id_b ? Pair{a, b} : Pair{b, a});
     if (hits_known_) hits_.push_back(0);
   }
 
-  /// Compares all. `ids` gives each slot's box. Where all were compared like this before, pairs
-  /// that began and ended since are added to these lists.
+  /// Compares all candidates and writes those that overlap to `list`; `ids` maps a slot to its box.
+  /// From the second call on, appends the changes since the last call to `began` and `ended`.
   void compare_all(const std::uint32_t* ids, PairList& list, PairList& began, PairList& ended) {
     const std::size_t count = candidates_.size();
     list.clear();
@@ -48,8 +48,8 @@ class CandidatePairs {
     hits_known_ = true;
   }
 
-  /// The same by several threads: the same lists in the same order. Each stretch of candidates is
-  /// compared into room of its own, then put behind the one before.
+  /// The same by several threads, with the same lists in the same order: each stretch of candidates
+  /// is compared into its own buffer, and the buffers are concatenated.
   void compare_all_shared(const std::uint32_t* ids, PairList& list, PairList& began,
                           PairList& ended, Threads& threads) {
     const std::size_t count = candidates_.size();
@@ -78,7 +78,7 @@ class CandidatePairs {
     hits_known_ = true;
   }
 
-  /// The candidates from `first` to `last` alone, added to the list; nothing is remembered.
+  /// Compares the candidates from `first` to `last` only and appends to the list; keeps no record.
   void compare_range(const std::uint32_t* ids, PairList& list, std::size_t first,
                      std::size_t last) const {
     Pair* out = list.room_for(last - first + 1);
@@ -97,8 +97,8 @@ class CandidatePairs {
   }
 
  private:
-  /// Compares the candidates from `first` to `last`; says how many overlap. Their pairs go to
-  /// `pairs`.
+  /// Compares the candidates from `first` to `last` and writes overlapping pairs to `pairs`;
+  /// returns their number.
   std::size_t compare_keeping(const std::uint32_t* ids, std::size_t first, std::size_t last,
                               Pair* pairs, PairList& began, PairList& ended) {
     std::size_t found = 0;
@@ -114,7 +114,7 @@ class CandidatePairs {
     return found;
   }
 
-  /// What one thread found among some candidates.
+  /// What one thread found in a stretch of candidates.
   struct Found {
     std::size_t first, count;  ///< of the list
     PairList began, ended;
@@ -123,8 +123,8 @@ class CandidatePairs {
   LargeVector<Row<T>> rows_;
   PairList candidates_;
   bool hits_known_ = false;
-  LargeVector<std::uint8_t> hits_;  ///< of each candidate: whether it overlapped
-  // Where threads share them, of each stretch:
+  LargeVector<std::uint8_t> hits_;  ///< of each candidate: whether it overlapped in the last frame
+  // Buffers for `compare_all_shared`, by stretch:
   LargeVector<Pair> found_pairs_;
   std::vector<Found> found_;
 };

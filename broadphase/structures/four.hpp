@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Four numbers side by side: the width that every x86-64 has for float.
+/// A vector of four numbers: the register width that every x86-64 has for float.
 #pragma once
 
 #include <cmath>
@@ -22,7 +22,7 @@ struct FourOf {
 template <class T>
 using Four = typename detail::FourOf<T>::type;
 
-/// Bit k is set where lane k has a sign.
+/// Bit k is the sign bit of lane k.
 template <class V>
 inline int signs(const V& v) {
   int bits = 0;

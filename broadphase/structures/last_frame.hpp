@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A copy of the boxes of the last frame, where it pays to have one.
+/// A copy of the last frame's boxes, kept to find the boxes that moved.
 #pragma once
 
 #include <algorithm>
@@ -21,8 +21,8 @@ class LastFrame {
     known_ = true;
   }
 
-  /// Adds the indices of boxes that are not the last frame's, and takes these boxes over; new
-  /// ones are taken over without a word. Ends where there are more than `most`.
+  /// Appends the indices of boxes that differ from the last frame's to `moved`, and updates the
+  /// copy; new boxes are copied but not listed. Stops early once more than `most` are found.
   void find_moved(Boxes<T> boxes, std::size_t most, std::vector<std::uint32_t>& moved) {
     const std::size_t staying = std::min(boxes.size(), boxes_.size());
     std::size_t first = 0;
@@ -33,7 +33,7 @@ class LastFrame {
     take_over_one_by_one(boxes, first, staying, moved);
     take_over_from(boxes, staying);
   }
-  /// The same where it is known which boxes moved.
+  /// Updates the copy where the caller knows which boxes moved.
   void take_over(Boxes<T> boxes, std::span<const std::uint32_t> moved) {
     const std::size_t staying = std::min(boxes.size(), boxes_.size());
     for (const std::uint32_t id : moved)
@@ -44,12 +44,12 @@ class LastFrame {
   std::size_t bytes() const { return boxes_.capacity() * sizeof(Box<T>); }
 
  private:
-  static constexpr std::size_t group = 8;  ///< boxes compared before looking at the outcome
+  static constexpr std::size_t group = 8;  ///< boxes compared between two branches
 
-  /// Whether any bit does, of so many boxes; without a branch, in the widest registers there are.
+  /// Whether any bit of `Count` boxes differs; branch-free, in the widest registers there are.
   template <std::size_t Count>
   static bool differ(const Box<T>* a, const Box<T>* b) {
-    // As floats are aligned: clang takes no alignment that depends on T.
+    // Aligned as a float: clang accepts no alignment that depends on T.
     typedef std::uint64_t Word __attribute__((may_alias, aligned(alignof(float))));
     const auto *x = reinterpret_cast<const Word*>(a), *y = reinterpret_cast<const Word*>(b);
     std::uint64_t any = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The boxes of pairs of leaves compared, some hundred pairs at a time, in three long loops: which
-/// boxes of the first leaf reach into the second; of which leaf they are fewer; each of these boxes
-/// with all sixteen of the other leaf. One pair of leaves after the other would be loops of three
-/// rounds on average, and half of them of none: the processor foresees the end of no such loop.
+/// Compares the boxes of pairs of leaves, some hundred pairs at a time, in three long loops: which
+/// boxes of the first leaf overlap the second leaf's bounds; which of the two leaves has fewer such
+/// boxes; each of these with all sixteen of the other leaf. A loop per pair of leaves would have
+/// three rounds on average and often none, so that its branches would be mispredicted.
 #pragma once
 
 #include <bit>
@@ -13,22 +13,22 @@
 
 namespace bvlab {
 
-/// `Write`: write(out, slot, leaf, lanes) writes what stands for the box in a slot and those in the
-/// lanes of a leaf, and returns the end of it, as `write_pairs` does.
+/// `Write`: write(out, slot, leaf, lanes) writes an entry for the box in `slot` and each box in
+/// `lanes` of `leaf`, and returns the end of what it wrote, as `write_pairs` does.
 template <class T, class Contact, class Write>
 class LeafJoin {
  public:
-  /// What is found goes to `list`.
+  /// Appends the pairs found to `list`.
   LeafJoin(const BlockTree<T>& tree, PairList& list, Write write)
       : tree_(tree), list_(list), write_(write) {}
 
-  /// Leaf `a` with the leaves `first` + lane for every lane of `lanes`; only `a` with itself or
-  /// with later ones.
+  /// Adds the pairs of leaf `a` with leaf `first` + lane for every lane of `lanes`, none of them
+  /// earlier than `a`.
   void add(std::uint32_t a, std::uint32_t first, LaneMask lanes) {
     count_ += write_lanes(b_ + count_, a_ + count_, first, a, lanes);
     if (count_ > most - block_width) flush();
   }
-  /// Compares what was added since the last time.
+  /// Compares all pairs of leaves added since the last flush.
   void flush() {
     if (count_ == 0) return;
     const std::uint32_t done = a_[count_ - 1];
@@ -55,7 +55,7 @@ class LeafJoin {
  private:
   static constexpr std::size_t most = 256, most_rows = 128;
 
-  /// The boxes of leaf `a` that reach into the bounds of leaf `b`.
+  /// The boxes of leaf `a` that overlap the bounds of leaf `b`.
   LaneMask reaching(std::uint32_t a, std::uint32_t b) const {
     return overlapping_lanes<Closed>(tree_.leaf(a), tree_.leaf_bounds(b));
   }
@@ -67,7 +67,7 @@ class LeafJoin {
       const std::uint32_t leaf = slot / block_width, lane = slot % block_width;
       const LaneMask found = overlapping_lanes<Contact>(
           tree_.leaf(other), tree_.leaf(leaf).box(static_cast<int>(lane)));
-      // In a leaf of its own, a box is compared with those behind it.
+      // Within one leaf, a box is compared with the boxes after it.
       const LaneMask behind = leaf == other ? all_lanes & (all_lanes << (lane + 1)) : all_lanes;
       out = write_(out, slot, other, found & behind);
     }
@@ -80,7 +80,7 @@ class LeafJoin {
   std::size_t count_ = 0;
   std::uint32_t a_[most], b_[most];  ///< pairs of leaves
   LaneMask rows_of_a_[most];
-  std::uint32_t slots_[most_rows], others_[most_rows];  ///< a box, and the leaf it reaches into
+  std::uint32_t slots_[most_rows], others_[most_rows];  ///< a box, and the leaf that it overlaps
 };
 
 }  // namespace bvlab

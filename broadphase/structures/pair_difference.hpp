@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Which pairs of one list are not in another, by sorting both: O(k), for methods and moments that
-/// do not know better.
+/// The difference of two lists of pairs, both ways, by radix sort of both: O(k). For methods that
+/// do not track changes as they go.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace bvlab {
 
 class PairDifference {
  public:
-  /// Fills `began` with what `now` has and `before` has not, `ended` with the opposite.
+  /// Fills `began` with the pairs in `now` but not in `before`, `ended` with the opposite.
   void operator()(std::span<const Pair> before, std::span<const Pair> now, PairList& began,
                   PairList& ended) {
     sort(before, old_);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A growing array of pairs that is never initialised before it is written: `std::vector` would
-/// clear every page once more than needed. Room is asked for in blocks, so that the loop that
-/// finds pairs writes without looking. Where it is known how much of that loop is done, the array
-/// grows at once to what it is likely to need: pages that are never written cost nothing.
+/// A growable array of pairs whose memory is never initialised: `std::vector` would clear every
+/// page before it is written. Room is reserved in blocks, so that the loop that finds pairs writes
+/// without checks. Where the finished share of that loop is known, the array grows at once to its
+/// likely final size: pages that are never written cost nothing.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,7 @@ class PairList {
   const Pair& operator[](std::size_t k) const { return pairs_[k]; }
   std::span<const Pair> view() const { return {pairs_, size_}; }
 
-  /// Where the next pairs go: there is room for `more` of them.
+  /// Reserves room for `more` pairs, and returns where the next one goes.
   Pair* room_for(std::size_t more) {
     if (size_ + more > ready_) [[unlikely]] {
       if (size_ + more > capacity_) grow(std::max(size_ + more, capacity_ + capacity_ / 2));
@@ -49,7 +49,7 @@ class PairList {
     }
     return pairs_ + size_;
   }
-  /// The same, where `done` of `all` parts of the work are done.
+  /// The same, where `done` of `all` parts of the work are finished.
   Pair* room_for(std::size_t more, std::size_t done, std::size_t all) {
     if (size_ + more > ready_) [[unlikely]] {
       if (size_ + more > capacity_)
@@ -58,12 +58,12 @@ class PairList {
     }
     return pairs_ + size_;
   }
-  /// The same, to be written by several threads: each brings its own pages.
+  /// The same, to be written by several threads: each touches its own pages first.
   Pair* room_to_share(std::size_t more) {
     if (size_ + more > capacity_) grow(std::max(size_ + more, capacity_ + capacity_ / 2));
     return pairs_ + size_;
   }
-  /// Everything before `end`, which lies in the last room given, is in the list now.
+  /// Ends the list at `end`, which lies in the room last reserved.
   void end_at(const Pair* end) { size_ = static_cast<std::size_t>(end - pairs_); }
   void resize_down(std::size_t size) { size_ = size; }
 
@@ -77,8 +77,8 @@ class PairList {
   }
 
  private:
-  /// An eighth more than what was done lets expect; a start is no more than a hint. From the first
-  /// time on so much that it need not be copied to grow.
+  /// Grows to an eighth more than the finished share predicts, at most sixteenfold, as an early
+  /// prediction is vague. The first time large enough that growing later needs no copy.
   void grow_by_share(std::size_t least, double done) {
     least = std::max(least, (std::size_t{1} << 18) / sizeof(Pair));
     const double expected = done > 0 ? 1.125 * static_cast<double>(size_) / done : 0;
@@ -87,7 +87,7 @@ class PairList {
         {least, capacity_ + capacity_ / 2, static_cast<std::size_t>(std::min(expected, most))}));
   }
   void grow(std::size_t capacity) {
-    // What is large is moved by the system to other addresses, not copied.
+    // The system remaps large blocks to other addresses instead of copying them.
     void* const pairs = capacity < static_cast<std::size_t>(-1) / sizeof(Pair)
                             ? std::realloc(pairs_, capacity * sizeof(Pair))
                             : nullptr;
@@ -97,8 +97,8 @@ class PairList {
       pages::advise(pairs_, pairs_ + capacity_, true);
   }
 
-  /// Brings the pages that come next, an eighth of what there is, and no more than stays in the
-  /// cache until it is written to.
+  /// Populates the next pages: an eighth of the present size, and no more than stays in the cache
+  /// until it is written.
   void make_ready(std::size_t least) {
     constexpr std::size_t fewest = (std::size_t{1} << 13) / sizeof(Pair),
                           most = (std::size_t{1} << 18) / sizeof(Pair);
@@ -112,9 +112,9 @@ class PairList {
 
   Pair* pairs_ = nullptr;
   std::size_t size_ = 0;
-  std::size_t ready_ = 0;  ///< to be written to without asking
+  std::size_t ready_ = 0;  ///< room that may be written without a check
   std::size_t capacity_ = 0;
-  bool huge_pages_ = true;  ///< while they come quickly
+  bool huge_pages_ = true;  ///< while the system provides them quickly
 };
 
 }  // namespace bvlab

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where each pair stands in the list of all pairs, so that the list can be changed in place. Each
-/// box knows the pairs in which it has the smaller index, side by side, with room to grow: a pair
-/// is found by looking through those of one box. Built in O(pairs) by counting, without hashing; a
-/// pair is put in or taken out in O(1) and what its box has.
+/// The position of each pair in the list of all pairs, so that the list can be changed in place.
+/// Each box holds the pairs in which it has the smaller index, contiguous with room to grow; a pair
+/// is found by a linear search among those of its box. Built in O(pairs) by counting, without
+/// hashing; a pair is inserted or erased in O(1 + pairs of its box).
 ///
-/// 8 bytes a pair and up to three quarters more, and 16 a box.
+/// 8 bytes per pair and up to three quarters more, and 16 per box.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@ namespace bvlab {
 
 class PairPlaces {
  public:
-  /// Takes over the list as it stands. `order`: each of these boxes is below `boxes` or stands for
-  /// none; pairs of boxes that follow each other lie side by side in memory.
+  /// Indexes the list. `order` lists each box once (entries of `boxes` or more are skipped); the
+  /// pairs of boxes that are neighbours in it are neighbours in memory.
   void build(const PairList& list, std::size_t boxes, std::span<const std::uint32_t> order) {
     own_.assign(boxes, {});
     for (const Pair& pair : list.view()) ++own_[pair.i].room;
@@ -32,7 +32,7 @@ class PairPlaces {
     }
     used_ = begin;
     if (entries_.size() < used_ + used_ / 8 + 16) resize_entries(used_ + used_ / 2 + 1024);
-    // Where pages are new, that halves the time.
+    // On new pages this halves the time.
     pages::bring(entries_.data(), entries_.data() + used_);
     for (std::size_t place = 0; place < list.size(); ++place) {
       Own& own = own_[list[place].i];
@@ -40,10 +40,10 @@ class PairPlaces {
     }
   }
 
-  /// Makes room for that many boxes; new ones have no pairs.
+  /// Sets the number of boxes; new ones have no pairs.
   void resize(std::size_t boxes) { own_.resize(boxes); }
 
-  /// Adds pairs that are not in the list, after it was built.
+  /// Appends pairs, none of which is in the list yet.
   void insert(std::span<const Pair> pairs, PairList& list) {
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       fetch(pairs, k);
@@ -56,7 +56,7 @@ class PairPlaces {
     put(own.begin + own.count++, pair.j, list.size());
     list.push(pair);
   }
-  /// Takes out pairs that are in the list; the last ones take their places.
+  /// Erases pairs that are in the list; each time the last pair moves into the gap.
   void erase(std::span<const Pair> pairs, PairList& list) {
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       fetch(pairs, k);
@@ -77,7 +77,7 @@ class PairPlaces {
     list.resize_down(last);
   }
 
-  /// Whether so much room was left behind that building anew is worth it.
+  /// Whether so much room is unused that rebuilding is worth it.
   bool sparse(const PairList& list) const { return used_ > 2 * list.size() + 4 * own_.size(); }
 
   std::size_t bytes() const {
@@ -85,7 +85,7 @@ class PairPlaces {
   }
 
  private:
-  /// A pair of the box that owns it: the other box, and where the pair stands in the list.
+  /// A pair, owned by one box: the other box, and the pair's position in the list.
   struct Entry {
     std::uint32_t other, place;
   };
@@ -95,7 +95,7 @@ class PairPlaces {
   };
 
   static constexpr std::size_t ahead = 8;  ///< pairs between a prefetch and its use
-  /// Has the memory of later pairs come, first what is known of a box, then what it has.
+  /// Prefetches for later pairs: first the box's record, then its entries.
   void fetch(std::span<const Pair> pairs, std::size_t k) const {
     if (k + 2 * ahead < pairs.size()) __builtin_prefetch(&own_[pairs[k + 2 * ahead].i]);
     if (k + ahead < pairs.size()) fetch(pairs[k + ahead]);
@@ -109,7 +109,7 @@ class PairPlaces {
   void put(std::size_t entry, std::uint32_t other, std::size_t place) {
     entries_[entry] = {other, static_cast<std::uint32_t>(place)};
   }
-  /// Sixteen at a time, without a branch between them.
+  /// Searches sixteen entries at a time, without a branch between them.
   std::size_t entry_of(Pair pair) const {
     constexpr std::size_t some = 16;
     std::size_t entry = own_[pair.i].begin;
@@ -128,7 +128,7 @@ class PairPlaces {
     own.begin = used_, own.room = room;
     used_ += room;
   }
-  /// A search may look at sixteen past the last.
+  /// A search may read up to sixteen entries past the last.
   void resize_entries(std::size_t count) { entries_.resize(count + 16); }
 
   LargeVector<Own> own_;

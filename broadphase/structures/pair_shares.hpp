@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A list of pairs written by several threads. The work is divided into shares; each thread writes
-/// what it takes of them to a list of its own, and these are put together in the order of the
-/// shares, so that the list is the one that a single thread would have written. What the first
-/// thread takes from the beginning on stands where it belongs.
+/// Writes one list of pairs with several threads. The work is divided into shares; each thread
+/// writes the shares that it takes to a list of its own, and these are concatenated in the order of
+/// shares, so that the list is the one that a single thread would write. Shares that the first
+/// thread takes from the beginning on are written in place.
 ///
-/// That most pairs are written twice is what bounds two threads where there are millions of them,
-/// in a first call above all, where the system provides memory for both.
+/// Most pairs are written twice, which limits the gain of two threads on millions of pairs, above
+/// all in a first call, where the system provides memory for both copies.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ class PairShares {
 
   Threads& threads() { return threads_; }
 
-  /// Calls work(share, shares, to) for every share, and adds to the list what they wrote.
+  /// Calls work(share, shares, to) for every share and appends what they wrote to the list.
   template <class Work>
   void operator()(PairList& list, std::size_t shares, const Work& work) {
     for (Own& own : own_) own.pairs.clear();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where a pair stands in a list: a hash table with linear probing that closes its gaps, so that it
-/// holds just what was put and never fills with graves. O(1) expected.
+/// The position of each pair in a list: a hash table with linear probing and backward-shift
+/// deletion, so that it holds no tombstones. O(1) expected.
 #pragma once
 
 #include <bit>
@@ -36,7 +36,7 @@ class PairSlots {
     std::size_t gap = place(pair);
     if (cells_[gap].slot == none) return;
     --size_;
-    // What was pushed past the gap by a collision moves back into it.
+    // Move entries that a collision pushed past the gap back into it.
     for (std::size_t k = next(gap); cells_[k].slot != none; k = next(k)) {
       const std::size_t wanted = home(cells_[k].pair);
       if (((k - wanted) & mask()) < ((k - gap) & mask())) continue;
@@ -57,7 +57,7 @@ class PairSlots {
     const std::uint64_t key = std::uint64_t{pair.i} << 32 | pair.j;
     return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> 32) & mask();
   }
-  /// The pair's cell, or the free one where it belongs.
+  /// The pair's cell, or the free cell where it would be put.
   std::size_t place(Pair pair) const {
     std::size_t k = home(pair);
     while (cells_[k].slot != none && cells_[k].pair != pair) k = next(k);

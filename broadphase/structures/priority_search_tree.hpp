@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Priority search trees for intervals that come and go (BibTeX: mccreight1985priority): a search
-/// tree over the lower ends of all that may come, in which each interval stands on the path to its
-/// own leaf as high as its upper end allows: no interval stands below one that ends before it.
-/// Insert and remove O(log n), query O(log n + found). Several trees share their arrays.
+/// Priority search trees over intervals that are inserted and removed (BibTeX:
+/// mccreight1985priority): a search tree over the lower ends of all possible intervals, and a heap
+/// on upper ends: each interval is on the path to its own leaf, and none is below one that ends
+/// earlier. Insert and remove O(log n), query O(log n + found). Several trees share their arrays.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Interval {
 template <class T>
 class PrioritySearchTrees {
  public:
-  /// Tree b may hold seats [starts[b], starts[b + 1]); interval(seat) is what the seat stands for.
+  /// Tree b may hold the seats [starts[b], starts[b + 1]); interval(seat) gives a seat's interval.
   template <class IntervalOf>
   void prepare(std::span<const std::uint32_t> starts, IntervalOf&& interval) {
     const std::uint32_t seats = starts.back();
@@ -59,7 +59,7 @@ class PrioritySearchTrees {
     node[at] = seat;
   }
 
-  /// The seat must be in.
+  /// The seat must be in the tree.
   void remove(std::uint32_t tree, std::uint32_t seat) {
     std::uint32_t* node = &held_[roots_[tree]];
     const std::uint32_t size = leaves(tree);
@@ -82,7 +82,7 @@ class PrioritySearchTrees {
     node[at] = none;
   }
 
-  /// Calls visit(seat) for every interval that is in and overlaps `asked`, both closed.
+  /// Calls visit(seat) for every inserted interval that overlaps `asked`, both closed.
   template <class Visit>
   void find(std::uint32_t tree, Interval<T> asked, Visit&& visit) const {
     if (starts_[tree] != starts_[tree + 1]) find_below(tree, 1, 0, leaves(tree), asked, visit);
@@ -99,7 +99,7 @@ class PrioritySearchTrees {
   void find_below(std::uint32_t tree, std::uint32_t at, std::uint32_t first, std::uint32_t size,
                   Interval<T> asked, Visit& visit) const {
     const std::uint32_t seat = held_[roots_[tree] + at];
-    if (seat == none || intervals_[seat].hi < asked.lo) return;  // all below end no later
+    if (seat == none || intervals_[seat].hi < asked.lo) return;  // none below ends later
     if (intervals_[seat].lo <= asked.hi) visit(seat);
     if (size == 1) return;
     size /= 2;
@@ -112,7 +112,7 @@ class PrioritySearchTrees {
   std::vector<Interval<T>> intervals_;       // per seat
   std::vector<std::uint32_t> rank_, order_;  // by lower end within the seat's tree, and back
   std::vector<std::uint32_t> starts_, roots_,
-      held_;  // per tree; per node, the seat that stands there
+      held_;  // per tree; per node, the seat stored there
 };
 
 }  // namespace bvlab

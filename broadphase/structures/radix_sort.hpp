@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Sorting by integer keys in passes of at most eleven bits, O(n), stable; a pass in which all keys
-/// agree is skipped. Floating-point numbers sort as the integers that `sort_key` makes of them.
+/// Radix sort by integer keys in passes of at most eleven bits: O(n), stable; one thread skips a
+/// pass in which all keys agree. Floating-point numbers are sorted by their `sort_key`.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 
 namespace bvlab {
 
-/// Orders as `x` does: the bits of a positive number grow with it, those of a negative one shrink.
-/// Minus zero counts as zero.
+/// An integer key in the order of `x`, which must not be NaN: the bits of a positive number grow
+/// with it, those of a negative one shrink. Minus zero equals zero.
 template <class T>
 auto sort_key(T x) {
   using Key = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
@@ -32,7 +32,7 @@ struct Keyed {
   std::uint32_t id;
 };
 
-/// O(n + swaps), stable: for few items, and for many that are nearly sorted.
+/// O(n + swaps), stable: for few items, or for many that are nearly sorted.
 template <class Key>
 void insertion_sort(std::span<Keyed<Key>> items) {
   for (std::size_t k = 1; k < items.size(); ++k) {
@@ -43,8 +43,8 @@ void insertion_sort(std::span<Keyed<Key>> items) {
   }
 }
 
-/// Sorts `items` by the lowest `bits` of their keys, above which there is nothing, using `spare`
-/// for room.
+/// Sorts `items` by the lowest `bits` of their keys (all higher bits must be 0), with `spare` as a
+/// buffer.
 template <class Key, class Allocator>
 void radix_sort(std::vector<Keyed<Key>, Allocator>& items,
                 std::vector<Keyed<Key>, Allocator>& spare, int bits = 8 * sizeof(Key)) {
@@ -71,8 +71,8 @@ void radix_sort(std::vector<Keyed<Key>, Allocator>& items,
   }
 }
 
-/// The same, in the same order, by several threads where there are many items: each counts and
-/// moves a part of them.
+/// The same result by several threads where there are many items: each counts and moves a part of
+/// them.
 template <class Key, class Allocator>
 void radix_sort(std::vector<Keyed<Key>, Allocator>& items,
                 std::vector<Keyed<Key>, Allocator>& spare, int bits, Threads& threads) {

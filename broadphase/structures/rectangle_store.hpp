@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Dynamic rectangle intersection, what a sweep along z needs: rectangles come and go, and those
-/// that overlap a given one are asked for. The seed's four stand-ins for the optimal structure that
-/// is not known are here as compositions: a bucket grid over x and y, over x alone, or none, and in
-/// each bucket a list or a priority search tree.
+/// Dynamic rectangle intersection, the problem that a plane sweep along z reduces to: insert and
+/// remove rectangles, and report those that overlap a given one. No optimal structure is known; the
+/// four substitutes of koziara2005bounding (section 3.3) are compositions of a bucket grid over x
+/// and y, over x alone, or none, with a list or a priority search tree in each bucket.
 #pragma once
 
 #include <concepts>
@@ -20,8 +20,8 @@ bool rectangles_overlap(const Rectangle<T>& a, const Rectangle<T>& b) {
   return a.lo[0] <= b.hi[0] && b.lo[0] <= a.hi[0] && a.lo[1] <= b.hi[1] && b.lo[1] <= a.hi[1];
 }
 
-/// All rectangles that may come are known first; each is put in and taken out by its index. Every
-/// query reports each closed rectangle that is in and overlaps once.
+/// All rectangles are known beforehand (`prepare`) and inserted and removed by index. A query
+/// reports each inserted rectangle that overlaps (closed) once.
 template <class S>
 concept RectangleStore = requires(S store, Boxes<typename S::Scalar> all, std::uint32_t k) {
   store.prepare(all);
@@ -30,7 +30,7 @@ concept RectangleStore = requires(S store, Boxes<typename S::Scalar> all, std::u
   store.overlapping(k, [](std::uint32_t) {});
 };
 
-/// A bucket whose members stand in a list. Query O(members).
+/// Buckets whose members are linked lists. Query O(members).
 template <class T>
 class ListBuckets {
  public:
@@ -39,7 +39,7 @@ class ListBuckets {
     next_.resize(starts.back());
     before_.resize(starts.back());
   }
-  /// `seat` is the place that the rectangle has in the bucket's share of all seats.
+  /// `seat` numbers one membership of a rectangle in a bucket.
   void insert(std::uint32_t bucket, std::uint32_t seat) {
     next_[seat] = first_[bucket];
     before_[seat] = none;
@@ -60,8 +60,8 @@ class ListBuckets {
   std::vector<std::uint32_t> first_, next_, before_;
 };
 
-/// A bucket whose members stand in a priority search tree along one axis. Query O(log members +
-/// those that overlap on that axis).
+/// Buckets that are priority search trees along one axis. Query O(log members + those that overlap
+/// on that axis).
 template <class T, int Axis>
 class TreeBuckets {
  public:
@@ -84,9 +84,9 @@ class TreeBuckets {
   PrioritySearchTrees<T> trees_;
 };
 
-/// A hash table of buckets over the cells of the axes that are cut. A pair is reported in the
-/// bucket of the cell where the later of the two lower corners lies, and a rectangle is in a bucket
-/// once, so nothing is reported twice.
+/// A hash table of buckets over the grid cells of the axes that are cut. A pair is reported only in
+/// the bucket of the cell of the componentwise maximum of the two lower corners, and a rectangle is
+/// in a bucket at most once, so no pair is reported twice.
 template <class T, class Buckets, bool CutX, bool CutY>
 class BucketGrid {
  public:
@@ -147,7 +147,7 @@ class BucketGrid {
   }
 
  private:
-  /// Each bucket of the rectangle's cells once.
+  /// Calls `visit` once for each bucket of the rectangle's cells.
   template <class Visit>
   void for_buckets(std::uint32_t k, Visit&& visit) {
     const CellRange r = voxels_.range(all_[k]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The list of all pairs and, where changes are reported, the pairs that began and ended with this
-/// frame. A method that writes its list anew finds the changes by comparing both whole lists.
+/// The list of all pairs and, where changes are reported, the pairs that began and ended in this
+/// frame. A method that rewrites its list finds the changes by comparing the two whole lists.
 #pragma once
 
 #include "broadphase/settings.hpp"
@@ -17,15 +17,15 @@ struct ReportedPairs {
     ended.clear();
   }
 
-  /// Keeps the list as it stands, to be compared with later.
+  /// Keeps a copy of the list, for `compare_with_kept`.
   void keep_before() {
     before_.clear();
     before_.append(all.view());
   }
-  /// Fills `began` and `ended` from the list that was kept and the one there is now.
+  /// Fills `began` and `ended` by comparing the kept list with the present one.
   void compare_with_kept() { difference_(before_.view(), all.view(), began, ended); }
 
-  /// Takes out pairs that both began and ended: their box changed its place, nothing else did.
+  /// Removes pairs that both began and ended: their box only changed its slot.
   void cancel_out() {
     before_.clear();
     before_.append(ended.view());

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A box in two short vectors, to be compared with one other: a few instructions where the pair is
-/// known beforehand, and nothing wider than every x86-64 has.
+/// A box as two vectors of four, for the comparison of two given boxes in a few instructions that
+/// every x86-64 has.
 ///
-/// x <= y where y - x has no sign: IEEE differences have the sign of the exact ones, equal numbers
-/// differ by plus zero, and rows hold no minus zero. So six comparisons are two differences and one
-/// look at their signs.
+/// x <= y where the sign bit of y - x is clear: an IEEE difference has the sign of the exact one,
+/// equal numbers differ by +0, and rows hold no -0. So six comparisons are two vector subtractions
+/// and one test of sign bits.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct Row {
 namespace detail {
 template <class T>
 using Bits = std::conditional_t<sizeof(T) == 4, Four<std::int32_t>, Four<std::int64_t>>;
-/// Lanes with a sign in either.
+/// The lanes in which the sign bit of `a` or of `b` is set.
 template <class T>
 inline int either_sign(const Four<T>& a, const Four<T>& b) {
   return signs(
@@ -52,7 +52,7 @@ inline Box<T> box_of(const Row<T>& row) {
   return {{row.lo[0], row.lo[1], row.lo[2]}, {row.hi[0], row.hi[1], row.hi[2]}};
 }
 
-/// Overlaps nothing.
+/// The sentinel that overlaps nothing.
 template <class T>
 inline Row<T> nowhere_row() {
   return row_of(nowhere<T>());
@@ -96,7 +96,7 @@ inline Four<T> most(const Four<T>& a, const Four<T>& b) {
   return a > b ? a : b;
 }
 
-/// The largest change of a coordinate from one to the other.
+/// The largest absolute change of a coordinate.
 template <class T>
 inline T largest_change(const Row<T>& a, const Row<T>& b) {
   const Four<T> change = most<T>(absolute<T>(a.lo - b.lo), absolute<T>(a.hi - b.hi));

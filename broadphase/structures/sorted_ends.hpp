@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The boxes in the order of one coordinate. Without coherence a sort from scratch, by radix or by
-/// comparison (see Sort); with it the order of the last frame repaired by insertion sort,
-/// O(n + swaps) (BibTeX: cohen1995icollide), given up for the other sort once the swaps cost more
-/// than that.
+/// Items in the order of one coordinate. Without coherence they are sorted from scratch, by radix
+/// or by comparison (see Sort). With coherence the order of the last frame is repaired by insertion
+/// sort, O(n + swaps) (BibTeX: cohen1995icollide), which is given up for a sort once swaps exceed
+/// sixteen an item.
 #pragma once
 
 #include <algorithm>
@@ -21,8 +21,8 @@ class SortedEnds {
 
   SortedEnds(Coherence coherence, Sort sort) : coherence_(coherence), sort_(sort) {}
 
-  /// Sorts 0 .. count-1 by `coordinate(k)`; equal ones stay in the order they had, or, after a sort
-  /// by comparison, stand by their numbers.
+  /// Sorts 0 .. count-1 by `coordinate(k)`. Equal ones keep their order or, after a sort by
+  /// comparison, are ordered by number.
   template <class Coordinate>
   std::span<const Item> operator()(std::uint32_t count, Coordinate&& coordinate) {
     const bool repair = coherence_ == Coherence::on && items_.size() == count;
@@ -45,7 +45,7 @@ class SortedEnds {
     });
   }
 
-  /// False, with the items in some order, once there were sixteen swaps an item.
+  /// Insertion sort; false, with a permutation of the items, after sixteen swaps an item.
   bool repaired() {
     std::size_t swaps_left = 16 * items_.size();
     for (std::size_t k = 1; k < items_.size(); ++k) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// An order of the boxes in which neighbours in the list are neighbours in space and alike in size:
+/// A spatial order of boxes, in which neighbours in the list are near in space and alike in size:
 /// by class (size within a factor of eight, elongation), and within a class along a Morton curve of
-/// the centres. Where more than a few centres share one Morton cell, that run is ordered again in
-/// the run's own bounds, so that one far box, or clusters within clusters, cost nothing but the
-/// run. O(n) for each such level; the keys are integers and the sort is a radix sort.
+/// the centres. A run of more than 32 centres in one Morton cell is sorted again within its own
+/// bounds, so that one far box, or clusters within clusters, cost only that run. O(n) for each such
+/// level; keys are integers in a radix sort.
 #pragma once
 
 #include <array>
@@ -22,14 +22,14 @@ class SpatialOrder {
  public:
   using Item = Keyed<std::uint32_t>;
 
-  /// The indices of the boxes in their order, as the `id` of each item; valid until the next call.
+  /// The boxes' indices in spatial order, as the `id` of each item; valid until the next call.
   std::span<const Item> operator()(Boxes<T> boxes, Threads& threads) {
     items_.resize(boxes.size());
     if (boxes.empty()) return {};
     const Summary all = summary(boxes, threads);
     classify(boxes, all, threads);
     const int class_bits = std::bit_width(classes_ - 1u);
-    // A hundred cells to a box: few share one, and the rest are ordered again.
+    // A hundred cells per box: few boxes share a cell, and those that do are refined.
     const int enough = (std::bit_width(boxes.size()) + 7 + 2) / 3;
     const int digits = std::min({10, (32 - class_bits) / 3, enough});
     make_keys(boxes, Cells(all, digits), threads);
@@ -51,10 +51,10 @@ class SpatialOrder {
 
  private:
   static constexpr std::size_t crowd =
-      2 * block_width;  ///< a run of equal keys worth ordering again
+      2 * block_width;  ///< a run of more equal keys than this is refined
 
-  /// Where the centres lie (a quarter of lo + hi, so that no difference overflows), and the least
-  /// and the largest extent on any axis.
+  /// The bounds of the centres (stored as (lo + hi) / 4, so that no difference overflows), and the
+  /// smallest and largest extent on any axis.
   struct Summary {
     T lo[3], hi[3], least, most;
   };
@@ -88,8 +88,8 @@ class SpatialOrder {
     }
   };
 
-  /// Calls visit(block, first, count) for every sixteen boxes of the frame from `begin` to `end`,
-  /// where `begin` is a multiple of sixteen; lanes past the last repeat it.
+  /// Calls visit(block, first, count) for each sixteen boxes of the frame from `begin` to `end`;
+  /// `begin` is a multiple of sixteen; lanes after the last box repeat it.
   template <class Visit>
   static void for_blocks(Boxes<T> boxes, std::size_t begin, std::size_t end, Visit&& visit) {
     Block<T> block;
@@ -104,7 +104,7 @@ class SpatialOrder {
     visit(block, first, end - first);
   }
 
-  /// Calls work(begin, end, worker) for parts of the boxes, on all threads.
+  /// Calls work(begin, end, worker) for ranges of the boxes, on all threads.
   static constexpr std::size_t stretch = 4096;
   template <class Work>
   static void for_stretches(Boxes<T> boxes, Threads& threads, const Work& work) {
@@ -117,7 +117,7 @@ class SpatialOrder {
   Summary summary(Boxes<T> boxes, Threads& threads) {
     tallies_.assign(threads.count(), Tally());
     for_stretches(boxes, threads, [&](std::size_t begin, std::size_t end, std::size_t worker) {
-      // Of its own while it is written to.
+      // A local copy, so that no two threads write to one cache line.
       Tally tally = tallies_[worker];
       for_blocks(boxes, begin, end,
                  [&](const Block<T>& block, std::size_t, std::size_t) { tally.add(block); });
@@ -135,8 +135,8 @@ class SpatialOrder {
     return all;
   }
 
-  /// Finds the classes in use and numbers them; one where all boxes are about alike. Boxes smaller
-  /// than the distance to their neighbours are all of one class: their size does not widen a leaf.
+  /// Finds and numbers the classes in use; one where all boxes are alike. Boxes smaller than the
+  /// mean distance of neighbours share a class: their size does not widen a leaf.
   void classify(Boxes<T> boxes, const Summary& all, Threads& threads) {
     classes_ = 1;
     if (all.most <= 8 * all.least) return;
@@ -152,7 +152,7 @@ class SpatialOrder {
     auto& used = seen_[0];
     for (const auto& other : seen_)
       for (std::size_t k = 0; k < used.size(); ++k) used[k] |= other[k];
-    // From the largest size down, three powers of two to a class.
+    // From the largest size down, each class spans three powers of two.
     classes_ = 0;
     for (int top = exponents - 1; top >= 0; --top) {
       bool any = false;
@@ -168,7 +168,7 @@ class SpatialOrder {
       top = bottom;
     }
   }
-  /// The distance of neighbours, were the centres spread evenly over their bounds.
+  /// The distance between neighbours if the centres were spread evenly over their bounds.
   static double spacing(const Summary& all, std::size_t count) {
     double log_volume = 0;
     int spread = 0;
@@ -185,8 +185,8 @@ class SpatialOrder {
   static int exponent(double size) {
     return static_cast<int>(std::bit_cast<std::uint32_t>(static_cast<float>(size)) >> 23);
   }
-  /// The size's power of two, not below `small`, times `shapes`, plus for larger ones which axis is
-  /// four times longer (1, 2, 3), or shorter (4, 5, 6), than the next.
+  /// The size's binary exponent (at least `small`) times `shapes`; for larger boxes plus a shape:
+  /// the axis that is over four times longer (1, 2, 3) or shorter (4, 5, 6) than the next.
   static int kind(const Box<T>& box, int small) {
     const T x = box.hi[0] - box.lo[0], y = box.hi[1] - box.lo[1], z = box.hi[2] - box.lo[2];
     const T size = std::max(x, std::max(y, z));
@@ -201,8 +201,8 @@ class SpatialOrder {
       shape = least == x ? 4 : least == y ? 5 : 6;
     return e * shapes + shape;
   }
-  /// Cells as long as their boxes: along an axis on which boxes are longer, neighbours are further
-  /// apart, by two powers of two.
+  /// Stretches cells as boxes are: on an axis on which boxes are long, neighbours are farther
+  /// apart, by a factor of four.
   static std::uint32_t stretched(std::uint32_t key, int shape) {
     static constexpr std::uint32_t x = 0x09249249u, y = x << 1, z = x << 2;
     static constexpr std::uint32_t long_axes[shapes] = {0, x, y, z, y | z, x | z, x | y};
@@ -217,8 +217,8 @@ class SpatialOrder {
     return (x | (x << 2)) & 0x09249249u;
   }
 
-  /// A grid of 2^digits cells a side over the centres. Cells are cubes, so that a flat scene does
-  /// not spend its bits across.
+  /// A grid of 2^digits cells a side over the centres. Cells are cubes, so that a flat scene spends
+  /// no bits on its thin axis.
   struct Cells {
     T low[3], scale, last;
     int digits;
@@ -263,7 +263,7 @@ class SpatialOrder {
     });
   }
 
-  /// Orders every crowded run of equal keys again, in its own bounds.
+  /// Sorts every crowded run of equal keys again, within its own bounds.
   void refine(Boxes<T> boxes) {
     runs_.clear();
     push_runs(0, items_.size(), items_.size() + 1);
@@ -296,10 +296,10 @@ class SpatialOrder {
       for (std::size_t k = 0; k < items.size(); ++k) items[k].key = key[k];
     });
   }
-  /// Runs as long as `whole` did not get any shorter: their centres are one.
+  /// Adds crowded runs shorter than `whole`; one as long holds equal centres, as it did not split.
   void push_runs(std::size_t first, std::size_t last, std::size_t whole) {
     for (std::size_t k = first; k < last;) {
-      // Most runs are short: look one crowd ahead first.
+      // Most runs are short: test one crowd ahead first.
       if (last - k <= crowd) return;
       if (items_[k + crowd].key != items_[k].key) {
         ++k;
@@ -318,7 +318,7 @@ class SpatialOrder {
   std::uint32_t classes_ = 1;
   std::vector<Tally> tallies_;                                      // of each thread
   std::vector<std::array<std::uint8_t, exponents * shapes>> seen_;  // by each thread
-  LargeVector<std::uint16_t> kinds_;  ///< of each box, where there are classes
+  LargeVector<std::uint16_t> kinds_;  ///< of each box, where there are several classes
 };
 
 }  // namespace bvlab

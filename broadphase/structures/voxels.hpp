@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Space cut into equal cells of about the average size of a box, along some of the three axes. So
-/// boxes lie in O(1) cells each where they are alike (BibTeX: seed of the box comparison, its
-/// section 3.2). Where they are not, cells grow until the boxes lie in at most `limit` cells each
-/// on average.
+/// A grid of equal cells of about the average size of a box, along some of the three
+/// axes. Boxes that are alike lie in O(1) cells each (koziara2005bounding, section 3.2).
+/// Where they differ, cells grow until boxes lie in at most `limit` cells each on
+/// average.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace bvlab {
 
-/// Cells of an axis, both ends included.
+/// The range of cells on each axis, both ends included.
 struct CellRange {
   std::int32_t first[3], last[3];
 };
@@ -49,7 +49,7 @@ class Voxels {
     }
   }
 
-  /// Grows with x, so a box that starts before another ends does not start in a later cell.
+  /// The cell of coordinate x. Monotonic: x <= y implies that x's cell is not after y's.
   std::int32_t cell(int axis, T x) const {
     if (last_[axis] == 0) return 0;
     const double at = (static_cast<double>(x) - low_[axis]) * scale_[axis];
@@ -70,7 +70,7 @@ class Voxels {
   }
   void set_cells(int axis, double size) {
     const double wanted = cut_[axis] ? width_[axis] / size : 1;
-    // No more than fit an index; one where there is nothing to cut.
+    // At most as many cells as fit an index; one where the axis is not cut.
     const double cells =
         wanted >= 1 && std::isfinite(width_[axis]) ? std::min(std::floor(wanted), 1e9) : 1;
     last_[axis] = cells - 1;
@@ -82,7 +82,7 @@ class Voxels {
   double low_[3]{}, width_[3]{}, scale_[3]{}, last_[3]{};
 };
 
-/// A bucket of a table of 2^bits for a cell; neighbours fall far apart.
+/// The bucket of a cell in a hash table of 2^bits.
 inline std::uint32_t cell_bucket(std::int32_t x, std::int32_t y, std::int32_t z, int bits) {
   const std::uint64_t mixed =
       (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) * 0x9e3779b97f4a7c15u) ^

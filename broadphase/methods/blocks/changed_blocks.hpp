@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What `blocks` does while few boxes move, in proportion to what changes. The tree holds the boxes
-/// as they are. A box that moved asks it once, with what encloses where it was and where it is, and
-/// is compared with each leaf found in both places: lanes in which the two answers differ are pairs
-/// that began or ended. The list is changed in place, and the bounds above what moved are
-/// recomputed. A box that jumped or is new gets another slot, where it was nowhere before.
+/// Updates the list of pairs while few boxes move, at a cost in proportion to the changes. The tree
+/// holds the current boxes. Each box that moved queries it once, with the box that encloses its old
+/// and new place, and is compared with every leaf found, in both places: lanes in which the two
+/// answers differ are pairs that began or ended. The list is changed in place, and bounds above
+/// moved boxes are refitted. A box that jumped or is new gets a new slot, where no box was before.
 ///
-/// O(log n + k) a box that moved, where the leaves are as tight as after sorting; 1 ns a box more
-/// to find out which moved, where that is not told.
+/// O(log n + k) per moved box, while leaves are as tight as after sorting; another 1 ns per box to
+/// find out which ones moved, unless the caller passes them.
 #pragma once
 
 #include <algorithm>
@@ -20,15 +20,15 @@ namespace bvlab {
 template <class T, class Contact>
 class ChangedBlocks {
  public:
-  /// `joined`: whose tree holds the boxes; `pairs`: the list that is changed. Both must outlive
-  /// this.
+  /// `joined`: holds the tree of the boxes; `pairs`: the list to change. Both must outlive this
+  /// object.
   ChangedBlocks(JoinedBlocks<T, Contact>& joined, ReportedPairs& pairs)
       : joined_(joined), tree_(joined.tree()), pairs_(pairs) {}
 
   bool active() const { return active_; }
   void stop() { active_ = placed_ = false; }
 
-  /// From the tree and the list of the last frame, which had this many boxes.
+  /// Starts from the tree and list of the last frame, which had `boxes` boxes.
   void begin(std::size_t boxes) {
     count_ = boxes;
     index_slots();
@@ -36,19 +36,19 @@ class ChangedBlocks {
     looks_when_sorted_ = 0, looks_ = asked_for_ = 0;
   }
 
-  /// The last frame's box.
+  /// The box with index `id` as it was in the last frame.
   Box<T> last(std::uint32_t id) const {
     return tree_.leaf(slots_[id] / block_width).box(static_cast<int>(slots_[id] % block_width));
   }
 
-  /// What a box that moves is expected to cost, in units of BlockCosts; 0 where nothing is known.
+  /// Expected cost per moved box in units of BlockCosts; 0 where none was measured.
   double expected() const { return expected_; }
-  /// It may have become less.
+  /// Lowers the expectation, so that an old measurement does not hold for ever.
   void doubt() { expected_ *= 0.9; }
 
-  /// Brings the list from the last frame's boxes to these, where those of `moved`, new ones and
-  /// those that are gone differ at most. False, and no longer active, where that is going to cost
-  /// more than `affordable`; the tree is then to be built anew.
+  /// Updates the list to `boxes`, which may differ from the last frame in the boxes of `moved`, in
+  /// new ones and in those that are gone. Returns false, and becomes inactive, where that would
+  /// cost more than `affordable`; the tree must then be built anew.
   bool update(Boxes<T> boxes, std::span<const std::uint32_t> moved, double affordable) {
     newcomers_.clear(), emptied_.clear(), was_.clear(), touched_.clear();
     moved_count_ = 0;
@@ -104,8 +104,8 @@ class ChangedBlocks {
     emptied_.push_back(slots_[id]);
     slots_[id] = no_slot;
   }
-  /// The tree holds the new box from now on; bounds enclose both. What stood in its leaf before
-  /// this frame is kept.
+  /// Writes the new box to the tree, where bounds then enclose both. Keeps a copy of the leaf as it
+  /// was in the last frame.
   void change(std::uint32_t slot, const Box<T>& now) {
     const std::uint32_t leaf = slot / block_width;
     if (changed_[leaf] == 0) {
@@ -120,7 +120,7 @@ class ChangedBlocks {
     if (now.lo[0] <= now.hi[0]) tree_.widen_above(leaf, now);
   }
 
-  /// Boxes that jumped or are new get leaves of their own, among themselves in spatial order.
+  /// Puts boxes that jumped or are new into leaves of their own, in spatial order.
   void seat_newcomers(Boxes<T> boxes) {
     new_boxes_.clear();
     for (const std::uint32_t id : newcomers_) new_boxes_.push_back(boxes[id]);
@@ -138,7 +138,7 @@ class ChangedBlocks {
     }
   }
 
-  /// In ascending order, so that neighbours follow each other.
+  /// Sorts the touched leaves, so that neighbours in memory are visited together.
   void order_touched() {
     if (64 * touched_.size() < changed_.size()) return std::sort(touched_.begin(), touched_.end());
     touched_.clear();
@@ -148,17 +148,17 @@ class ChangedBlocks {
 
   // ---- which pairs change -------------------------------------------------------------------
 
-  /// Boxes that moved, some at a time, and the leaves that they reach.
+  /// A batch of moved boxes and the leaves that their queries found.
   struct Asked {
     std::vector<std::uint32_t> slots;
-    std::vector<Box<T>> both;  ///< encloses where each was and where it is
+    std::vector<Box<T>> both;  ///< encloses the old and the new box of each
     typename BlockTree<T>::Finds finds;
     PairList began, ended;
     std::size_t looks;
   };
 
-  /// Fills `began` and `ended`. False where a part of the work, or what it found, shows that all of
-  /// it costs more than `affordable`.
+  /// Fills `began` and `ended`. False where a first part of the work, or all of it, turns out to
+  /// cost more than `affordable`.
   bool find_changes(double affordable) {
     constexpr std::size_t some = 32;  // leaves
     const std::size_t all = touched_.size(), parts = (all + some - 1) / some;
@@ -183,7 +183,7 @@ class ChangedBlocks {
         }
         return;
       }
-      // Each part's pairs by themselves: the same in the same order.
+      // Each part writes lists of its own, so that the order does not depend on threads.
       threads.share(last - first, [&](std::size_t k, std::size_t) {
         Asked& asked = asked_[first + k];
         asked.began.clear(), asked.ended.clear();
@@ -198,7 +198,7 @@ class ChangedBlocks {
     const std::size_t few = std::min(parts, parts / 16 + 1);
     ask_all(0, few);
     const double done = static_cast<double>(std::min(few * some, all));
-    // Where places are known, which would be lost, more than what a part of the work suggests.
+    // Places that are known would be lost: they are worth twice the estimate from a part.
     if (all > 0 && cost(done / static_cast<double>(all)) > (placed_ ? 2 : 1) * affordable)
       return refused(cost(done / static_cast<double>(all)));
     ask_all(few, parts);
@@ -211,7 +211,7 @@ class ChangedBlocks {
     expected_ = cost / static_cast<double>(std::max<std::size_t>(moved_count_, 1));
     return false;
   }
-  /// What boxes that moved in the touched leaves from `first` to `last` have to do with all.
+  /// Compares the moved boxes of touched leaves `first` to `last` with all boxes.
   void ask_for(std::size_t first, std::size_t last, Asked& asked, PairList& began,
                PairList& ended) const {
     asked.slots.clear(), asked.both.clear();
@@ -223,7 +223,7 @@ class ChangedBlocks {
       }
     tree_.find(asked.both, asked.finds);
     asked.looks = asked.finds.count;
-    // First those leaves alone that hold anything near, or anything that moved.
+    // Keep only leaves that hold a box near this one, or a box that moved.
     std::uint32_t* const leaves = asked.finds.leaves.data();
     std::uint32_t* const boxes = asked.finds.boxes.data();
     std::size_t near = 0;
@@ -242,14 +242,14 @@ class ChangedBlocks {
   Box<T> was(std::uint32_t slot) const {
     return was_[was_at_[slot / block_width]].box(static_cast<int>(slot % block_width));
   }
-  /// A box that moved with a leaf.
+  /// Compares a moved box with all boxes of a leaf, before and after.
   void compare(std::uint32_t slot, std::uint32_t leaf, PairList& began, PairList& ended) const {
     const LaneMask also = changed_[leaf];
     const Block<T>& block = tree_.leaf(leaf);
     const Block<T>& before = also ? was_[was_at_[leaf]] : block;
     const LaneMask on = overlapping_lanes<Contact>(block, now(slot)),
                    off = overlapping_lanes<Contact>(before, was(slot));
-    // Of two that moved, the one in the earlier slot says it.
+    // Of two boxes that moved, the one in the earlier slot reports the pair.
     const LaneMask told = leaf < slot / block_width ? also
                           : leaf == slot / block_width
                               ? also & ((LaneMask{2} << slot % block_width) - 1)
@@ -261,9 +261,9 @@ class ChangedBlocks {
     }
   }
 
-  /// The list, changed in place.
+  /// Changes the list in place.
   void apply(std::size_t boxes) {
-    // Places are found in the first frame, whether it needs them or not: no later one is slow.
+    // The index of places is built in the first frame even if unneeded: no later one is slow.
     if (placed_ && pairs_.began.empty() && pairs_.ended.empty()) return;
     const std::span<const std::uint32_t> order(tree_.ids(0), tree_.slots());
     if (!placed_ || places_.sparse(pairs_.all))
@@ -274,7 +274,7 @@ class ChangedBlocks {
     places_.insert(pairs_.began.view(), pairs_.all);
   }
 
-  /// Bounds as tight as before, and nothing marked.
+  /// Refits the bounds of touched leaves and clears all marks.
   void settle() {
     for (const std::uint32_t slot : emptied_) tree_.ids(0)[slot] = no_box;
     for (const std::uint32_t leaf : touched_) changed_[leaf] = 0;
@@ -283,8 +283,8 @@ class ChangedBlocks {
 
   // ---- order --------------------------------------------------------------------------------
 
-  /// Whether slots are empty, or boxes went so far from their neighbours, that each asks for more
-  /// leaves than right after sorting.
+  /// Whether many slots are empty. The second test, of the leaves that a query finds, never
+  /// applies: nothing increments `asked_for_`.
   bool worn() {
     if (tree_.slots() > count_ + count_ / 8 + 64) return true;
     if (asked_for_ < 512) return false;
@@ -293,7 +293,7 @@ class ChangedBlocks {
     if (looks_when_sorted_ == 0) looks_when_sorted_ = looks;
     return looks > 1.5 * looks_when_sorted_ + 4;
   }
-  /// A new order; the list stays.
+  /// Sorts the boxes anew; the list is unchanged.
   void sort(Boxes<T> boxes) {
     joined_.build(joined_.order()(boxes, joined_.shares().threads()), boxes);
     index_slots();
@@ -309,13 +309,13 @@ class ChangedBlocks {
   LargeVector<std::uint32_t> slots_;  ///< of each box
 
   LargeVector<std::uint16_t> changed_;  ///< of each leaf: the lanes in which boxes moved
-  LargeVector<std::uint32_t> was_at_;   ///< of a leaf where some did: in `was_`
+  LargeVector<std::uint32_t> was_at_;   ///< of each touched leaf: its index in `was_`
   std::vector<Block<T>> was_;           ///< leaves as they were in the last frame
   std::vector<std::uint32_t> touched_;  ///< leaves where boxes moved
   std::size_t moved_count_ = 0;
   std::vector<Asked> asked_;
-  std::size_t looks_ = 0, asked_for_ = 0;  ///< leaves that boxes asked for, and boxes, lately
-  double looks_when_sorted_ = 0;           ///< of a box
+  std::size_t looks_ = 0, asked_for_ = 0;  ///< leaves found by queries, and queries
+  double looks_when_sorted_ = 0;           ///< leaves a query
   double expected_ = 0;
 
   std::vector<std::uint32_t> newcomers_, emptied_;

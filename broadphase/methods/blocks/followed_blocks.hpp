@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What `blocks` does while boxes move steadily. Every box gets a *fat box*, which holds where it
-/// will be for some frames (the *horizon*) if it goes on as it just did, and the pairs of boxes
-/// whose fat boxes overlap are candidates (BibTeX: verlet1967computer; the fat box is one-sided,
-/// along the motion of each face, so it grows the box a quarter of what a margin would). Until a
-/// box leaves its fat box, no pair but a candidate can overlap. A box that leaves it gets a wider
-/// one, one that jumps or is new another slot.
+/// Updates the list of pairs while boxes move steadily. Each box gets a *fat box* that encloses it
+/// for some frames (the *horizon*) if it keeps its present motion. Pairs whose fat boxes overlap
+/// are the candidates, as in a Verlet list (BibTeX: verlet1967computer), but fat boxes grow on one
+/// side only, along the motion of each face: a quarter of the growth of a margin all around. While
+/// every box is inside its fat box, only candidates can overlap. A box that leaves it gets a wider
+/// one, and a box that jumps or is new gets another slot.
 ///
-/// Boxes that turned too often for that, or jitter, get margins all around instead. Margins have no
-/// end of their own: they are used until a sample of the boxes has come half-way out. Where none
-/// does for long, the narrowest margins take over.
+/// Boxes that change direction too often for that, or jitter, get margins all around instead.
+/// Margins have no fixed horizon: they are used until a sample of the boxes has used half of them.
+/// Where none does so for long, the narrowest margins take over.
 ///
-/// A frame looks at every box, and compares all candidates. The next candidates are found a part in
-/// each frame (NextCandidates). Only a frame that begins without them takes longer than starting
-/// over.
+/// A frame reads every box once and compares all candidates. The next candidates are found in
+/// parts, one in each frame (NextCandidates). Only a frame that begins without them takes longer
+/// than starting over.
 #pragma once
 
 #include <cmath>
@@ -29,8 +29,8 @@ namespace bvlab {
 template <class T, class Contact>
 class FollowedBlocks {
  public:
-  /// `joined`: whose tree then holds fat boxes; `pairs`: the list that is written. Both must
-  /// outlive this.
+  /// `joined`: its tree holds the fat boxes while this is active; `pairs`: the list that is
+  /// written. Both must outlive this object.
   FollowedBlocks(const MethodSettings& settings, JoinedBlocks<T, Contact>& joined,
                  ReportedPairs& pairs)
       : settings_(settings), joined_(joined), tree_(joined.tree()), pairs_(pairs) {}
@@ -41,28 +41,28 @@ class FollowedBlocks {
     next_.abandon();
   }
 
-  /// Whether the candidates are good for another frame.
+  /// Whether the candidates are valid for another frame.
   bool goes_on() const { return !worn_ && (age_ < horizon_ || !steady_); }
-  /// In how many frames, up to the last, no more than one box in eight moved.
+  /// The number of frames in a row, up to the last, in which at most one box in eight moved.
   int few_moved() const { return few_moved_; }
-  /// Whether boxes have gone on as they did.
+  /// Whether boxes keep their motion well enough for one-sided fat boxes.
   bool steady() const { return steady_; }
-  /// The fewest and the most frames that fat boxes may be made for.
+  /// The shortest and the longest horizon, in frames.
   static constexpr int shortest = 8;
   int longest() const { return longest_; }
-  /// In how many frames the next candidates are found.
+  /// The number of frames over which the next candidates are found.
   int time_to_find() const { return std::min(horizon_, 2 * shortest) / 2; }
 
-  /// Whether it is time to choose for how many frames the next candidates are to be good.
+  /// Whether it is time to choose a horizon for the next candidates.
   bool time_to_prepare() const {
     if (next_.begun()) return false;
     if (crowded_) return true;
     if (steady_) return age_ == horizon_ - time_to_find();
     return horizon_ > shortest && age_ > 0 && age_ % 4 == 0 && (at_ease() || half_used());
   }
-  /// Whether boxes stay about where they are: the shortest horizon is enough.
+  /// Whether boxes barely move: the shortest horizon is enough.
   bool at_ease() const { return !steady_ && !restless_ && age_ >= 2 * horizon_; }
-  /// Finds them from now on, a part in each frame, unless that number is zero.
+  /// Starts to find the next candidates, a part in each frame; does not where `horizon` is 0.
   void prepare(int horizon) {
     if (horizon == 0) {
       worn_ |= crowded_;
@@ -75,7 +75,7 @@ class FollowedBlocks {
     next_ahead_ = at_ease() ? 0 : shortest;
   }
 
-  /// Whether they left the shortest margins: longer ones are worth more than they cost.
+  /// Whether boxes left the shortest margins: longer ones are worth more than they cost.
   bool restless() const { return !steady_ && restless_; }
 
   /// The last frame's box in this slot.
@@ -84,12 +84,12 @@ class FollowedBlocks {
     return row_of(tree_.leaf(slot / block_width).box(static_cast<int>(slot % block_width)));
   }
 
-  /// Fat boxes for `horizon` frames, their candidates, and all pairs.
+  /// Makes fat boxes for `horizon` frames, finds their candidates and lists all pairs.
   void begin(Boxes<T> boxes, int horizon) { begin(boxes, horizon, settings_.changes); }
 
-  /// The same while boxes are followed. Where changes are reported, the old candidates, which are
-  /// good for one frame more, tell them before new ones are found; to compare two whole lists would
-  /// cost more. False where too many boxes left their fat boxes.
+  /// The same while already active. Where changes are reported, the old candidates, valid for one
+  /// frame more, yield the changes before new ones are found; comparing two whole lists would cost
+  /// more. False where too many boxes left their fat boxes.
   bool begin_again(Boxes<T> boxes, int horizon) {
     if (settings_.changes != Changes::reported) return begin(boxes, horizon), true;
     auto& rows = candidates_.rows();
@@ -97,12 +97,12 @@ class FollowedBlocks {
     const bool followed = follow(boxes);
     if (!newcomers_.empty() || !emptied_.empty()) return followed;  // slots changed: next time
     std::swap(rows, last_rows_);
-    // Where too many left their fat boxes the list is still the last frame's.
+    // Where too many left their fat boxes, the list is still that of the last frame.
     begin(boxes, horizon, followed ? Changes::unreported : Changes::reported);
     return true;
   }
 
-  /// One frame in which boxes mostly stayed within their fat boxes; false where too many did not.
+  /// Updates the list for one frame; false where too many boxes left their fat boxes.
   bool follow(Boxes<T> boxes) {
     if (next_.begun() && !next_.ready()) prepare_a_part(boxes);
     escaped_.clear(), newcomers_.clear(), emptied_.clear();
@@ -112,7 +112,7 @@ class FollowedBlocks {
     look(boxes, staying);
     for (std::size_t id = count_; id < boxes.size(); ++id)
       newcomers_.push_back(static_cast<std::uint32_t>(id));
-    // Each of these costs about as much as starting over does for thirty boxes, or a hundred.
+    // One escape costs about as much as starting over does for 32 boxes, a newcomer 100.
     if (32 * escaped_.size() + 100 * newcomers_.size() > boxes.size() + 3200) {
       if (newcomers_.size() < escaped_.size()) distrust();
       return false;
@@ -122,7 +122,7 @@ class FollowedBlocks {
     few_moved_ = few_of(boxes.size()) ? few_moved_ + 1 : 0;
     write_candidates();
     for (const std::uint32_t slot : emptied_) tree_.ids(0)[slot] = no_box;
-    // A pair that ended in one slot and began in another, where its box went, did neither.
+    // A pair that ended in one slot and began in another, where its box went, did not change.
     if (settings_.changes == Changes::reported && !emptied_.empty()) pairs_.cancel_out();
     if (next_.begun()) note_unsettled(boxes.size());
     count_ = boxes.size();
@@ -135,10 +135,10 @@ class FollowedBlocks {
     return true;
   }
 
-  /// Whether the last frame was the last one of its candidates.
+  /// Whether the next candidates took over at the end of the last frame.
   bool took_over() const { return took_over_; }
 
-  /// Ends it, with the tree of the last frame's boxes.
+  /// Stops following, and leaves the boxes of the last frame in the tree.
   void stop_with_boxes() {
     for (std::uint32_t slot = 0; slot < tree_.slots(); ++slot)
       tree_.leaf(slot / block_width)
@@ -154,7 +154,7 @@ class FollowedBlocks {
   }
 
  private:
-  /// What a thread takes at once: whole blocks of leaves.
+  /// The slots that a thread takes at once: whole blocks of leaves.
   static constexpr std::uint32_t slots_a_stretch = 4 * block_width * block_width;
 
   // ---- fat boxes and candidates -------------------------------------------------------------
@@ -200,7 +200,7 @@ class FollowedBlocks {
     if (compare) pairs_.compare_with_kept();
   }
 
-  /// In these slots, whole blocks of leaves, so that no two threads write to the same bounds.
+  /// For slots `first` to `last`: whole blocks of leaves, so no two threads write the same bounds.
   void make_fat_boxes(Boxes<T> boxes, int horizon, std::uint32_t first, std::uint32_t last) {
     auto& rows = candidates_.rows();
     for (std::uint32_t slot = first; slot < last; ++slot) {
@@ -225,7 +225,7 @@ class FollowedBlocks {
   bool sort_due(std::size_t boxes) const {
     return joined_.holey(boxes) || 3 * visits_ >= 4 * visits_when_sorted_;
   }
-  /// A new order, once the old one costs a third more or holds slots that are empty.
+  /// Sorts anew once the old order costs a third more or leaves too many slots empty.
   void sort_if_due(Boxes<T> boxes) {
     if (!active_) {
       sorted_ = true;
@@ -241,7 +241,7 @@ class FollowedBlocks {
     sorted_ = true;
   }
 
-  /// A part of the work for the next candidates.
+  /// Does this frame's part of finding the next candidates.
   void prepare_a_part(Boxes<T> boxes) {
     const int ahead = std::min(next_ahead_, takes_over_at_ - age_) + next_.horizon();
     next_.advance(
@@ -270,14 +270,14 @@ class FollowedBlocks {
           if (sorted_next_) __builtin_prefetch(&candidates_.rows()[slots_[id]]);
         });
   }
-  /// Boxes that are new, gone or in another slot since the next candidates were begun. Where they
-  /// are many, these are not worth going on with.
+  /// Notes boxes that are new, gone or in another slot since the search for the next candidates
+  /// began. Where they are many, that search is abandoned.
   void note_unsettled(std::size_t boxes) {
     resettle_ |= !newcomers_.empty() || !emptied_.empty();
     unsettled_.insert(unsettled_.end(), newcomers_.begin(), newcomers_.end());
     if (100 * unsettled_.size() > boxes + 3200) next_.abandon();
   }
-  /// From now on the next candidates are those in use.
+  /// Replaces the candidates in use by the next ones.
   void take_over_next(Boxes<T> boxes) {
     std::swap(tree_, next_.tree());
     std::swap(fat_boxes_, next_.fat_boxes());
@@ -297,7 +297,7 @@ class FollowedBlocks {
     next_.abandon();
     if (settings_.changes == Changes::reported) know_which_overlap();
   }
-  /// Takes the boxes that are gone, or are to get other slots, out of the tree that takes over.
+  /// Removes boxes that are gone, or about to get other slots, from the tree that takes over.
   void forget_unsettled() {
     std::sort(unsettled_.begin(), unsettled_.end());
     unsettled_.erase(std::unique(unsettled_.begin(), unsettled_.end()), unsettled_.end());
@@ -329,8 +329,8 @@ class FollowedBlocks {
     }
     std::swap(rows, spare_);
   }
-  /// Of the candidates that took over. Boxes that are out of their new fat boxes already, which
-  /// else the next frame would see, get wider ones before.
+  /// Finds which of the new candidates overlap. Boxes that are outside their new fat boxes already,
+  /// which only the next frame would notice otherwise, get wider ones first.
   void know_which_overlap() {
     escaped_.clear();
     const auto& rows = candidates_.rows();
@@ -341,8 +341,8 @@ class FollowedBlocks {
     write_candidates();
   }
 
-  /// Where a box will be for `frames` more frames, moving as it just did; where boxes have turned
-  /// out not to, a margin all around. Nothing depends on its being right.
+  /// Encloses the box for `frames` more frames if it keeps its motion; in unsteady motion, a margin
+  /// all around. Correctness does not depend on the prediction.
   Row<T> fat_box_of(const Row<T>& now, const Row<T>& was, int frames) const {
     if (joined_.jumped(now, was)) return now;
     const Four<T> zero{}, low = now.lo - was.lo, high = now.hi - was.hi;
@@ -350,7 +350,7 @@ class FollowedBlocks {
     Row<T> fat;
     if (steady_) {
       const T ahead = static_cast<T>(frames);
-      // A quarter of a step for what rounding adds up to.
+      // A quarter of a step more covers accumulated rounding.
       fat = {now.lo + least<T>(low * ahead, zero) - far / 4,
              now.hi + most<T>(high * ahead, zero) + far / 4};
     } else {
@@ -363,12 +363,12 @@ class FollowedBlocks {
 
   // ---- one frame ----------------------------------------------------------------------------
 
-  /// In the order of slots.
+  /// Reads every box, in the order of slots; notes those that moved or left their fat boxes.
   void look(Boxes<T> boxes, std::size_t staying) {
     const std::uint32_t slots = tree_.slots();
     Threads& threads = joined_.shares().threads();
     const bool shared = threads.count() > 1 && slots >= 2 * slots_a_stretch;
-    // A frame that the cache holds is fetched in order, a longer one as it is needed.
+    // A frame that fits the cache is prefetched in order, a larger one box by box.
     const bool as_needed = shared || boxes.size_bytes() > (1u << 20);
     if (!as_needed)
       for (std::size_t byte = 0; byte < boxes.size_bytes(); byte += 64)
@@ -389,7 +389,7 @@ class FollowedBlocks {
     std::uint32_t slot;
     Row<T> was;
   };
-  /// What one thread saw of some slots.
+  /// What one thread found in a range of slots.
   struct Look {
     std::size_t moved;
     std::vector<Escaped> left;  ///< whose boxes left their fat boxes
@@ -407,7 +407,7 @@ class FollowedBlocks {
         __builtin_prefetch(&boxes[ids[slot + ahead]]);
       if (ids[slot] >= staying) continue;
       const Row<T> was = rows[slot], now = row_of(boxes[ids[slot]]);
-      // Both halves by themselves: copied whole, they would go through memory.
+      // Copy the halves one by one: as a whole they would go through memory.
       rows[slot].lo = now.lo, rows[slot].hi = now.hi;
       moved += !same(now, was);
       if (!inside(now, fat_boxes[slot])) [[unlikely]] {
@@ -427,18 +427,18 @@ class FollowedBlocks {
     newcomers_.push_back(tree_.ids(0)[slot]);
     vacate(slot);
   }
-  /// Its pairs end with this frame; candidates of the slot stay and are never found again.
+  /// Empties the slot. Its pairs end with this frame; its candidates remain but never overlap.
   void vacate(std::uint32_t slot) {
     candidates_.rows()[slot] = nowhere_row<T>();
     tree_.leaf(slot / block_width).put(static_cast<int>(slot % block_width), nowhere<T>());
     emptied_.push_back(slot);
   }
 
-  /// Whether few of so many boxes moved in this frame.
+  /// Whether few of the frame's boxes moved.
   bool few_of(std::size_t boxes) const { return BlockCosts::few_times * moved_count_ < boxes; }
 
-  /// Where few boxes move, one that leaves its fat box may have begun just now and be at rest again
-  /// in the next frame. Where most move, it goes on for as long as the candidates are good.
+  /// Where few boxes move, one that leaves its fat box may have started just now and rest again in
+  /// the next frame. Where most move, it is expected to move until the horizon.
   static constexpr int after_an_escape = 2;
   void widen_escaped() {
     const int frames = few_of(count_) ? std::min(horizon_, after_an_escape)
@@ -452,8 +452,8 @@ class FollowedBlocks {
       enter(slot, old);
     }
   }
-  /// Candidates are all pairs whose fat boxes overlap: adds those that the new fat box of this slot
-  /// overlaps and the old one did not.
+  /// Keeps the candidates complete: adds the pairs that the new fat box of this slot overlaps and
+  /// the old one did not.
   void enter(std::uint32_t slot, const Box<T>& old) {
     const Box<T> fat = box_of(fat_boxes_[slot]);
     const std::uint32_t* ids = tree_.ids(0);
@@ -469,7 +469,7 @@ class FollowedBlocks {
     });
   }
 
-  /// Boxes that jumped or are new get slots of their own, among themselves in spatial order.
+  /// Puts boxes that jumped or are new into slots of their own, in spatial order.
   void seat_newcomers(Boxes<T> boxes) {
     std::erase_if(newcomers_, [&](std::uint32_t id) { return id >= boxes.size(); });
     new_boxes_.clear();
@@ -491,7 +491,7 @@ class FollowedBlocks {
     moved_count_ += order.size();
   }
 
-  /// Too many boxes left the fat boxes made for them: they turn too often for that, or speed up.
+  /// Too many boxes left their fat boxes: change from one-sided boxes to margins, or adapt these.
   void distrust() {
     if (steady_)
       steady_ = age_ >= horizon_;
@@ -500,8 +500,8 @@ class FollowedBlocks {
     else if (age_ < horizon_)
       longest_ = std::max(shortest, longest_ / 2);
   }
-  /// Whether an eighth of a sample of the boxes has used half of its margin: if they go on, there
-  /// are as many frames left as they had.
+  /// Whether more than an eighth of a sample of the boxes has used half of its margin: at the same
+  /// speed, about as many frames are left as have passed.
   bool half_used() const {
     const auto& rows = candidates_.rows();
     const std::uint32_t stride = std::max<std::uint32_t>(1, tree_.leaves() / 16);
@@ -535,12 +535,12 @@ class FollowedBlocks {
       candidates_.compare_range(ids, to, count * share / of, count * (share + 1) / of);
     });
   }
-  /// Below this a thread takes longer to wake than the comparisons do.
+  /// Below this, waking a thread takes longer than the comparisons.
   static constexpr std::size_t candidates_worth_sharing = 4000;
 
   MethodSettings settings_;
   JoinedBlocks<T, Contact>& joined_;
-  BlockTree<T>& tree_;  ///< while active: of the fat boxes
+  BlockTree<T>& tree_;  ///< holds the fat boxes while active
   ReportedPairs& pairs_;
 
   CandidatePairs<T, Contact> candidates_;
@@ -549,9 +549,9 @@ class FollowedBlocks {
   std::size_t count_ = 0;             ///< boxes of the last frame
   std::size_t candidates_at_first_ = 0, visits_ = 0, visits_when_sorted_ = 0;
   bool active_ = false, sorted_ = false, steady_ = true;
-  bool restless_ = false;  ///< they left the shortest margins
-  bool crowded_ = false;   ///< so many candidates that others are worth finding
-  bool worn_ = false;      ///< so many, or so many empty slots, that these are not to be used again
+  bool restless_ = false;  ///< boxes left the shortest margins
+  bool crowded_ = false;   ///< so many candidates that new ones are worth finding
+  bool worn_ = false;      ///< too many candidates or empty slots to go on
   NextCandidates<T, Contact> next_;
   bool sorted_next_ = false, took_over_ = false;
   int longest_ = 64, horizon_ = 0, age_ = 0, takes_over_at_ = 0, next_ahead_ = 0;
@@ -560,7 +560,7 @@ class FollowedBlocks {
   std::vector<Look> looks_;
   std::vector<std::uint32_t> newcomers_, emptied_;
   std::vector<std::uint32_t> unsettled_;  ///< newcomers since the next candidates were begun
-  bool resettle_ = false;                 ///< and whether any came, went or jumped
+  bool resettle_ = false;                 ///< whether any box came, went or jumped
   std::size_t moved_count_ = 0;
   int few_moved_ = 0;  ///< frames in a row
   std::vector<Box<T>> new_boxes_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What `blocks` does without coherence: boxes sorted into blocks of sixteen neighbours, the tree
-/// of blocks joined with itself into all pairs.
+/// Finds all pairs from scratch: boxes are sorted into blocks of sixteen neighbours, and the tree
+/// of blocks is joined with itself.
 #pragma once
 
 #include <algorithm>
@@ -15,25 +15,25 @@
 
 namespace bvlab {
 
-/// What the parts of a frame cost, in units of a nanosecond or so, as measured once; what counts is
-/// their ratios. Where what is read does not stay in the cache, some cost more.
+/// Costs of the parts of a frame, in nanoseconds as measured once; only their ratios matter. Some
+/// costs are higher where the data exceed the cache.
 struct BlockCosts {
-  /// Where one box in so many moves, they are few.
+  /// Few boxes move where it is at most one in this many.
   static constexpr std::size_t few_times = 8;
 
-  static constexpr double sort = 12;      ///< a box into spatial order
-  static constexpr double visit = 36;     ///< a pair of leaves in the join
-  static constexpr double pair = 1.3;     ///< an overlapping pair, written
-  static constexpr double report = 12;    ///< the same, compared with the last frame's
-  static constexpr double look = 8;       ///< a box, followed
-  static constexpr double fat_box = 10;   ///< a fat box, made
-  static constexpr double candidate = 3;  ///< a candidate, written
-  static constexpr double moved = 120;    ///< a box that moved, put into its place
-  static constexpr double leaf = 20;      ///< a leaf that it is compared with
+  static constexpr double sort = 12;      ///< sort a box into spatial order
+  static constexpr double visit = 36;     ///< visit a pair of leaves in the join
+  static constexpr double pair = 1.3;     ///< write an overlapping pair
+  static constexpr double report = 12;    ///< find whether a pair began or ended, by sorting
+  static constexpr double look = 8;       ///< read a box that is followed
+  static constexpr double fat_box = 10;   ///< make a fat box
+  static constexpr double candidate = 3;  ///< write a candidate
+  static constexpr double moved = 120;    ///< update the tree for a moved box
+  static constexpr double leaf = 20;      ///< compare a moved box with a leaf
 
-  /// A candidate, compared.
+  /// Compare a candidate, of so many in all.
   static double test(double candidates) { return 16 * candidates < 3 * near ? 2.2 : 3.7; }
-  /// A pair that began or ended, in a list of so many.
+  /// Insert or erase a pair, in a list of so many.
   static double change(double pairs) {
     return 16 * pairs < 2 * near ? 60 : 16 * pairs < 32 * near ? 200 : 700;
   }
@@ -54,15 +54,15 @@ class JoinedBlocks {
   SpatialOrder<T>& order() { return order_; }
   PairShares& shares() { return shares_; }
 
-  /// Pairs of leaves that the join from scratch visited.
+  /// The number of pairs of leaves visited by the last join from scratch.
   std::size_t visits() const { return visits_; }
 
-  /// Whether a box went farther in a frame than half a leaf: its neighbours are others now.
+  /// Whether a box moved farther in a frame than half a leaf, and so has other neighbours now.
   bool jumped(const Row<T>& now, const Row<T>& was) const {
     return !(static_cast<double>(largest_change(now, was)) <= leaf_extent_ / 2);
   }
 
-  /// Builds the tree of the boxes in this order.
+  /// Builds the tree over the boxes in this order.
   void build(std::span<const Keyed<std::uint32_t>> order, Boxes<T> boxes) {
     tree_.build(order, boxes, shares_.threads());
     leaf_extent_ = tree_.mean_leaf_extent();
@@ -73,9 +73,9 @@ class JoinedBlocks {
     write_all_pairs(pairs);
   }
 
-  /// Writes the pairs of boxes that overlap in the sense of `Sense` to the list by `write`, as
-  /// LeafJoin does, and says how many pairs of leaves were visited. Threads have lists of their
-  /// own, which are put together in the order of one.
+  /// Appends the pairs of boxes that overlap in the sense of `Sense`, by `write` as in LeafJoin,
+  /// and returns the number of pairs of leaves visited. Threads write lists of their own, which are
+  /// concatenated in the order that one thread would give.
   template <class Sense, class Write>
   std::size_t join_into(PairList& list, const Write& write) {
     std::size_t visits = 0;
@@ -92,7 +92,7 @@ class JoinedBlocks {
     return join_parts_into<Sense>(tree_, parts_, list, write);
   }
   using Part = typename BlockTree<T>::Part;
-  /// The same for some parts of a tree's join; what is found is added to the list.
+  /// The same for some parts of a tree's join; pairs are appended to the list.
   template <class Sense, class Write>
   std::size_t join_parts_into(const BlockTree<T>& tree, std::span<const Part> parts, PairList& list,
                               const Write& write) {
@@ -118,16 +118,16 @@ class JoinedBlocks {
     return visits;
   }
 
-  /// Whether slots are empty that sorting these boxes would fill.
+  /// Whether sorting these boxes would free at least one leaf.
   bool holey(std::size_t boxes) const { return tree_.slots() >= boxes + block_width; }
 
   std::size_t bytes() const { return tree_.bytes() + order_.bytes() + shares_.bytes(); }
 
  private:
-  /// Below this a thread takes longer to wake than the join does.
+  /// Below this, waking a thread takes longer than the join.
   static constexpr std::uint32_t leaves_worth_sharing = 200;
 
-  /// Joins the tree with itself into the list of pairs.
+  /// Joins the tree with itself, and writes the list of all pairs.
   void write_all_pairs(ReportedPairs& pairs) {
     const bool compare = settings_.changes == Changes::reported;
     if (compare) pairs.keep_before();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The candidates that follow those in use, found a part in each frame while these are still good:
-/// a frame that makes all of them at once takes twice as long as one from scratch. First an order;
-/// then, in three parts, fat boxes for the frames until they take over and those after; then, in
-/// eight, the join.
+/// Finds the candidates for the next horizon in parts, one in each frame while the present ones are
+/// still valid, since a frame that found all at once would take twice as long as one from scratch.
+/// The stages: one for the spatial order; three for fat boxes that hold from the takeover to the
+/// end of the next horizon; eight for the join.
 #pragma once
 
 #include <span>
@@ -17,18 +17,18 @@ class NextCandidates {
  public:
   bool begun() const { return stage_ != 0; }
   bool ready() const { return stage_ > stages; }
-  /// For how many frames they are going to be good.
+  /// The horizon of the candidates being found, in frames.
   int horizon() const { return horizon_; }
   void abandon() { stage_ = 0; }
-  /// `frames`: that it may take.
+  /// Starts a search for `horizon` frames, spread over `frames` frames.
   void begin(int horizon, int frames) {
     stage_ = 1, horizon_ = horizon;
     frames_ = frames, frame_ = 0;
   }
 
-  /// The next frame's parts of the work, whatever they are. `order()`: the indices of the boxes in
-  /// their slots, sixteen to a leaf; `fat_box(slot, id)`: where that box may go until they end;
-  /// `fetch(id)`: is going to be asked that.
+  /// Does the stages due in this frame. `order(tree)` writes the indices of the boxes to their
+  /// slots, sixteen to a leaf; `fat_box(slot, id)` returns the box's fat box; `fetch(id)`
+  /// prefetches what that call will read.
   template <class Order, class FatBox, class Fetch>
   void advance(JoinedBlocks<T, Contact>& joined, const Order& order, const FatBox& fat_box,
                const Fetch& fetch) {
@@ -42,11 +42,11 @@ class NextCandidates {
         join(joined, static_cast<std::size_t>(stage_ - 2 - fat_parts));
   }
 
-  /// Has the memory come that it will need for about so many.
+  /// Allocates the memory needed for about this many leaves and candidates.
   void reserve(std::uint32_t leaves, std::size_t candidates) {
     tree_.resize_leaves(leaves);
     fat_boxes_.resize(tree_.slots());
-    // The join asks for some room beyond what it is going to need.
+    // The join reserves somewhat more than it writes.
     candidates_.clear();
     candidates_.room_for(candidates + candidates / 8 + 16 * 256);
   }
@@ -54,7 +54,7 @@ class NextCandidates {
   BlockTree<T>& tree() { return tree_; }
   LargeVector<Row<T>>& fat_boxes() { return fat_boxes_; }
   PairList& candidates() { return candidates_; }
-  /// Pairs of leaves that the join visited.
+  /// The number of pairs of leaves visited by the join.
   std::size_t visits() const { return visits_; }
 
   std::size_t bytes() const {
