@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The concept of a bounding volume, and its laws.
+/// The concept of a bounding volume, the laws that every volume keeps, and its optional members.
 #pragma once
 
 #include <concepts>
@@ -28,31 +28,31 @@ struct PlacementOf<V> {
 };
 }  // namespace detail
 
-/// What V is posed by. A volume that needs more of a pose than `Placement` declares a `placement`
-/// of its own. It is constructed from the same arguments, at most once after each move of a body.
+/// The pose type that `posed` takes for V. A volume that needs more of a pose than `Placement`
+/// declares a `placement` of its own, with the same constructor, called at most once per move.
 template <class V>
 using PlacementOf = typename detail::PlacementOf<V>::type;
 
-/// What V becomes where volumes are tested.
+/// The type of a posed V: the form in which volumes are tested against each other.
 template <class V>
 using Posed = decltype(posed(std::declval<const V&>(), std::declval<const PlacementOf<V>&>()));
 
-/// A volume that is fitted better if it is given the surface between the points. All corners of the
-/// triangles are among the points.
+/// A volume that can be fitted to the surface, not only to points. `points` contains all corners of
+/// the triangles.
 template <class V>
 concept FittedToTriangles = requires(std::span<const Vec3<double>> points,
                                      std::span<const Triangle> triangles) {
   { V::enclosing(points, triangles) } -> std::same_as<V>;
 };
 
-/// A volume with a second construction, more expensive and tighter.
+/// A volume with a second construction, which is slower and gives a tighter volume.
 template <class V>
 concept FittedTightly = requires(std::span<const Vec3<double>> points,
                                  std::span<const Triangle> triangles) {
   { V::tight(points, triangles) } -> std::same_as<V>;
 };
 
-/// By which construction volumes are fitted: the published one, or the tighter one where there is
+/// Which construction fits volumes: the published one, or the tighter one where the volume has
 /// one.
 enum class Fit { published, tight };
 
@@ -61,11 +61,11 @@ enum class Fit { published, tight };
 /// A volume is a plain aggregate of scalars S (float, double, or a SIMD batch of either), with free
 /// functions found by argument-dependent lookup. Laws, checked by tests/laws for every entry of
 /// `Volumes`:
-///   enclosure     `contains` is true for every point given to `enclosing`; merging and posing keep
-///                 it so, rounding included: a vertex moved by Pose lies in the posed volume;
-///   conservatism  if a point lies in both, `disjoint` is false, also where numbers overflow;
+///   enclosure     `contains` is true for every point given to `enclosing`, and stays true after
+///                 `merge` and `posed`, rounding included: posed volumes hold posed vertices;
+///   conservatism  if a point lies in both, `disjoint` is false, even where numbers overflow;
 ///   gap           `gap` never exceeds the true distance, and is 0 where a point lies in both;
-///   batches       lane by lane, a batch gives what the scalar gives.
+///   batches       each lane of a batch gives what the scalar gives.
 template <class V>
 concept BoundingVolume = requires(const V a, const V b, std::span<const Vec3<double>> points,
                                   const PlacementOf<V> placement, const Posed<V> p,
@@ -82,7 +82,7 @@ concept BoundingVolume = requires(const V a, const V b, std::span<const Vec3<dou
   { reach(a) } -> std::same_as<typename V::scalar>;  // how far from the frame's origin it extends
 };
 
-/// `size(volume)` and `reach(volume)` for scopes where a member of that name hides them.
+/// `size(volume)` and `reach(volume)`, for scopes in which a member of the same name hides them.
 template <BoundingVolume V>
 typename V::scalar size_of(const V& volume) {
   return size(volume);

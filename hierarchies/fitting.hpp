@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Fits a volume to some triangles of a mesh.
+/// Fits a volume to some triangles of a mesh, by the construction that `Fit` selects.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace bvlab {
 
-/// The volume around points, which are the corners of the triangles.
+/// The volume around `points`, which must be the corners of `triangles`.
 template <BoundingVolume V>
 V fitted(std::span<const Vec3<double>> points, std::span<const Triangle> triangles, Fit fit) {
   if constexpr (FittedTightly<V>)
@@ -24,14 +24,14 @@ V fitted(std::span<const Vec3<double>> points, std::span<const Triangle> triangl
     return V::enclosing(points);
 }
 
-/// Buffers of one thread, in cache lines of its own.
+/// The buffers of one thread, aligned so that threads share no cache line.
 template <BoundingVolume V>
 struct alignas(128) Fitting {
   std::vector<std::uint32_t> vertices;
   LargeVector<Vec3<double>> points;
   LargeVector<Triangle> triangles;
 
-  /// Takes each vertex of the triangles once.
+  /// Collects the vertices of the given triangles, each once.
   void take_vertices(const TriangleMesh& mesh, std::span<const std::uint32_t> primitives) {
     vertices.clear(), points.clear(), triangles.clear();
     for (const auto primitive : primitives)
@@ -43,7 +43,7 @@ struct alignas(128) Fitting {
       for (const auto primitive : primitives) triangles.push_back(mesh.corners(primitive));
   }
 
-  /// The volume around what was taken.
+  /// The volume around the collected vertices.
   V volume(Fit fit) const { return fitted<V>(points, triangles, fit); }
 };
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A tree of bounding volumes over one mesh, binary or of any fan-out, stored flat: siblings
-/// adjacent, 32-bit indices, the volumes in an array of their own because posing reads nothing
-/// else.
+/// A tree of bounding volumes over one mesh, binary or with up to sixteen children a node, stored
+/// flat: siblings are adjacent, indices are 32 bits, and volumes are in an array of their own,
+/// since posing reads nothing else.
 ///
-/// The fan-out is a matter of the topology, not of the type: whatever is compiled for a volume runs
-/// on trees of every fan-out.
+/// The fan-out belongs to the topology, not to the type: code compiled for a volume runs on trees
+/// of every fan-out.
 #pragma once
 
 #include <algorithm>
@@ -31,27 +31,27 @@ class Hierarchy {
   struct Node {
     std::uint32_t first;      ///< inner: the first of adjacent children; leaf: of its primitives
     std::uint32_t count;      ///< number of primitives of a leaf; 0 for an inner node
-    std::uint32_t children;   ///< how many children an inner node has, 2 to 16; 0 for a leaf
-    std::uint32_t group;      ///< the number of the children's group, see group()
-    typename V::scalar size;  ///< of its volume: the larger one is descended
+    std::uint32_t children;   ///< number of children, 2 to 16; 0 for a leaf
+    std::uint32_t group;      ///< the index of the children's group, see group()
+    typename V::scalar size;  ///< of its volume: the larger of a pair is descended
   };
 
-  /// Fits V to a topology of the mesh, which must have a triangle: a Topology, which is binary, or
-  /// a WideTopology. A parent takes the smaller of what encloses its children and what encloses its
-  /// triangles (quinlan1994efficient). O(n log n) for balanced trees.
+  /// Fits V to a topology (a binary Topology or a WideTopology) of the mesh, which must have at
+  /// least one triangle. A parent takes the smaller of two volumes: around its children, or around
+  /// its triangles (quinlan1994efficient). O(n log n) for balanced trees.
   template <class AnyTopology>
   Hierarchy(const TriangleMesh& mesh, const AnyTopology& topology, Fit fit = Fit::published,
             Threads&& threads = Threads())
       : Hierarchy(mesh, topology, fit, threads) {}
-  /// On several threads, which share the fitting to triangles. The result does not depend on their
-  /// number.
+  /// The same on several threads, which share the fitting to triangles. The result does not depend
+  /// on their number.
   template <class AnyTopology>
   Hierarchy(const TriangleMesh& mesh, const AnyTopology& topology, Fit fit, Threads& threads)
       : primitives_(topology.primitives), volumes_(topology.nodes.size()) {
     take_nodes(topology);
     number_siblings();
     std::vector<Fitting<V>> fitting(threads.count());
-    // The first nodes enclose most triangles.
+    // The first nodes enclose the most triangles.
     threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
       enclose(i, begin_[i], end_[i], mesh, fit, fitting[worker]);
     });
@@ -64,10 +64,10 @@ class Hierarchy {
     begin_.clear(), end_.clear();
   }
 
-  /// Fits the volumes again to the same triangles, whose corners have moved: leaves by the
-  /// published construction, parents around their children (vandenbergen1997efficient). O(n). The
-  /// volumes are the looser the more the mesh has changed its shape. Bodies over the hierarchy, and
-  /// strategies that have run on them, must be made anew.
+  /// Refits the volumes to the same triangles after vertices have moved: leaves by the published
+  /// construction, parents around their children (vandenbergen1997efficient). O(n). The more the
+  /// mesh has changed its shape, the looser the volumes. Bodies over the hierarchy, and strategies
+  /// that have run on them, must be constructed anew.
   void refit(const TriangleMesh& mesh) {
     Fitting<V> fitting;
     for (std::size_t i = nodes_.size(); i-- > 0;) {
@@ -85,11 +85,11 @@ class Hierarchy {
   std::size_t size() const { return nodes_.size(); }
   bool is_leaf(std::uint32_t node) const { return nodes_[node].count > 0; }
   const Node& node(std::uint32_t node) const { return nodes_[node]; }
-  /// The most children that a node has, at least 2.
+  /// The largest number of children of a node, at least 2.
   std::uint32_t fan_out() const { return fan_out_; }
-  /// The number of a node's group of siblings, below `sibling_groups()`; the root's is 0.
+  /// The index of a node's group of siblings, below `sibling_groups()`; the root's is 0.
   std::uint32_t group(std::uint32_t node) const { return SiblingGroups(*this)(node); }
-  /// The same, to be stored where it is needed often; valid as long as the hierarchy.
+  /// The same as a function object, for use in loops; valid as long as the hierarchy.
   class SiblingGroups {
    public:
     explicit SiblingGroups(const Hierarchy& hierarchy)
@@ -108,15 +108,15 @@ class Hierarchy {
   struct Above {
     std::uint32_t parent;
     std::uint32_t first, count;  ///< the siblings
-    /// The least size of the parent and all above it. Of two nodes that make a pair, the one for
-    /// which this is less has the parent that was descended last; b's where they are equal.
+    /// The smallest size among the parent and its ancestors. In a pair of nodes, the one for which
+    /// this is smaller has the parent that was descended last; node b where they are equal.
     typename V::scalar least;
   };
   const Above& above(std::uint32_t node) const { return above_[group(node)]; }
   const Above& above_group(std::uint32_t group) const { return above_[group]; }
   const V& volume(std::uint32_t node) const { return volumes_[node]; }
   const V* volumes() const { return volumes_.data(); }
-  /// The triangle at an index within a leaf's range.
+  /// The mesh's triangle at an index in a leaf's range of primitives.
   std::uint32_t primitive(std::uint32_t index) const { return primitives_[index]; }
   std::size_t primitives() const { return primitives_.size(); }
   const HierarchyExtent& extent() const { return extent_; }
@@ -137,7 +137,7 @@ class Hierarchy {
     }
   }
 
-  /// In a binary tree siblings are 2k - 1 and 2k.
+  /// Numbers the groups of siblings. In a binary tree siblings are nodes 2k - 1 and 2k.
   void number_siblings() {
     std::uint32_t groups = 1;
     bool binary = true;
@@ -153,7 +153,7 @@ class Hierarchy {
       }
   }
 
-  /// Fills in what is above each node, parents first.
+  /// Computes `above_`, parents first.
   void look_up() {
     above_[0] = {0, 0, 1, std::numeric_limits<typename V::scalar>::infinity()};
     for (std::uint32_t i = 0; i < nodes_.size(); ++i)
@@ -188,7 +188,7 @@ class Hierarchy {
     extent_ = {centre, radius, reach, nodes_.size(), static_cast<std::size_t>(leaves)};
   }
 
-  /// The range of primitives below each node: children come after their parent, leaf by leaf.
+  /// The range of primitives below each node. Children come after their parent in the topology.
   void ranges_of(const Topology& topology) {
     begin_.resize(nodes_.size()), end_.resize(nodes_.size());
     for (std::size_t i = nodes_.size(); i-- > 0;) {
@@ -205,7 +205,7 @@ class Hierarchy {
   }
 
   void take_smaller(std::size_t i, const V& other) {
-    // Written so that a size of NaN loses.
+    // Written so that the other volume wins where this size is NaN.
     if (!(size_of(volumes_[i]) <= size_of(other))) volumes_[i] = other;
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The extent of a hierarchy: all that bounds on a body's motion need of it, whatever its volumes.
+/// The extent of a hierarchy, whatever its volumes: all that bounds on a body's motion require.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@ namespace bvlab {
 
 /// Lengths are in units of the mesh, positions in its frame.
 struct HierarchyExtent {
-  Vec3<double> centre = Vec3<double>::Zero();  ///< of the mesh's box
-  double radius = 0;                           ///< no corner is farther from the centre
+  Vec3<double> centre = Vec3<double>::Zero();  ///< of the mesh's bounding box
+  double radius = 0;                           ///< no corner is farther than this from the centre
   double reach = 0;       ///< no vertex or volume is farther from the origin of the frame
   std::size_t nodes = 0;   ///< of the tree
   std::size_t leaves = 0;  ///< those that have no children

@@ -18,8 +18,8 @@ concept PlacedRelatively =
     std::same_as<PlacementOf<V>, Placement<Element<typename V::scalar>>> ||
     std::constructible_from<PlacementOf<V>, Pose, Vec3<double>, double, double>;
 
-/// The placement by a relative pose. `reach`, in units of the mesh: no vertex or volume of the
-/// posed body extends farther from its mesh's origin.
+/// The placement for a relative pose. `reach`, in units of the mesh, bounds the distance of all
+/// vertices and volumes of the posed body from its mesh's origin.
 template <PlacedRelatively V>
 PlacementOf<V> relative_placement(const RelativePose& pose, double reach) {
   using T = Element<typename V::scalar>;
@@ -37,7 +37,7 @@ PlacementOf<V> relative_placement(const RelativePose& pose, double reach) {
   }
 }
 
-/// A stored volume in its own mesh's frame, ready to be tested.
+/// A stored volume in its own mesh's frame, in the form that tests take.
 template <class V, class Volumes>
 [[gnu::always_inline]] inline decltype(auto) as_stored(const Volumes& volumes) {
   if constexpr (std::is_same_v<Posed<V>, V>)

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Bottom-up, as the talk builds its sphere tree: clusters merge with the neighbour with which they
-/// make the smallest cluster, until one is left.
+/// Builds a topology bottom up by clustering, as the talk (li1998incremental) builds its sphere
+/// tree: a cluster merges with the neighbour of smallest union, until one is left.
 ///
-/// Locally-ordered clustering (meister2018parallel): clusters are kept in Morton order, each looks
-/// for its partner among `radius` neighbours on either side, and pairs that choose each other
-/// merge. O(n radius) instead of the O(n^2) of the exact greedy rule, on equal costs, too. Threads
-/// share the search for partners, which is nearly all; the topology is the same for any number of
-/// them.
+/// Locally-ordered clustering (meister2018parallel): clusters are kept in Morton order, each finds
+/// its partner among `radius` neighbours on either side, and pairs that choose each other merge.
+/// O(n radius), also on equal costs, instead of the O(n^2) of the exact greedy rule. Threads share
+/// the search for partners, which is nearly all of the work; the topology does not depend on their
+/// number.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -24,7 +24,7 @@ namespace bvlab {
 
 struct BottomUp {
   std::uint32_t leaf_size = 1;  ///< the most triangles in a leaf
-  std::uint32_t radius = 16;    ///< neighbours looked at on either side
+  std::uint32_t radius = 16;    ///< neighbours examined on either side
 
   Topology operator()(const TriangleMesh& mesh) const;
   Topology operator()(const TriangleMesh& mesh, Threads& threads) const;
@@ -61,9 +61,9 @@ class Clustering {
   struct Children {
     std::uint32_t left = 0, right = 0;
   };
-  /// Fewer clusters than this take less time than a thread takes to wake.
+  /// Below this many clusters, waking a thread takes longer than the search.
   static constexpr std::size_t worth_sharing = 256;
-  /// At least one cluster in so many merges in a round, so that n clusters take O(log n) rounds.
+  /// At least one cluster in this many merges per round, so that n clusters take O(log n) rounds.
   static constexpr std::size_t fewest_mutual = 64;
 
   double cost(std::uint32_t i, std::uint32_t j) const {
@@ -71,8 +71,8 @@ class Clustering {
     return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
   }
 
-  /// Clusters are looked at by their places among those active. In each range the order in which
-  /// neighbours are compared is that of all, so that of equal costs the same is chosen.
+  /// One round of merges. Clusters are numbered by their position in `active_`. Every range
+  /// compares neighbours in the same order, so that ties are broken alike on any number of threads.
   void merge_round(Threads& threads) {
     const std::size_t n = active_.size(), radius = std::max(1u, options_.radius);
     std::vector<std::size_t> partner(n, n);
@@ -81,7 +81,7 @@ class Clustering {
       if (partner[i] == n || c < least[i]) least[i] = c, partner[i] = j;
     };
     threads.share_out(n, worth_sharing, [&](std::size_t begin, std::size_t end, std::size_t) {
-      // Those before the range are another's, but neighbours of its first.
+      // Clusters before the range belong to another thread, but neighbour the range's first.
       for (std::size_t i = begin - std::min(begin, radius); i < begin; ++i)
         for (std::size_t j = begin; j < std::min(end, i + radius + 1); ++j)
           propose(j, i, cost(active_[i], active_[j]));
@@ -107,9 +107,9 @@ class Clustering {
     active_ = std::move(next);
   }
 
-  /// Where equal costs (or costs that fall from one to the next) let hardly anybody choose each
-  /// other, as among identical triangles, those that are left pair in order, each with the nearest
-  /// of the free that cost it least. One in 4 radius + 2 clusters finds a partner so, at the least.
+  /// Where equal costs (or costs that fall from one cluster to the next) leave few mutual choices,
+  /// as among identical triangles: the rest pair in order, each with the nearest free cluster of
+  /// least cost. At least one in 4 radius + 2 clusters finds a partner this way.
   void pair_more(std::vector<std::size_t>& partner, const std::vector<double>& least) const {
     const std::size_t n = active_.size(), radius = std::max(1u, options_.radius);
     const auto pair = [&](std::size_t i, std::size_t j) { partner[i] = j, partner[j] = i; };
@@ -128,7 +128,7 @@ class Clustering {
         if (j < n) pair(i, j), paired[i] = paired[j] = true;
       }
     }
-    // Who found nobody stays as it is, whoever its partner was.
+    // A cluster without a partner is kept unmerged, whatever it had chosen.
     for (std::size_t i = 0; i < n; ++i)
       if (!paired[i]) partner[i] = i;
   }

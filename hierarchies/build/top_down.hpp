@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Top-down: split the triangles by their centroids along an axis, and again, down to leaves.
-/// O(n log n). Threads share subtrees, the first splits are one's alone: 13 levels of 8000
-/// triangles take 7 on two threads. The topology is the same for any number of them.
+/// Builds a topology top down, by splitting triangles by their centroids along an axis. O(n log n).
+/// Threads share subtrees but not the first splits: the 13 levels over 8000 triangles take two
+/// threads as long as 7 take one. The topology does not depend on the number of threads.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -20,12 +20,12 @@
 
 namespace bvlab {
 
-/// Along which direction to split: the longest side of the centroids' box, or the direction in
+/// The direction of a split: the longest side of the box of the centroids, or the direction in
 /// which they spread most (gottschalk1996obbtree).
 enum class SplitAxis { longest, principal };
 
-/// Where: equal counts on both sides, the mean of the centroids, or the least expected cost by the
-/// surface-area heuristic over 32 bins (goldsmith1987automatic, wald2007fast).
+/// The place of a split: equal counts, the mean of the centroids, the middle of their extent, or
+/// the least cost by the surface-area heuristic in 32 bins (goldsmith1987automatic, wald2007fast).
 enum class SplitAt { median, mean, middle, surface_area };
 
 struct TopDown {
@@ -39,8 +39,8 @@ struct TopDown {
 
 namespace detail {
 
-/// What is sorted of a triangle: its centroid and its number in the mesh (exact in a double). Four
-/// numbers are loaded where three are meant; the fourth is not looked at.
+/// The sort item of a triangle: its centroid and its index in the mesh (exact in a double). A
+/// centroid is loaded as four numbers, of which the fourth is ignored.
 struct CentroidOf {
   static constexpr bool has_box = false;
   static constexpr std::size_t centroid_at = 0;
@@ -51,7 +51,7 @@ struct CentroidOf {
     numbers = {c[0], c[1], c[2], static_cast<double>(i)};
   }
 };
-/// The same behind the corners of its box.
+/// The same, preceded by the lower and upper corner of the triangle's box.
 struct BoxOf {
   static constexpr bool has_box = true;
   static constexpr std::size_t lo_at = 0, hi_at = 3, centroid_at = 6;
@@ -64,7 +64,7 @@ struct BoxOf {
   }
 };
 
-/// Sorts items in place, not their numbers: a range's lie side by side, however deep it is.
+/// Partitions the items themselves, not indices: a range is contiguous in memory at any depth.
 template <class Item>
 class Splitter {
  public:
@@ -90,7 +90,7 @@ class Splitter {
   static constexpr double infinite = std::numeric_limits<double>::infinity();
   using Nodes = std::vector<Topology::Node>;
   using Four = Eigen::Array4d;
-  /// How far the centroids of a range reach along each axis.
+  /// The bounding box of a range's centroids.
   struct Extent {
     Four lo = Four::Constant(infinite), hi = Four::Constant(-infinite);
 
@@ -102,12 +102,12 @@ class Splitter {
     Topology::Node node;
     Extent extent;
   };
-  /// Below this a thread takes longer to wake than a subtree does.
+  /// Below this many triangles, waking a thread takes longer than a subtree.
   static constexpr std::uint32_t worth_sharing = 1024, subtree_of_one = 256;
 
   bool is_leaf(std::uint32_t size) const { return size <= std::max(1u, options_.leaf_size); }
 
-  /// What is below a range of the items, the left half first; node 0 is the range itself.
+  /// The subtree over a range of the items, depth first, left child first; node 0 is its root.
   Nodes subtree(const Range& range) {
     Nodes nodes;
     nodes.reserve(2 * std::size_t{range.node.count} / std::max(1u, options_.leaf_size / 4));
@@ -128,11 +128,11 @@ class Splitter {
     return nodes;
   }
 
-  /// A range, split level by level until one thread does what is below it.
+  /// A range; large ones are split level by level, the rest become one thread's subtree.
   struct Part {
     Range range;
-    std::uint32_t child = 0;  ///< the first of two parts; 0 where there are none
-    Nodes below;              ///< its subtree, where there are none
+    std::uint32_t child = 0;  ///< index of the first of two parts; 0 if unsplit
+    Nodes below;              ///< the subtree of an unsplit part
   };
   Nodes subtrees(const Range& range, Threads& threads) {
     std::vector<Part> parts{{range, 0, {}}};
@@ -153,7 +153,7 @@ class Splitter {
           parts.push_back({right, 0, {}});
         }
     }
-    // In the order in which one thread would have come to them.
+    // Concatenate the parts in the order that one thread would give.
     Nodes nodes;
     nodes.reserve(2 * std::size_t{range.node.count});
     nodes.push_back(range.node);
@@ -191,7 +191,7 @@ class Splitter {
   struct Halves {
     Range left{{0, 0}, {}}, right{{0, 0}, {}};
   };
-  /// Orders the range so that its first part goes to the left child. Neither part is empty.
+  /// Partitions the range for the two children. Neither part is empty.
   Halves split(const Range& range) {
     const Vec3<double> sides = (range.extent.hi - range.extent.lo).template head<3>();
     Eigen::Index longest = 0;
@@ -209,7 +209,7 @@ class Splitter {
   }
   Items items(const Topology::Node& node) { return Items(items_).subspan(node.first, node.count); }
 
-  /// The keys are between `low` and `high`.
+  /// All keys are between `low` and `high`.
   template <class Key>
   Halves split(const Topology::Node& node, const Key& key, double low, double high) {
     const Items range = items(node);
@@ -235,7 +235,7 @@ class Splitter {
             {{node.first + count, node.count - count}, right_extent}};
   }
 
-  /// std::partition, with the extents of both parts: each item is read once.
+  /// As std::partition, and computes the extents of both parts: each item is read once.
   template <class IsLeft>
   static std::size_t partition(Items range, const IsLeft& is_left, Extent& left, Extent& right) {
     auto first = range.begin(), last = range.end();
@@ -268,7 +268,7 @@ class Splitter {
   }
   static double index(const Item& item) { return item.numbers[Item::centroid_at + 3]; }
 
-  /// `sides` are those of the centroids' box.
+  /// The principal axis of the centroids; `sides` are those of their box.
   static Vec3<double> principal(Items range, const Vec3<double>& sides, Eigen::Index longest) {
     Vec3<double> along_box = Vec3<double>::Unit(longest);
     const double scale = sides.norm();
@@ -284,7 +284,7 @@ class Splitter {
     return solver.info() == Eigen::Success ? Vec3<double>(solver.eigenvectors().col(2)) : along_box;
   }
 
-  /// The triangles whose centroids lie in one part of the range.
+  /// The box and number of the triangles with centroids in one part of the range.
   struct Bin {
     Four lo = Four::Constant(infinite), hi = Four::Constant(-infinite);
     std::size_t count = 0;
@@ -292,7 +292,7 @@ class Splitter {
     void add(const Bin& other) {
       lo = lo.min(other.lo), hi = hi.max(other.hi), count += other.count;
     }
-    /// (area x count) / 2.
+    /// Half the surface area, times the count.
     double cost() const {
       if (count == 0) return 0;
       const Four d = hi - lo;
@@ -300,7 +300,7 @@ class Splitter {
     }
   };
 
-  /// The cut between bins with the least (area x count) summed over both sides.
+  /// The cut between bins with the least sum of (area x count) over both sides.
   template <class Key>
   static double cheapest_cut(Items range, const Key& key, double low, double high) {
     if constexpr (Item::has_box) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Which triangles stand together: a binary tree without volumes, as a builder leaves it. Any
-/// volume can be fitted to any topology.
+/// A binary tree over a mesh's triangles, without volumes: the result of a builder. Any volume can
+/// be fitted to any topology.
 #pragma once
 
 #include <cstdint>

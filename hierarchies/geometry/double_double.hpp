@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A number kept as the unevaluated sum of two doubles: about 104 correct binary digits, so long
-/// as nothing over- or underflows. Sums and products after [dekker1971floating]; each operation is
-/// right to 2^-102 of its result for products and quotients, and of the larger operand for sums.
+/// A number as the unevaluated sum of two doubles: about 104 correct binary digits, unless
+/// something over- or underflows (dekker1971floating). The relative error of an operation is at
+/// most 2^-102 of the result for products and quotients, of the larger operand for sums.
 #pragma once
 
 #include <cmath>
@@ -9,18 +9,18 @@
 namespace bvlab {
 
 struct DoubleDouble {
-  double high = 0, low = 0;  ///< |low| at most half a last digit of high
+  double high = 0, low = 0;  ///< |low| is at most half a unit in the last place of high
 
   constexpr DoubleDouble() = default;
   constexpr DoubleDouble(double x) : high(x) {}
   constexpr DoubleDouble(double h, double l) : high(h), low(l) {}
 
-  /// a + b without error.
+  /// a + b, exactly.
   static DoubleDouble sum(double a, double b) {
     const double s = a + b, part = s - a;
     return {s, (a - (s - part)) + (b - part)};
   }
-  /// a * b without error.
+  /// a * b, exactly.
   static DoubleDouble product(double a, double b) {
     const double p = a * b;
     return {p, std::fma(a, b, -p)};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The smallest ball around points, as an LP-type problem: at most four points support it; while a
-/// point lies outside, the farthest enters the support and a new basis is found among the five
-/// (Gaertner, gartner1999miniball). Each step makes the ball larger, so it ends; in practice after
-/// about ten passes over the points.
+/// The smallest enclosing sphere of points, as an LP-type problem: at most four points support it;
+/// while a point lies outside, the farthest one enters the support and a new basis is chosen among
+/// the five (gartner1999miniball). Each step enlarges the sphere, so it terminates; in practice
+/// after about ten passes over the points.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,13 +18,13 @@ namespace bvlab {
 
 struct Ball {
   Vec3<double> centre = Vec3<double>::Zero();
-  double squared_radius = -1;  ///< negative: no point yet
+  double squared_radius = -1;  ///< negative where there are no points
 };
 
 namespace detail {
 
-/// The smallest ball with all the points (at most four) on its boundary; nothing of use where they
-/// are affinely dependent, which `basis_ball` notices because that ball misses a point.
+/// The smallest sphere with all the points (at most four) on its boundary. Meaningless where they
+/// are affinely dependent; the caller notices, since that sphere misses a point.
 // Templates, so that only those who call them compile them.
 template <class = double>
 Ball circumscribed(std::span<const Vec3<double>> points) {
@@ -48,13 +48,13 @@ Ball circumscribed(std::span<const Vec3<double>> points) {
 
 }  // namespace detail
 
-/// The smallest ball around the points, up to rounding: its centre is what counts, and a caller
-/// who needs enclosure takes the largest distance from it. Any number of points, repeated and
-/// dependent ones included; none gives a negative squared radius.
+/// The smallest sphere around the points, up to rounding: a caller who needs enclosure takes the
+/// largest distance from its centre as the radius. Points may be repeated or dependent; no points
+/// give a negative squared radius.
 template <class = double>
 Ball enclosing_sphere(std::span<const Vec3<double>> points) {
   if (points.empty()) return {};
-  std::array<Vec3<double>, 5> support;  // the last one is the newcomer
+  std::array<Vec3<double>, 5> support;  // the last one is the entering point
   std::size_t supports = 1;
   support[0] = points[0];
   Ball ball{points[0], 0};
@@ -65,7 +65,7 @@ Ball enclosing_sphere(std::span<const Vec3<double>> points) {
       if (const double d = (p - ball.centre).squaredNorm(); d > largest) largest = d, farthest = &p;
     if (!farthest) break;
     support[supports] = *farthest;
-    // The smallest ball through the newcomer and some of the others that contains them all.
+    // The smallest sphere through the entering point and some of the support that contains all.
     Ball best;
     unsigned chosen = 0;
     for (unsigned subset = 0; subset < 1u << supports; ++subset) {
@@ -84,7 +84,7 @@ Ball enclosing_sphere(std::span<const Vec3<double>> points) {
           });
       if (holds_all) best = candidate, chosen = subset;
     }
-    // Rounding may leave no ball, or none that is larger: then this one is as good as it gets.
+    // Rounding may leave no larger sphere: then this one is as good as possible.
     if (!(best.squared_radius > ball.squared_radius)) break;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < supports; ++i)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A std::vector for large arrays that are written before they are read: what has no constructor is
-/// left as it is when the vector grows, so that no page is touched twice.
-/// What is very large comes in whole huge pages.
+/// A std::vector for large arrays that are written before they are read: growing does not
+/// initialise elements without a constructor, so that no page is touched twice. Very large arrays
+/// are allocated in whole huge pages.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Places along a Morton curve (a Z-order curve): points that are near each other mostly have codes
-/// that are.
+/// Morton codes (positions along a Z-order curve): points that are near each other mostly have
+/// codes that are near, too.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -13,7 +13,7 @@ namespace bvlab {
 
 namespace detail {
 
-/// 21 bits, each followed by two that are zero.
+/// Spreads 21 bits: each is followed by two zero bits.
 constexpr std::uint64_t spread_bits(std::uint64_t bits) {
   bits = (bits | bits << 32) & 0x001f00000000ffff;
   bits = (bits | bits << 16) & 0x001f0000ff0000ff;
@@ -24,15 +24,15 @@ constexpr std::uint64_t spread_bits(std::uint64_t bits) {
 
 }  // namespace detail
 
-/// The cell of `point` in a grid of 2^21 cells a side over `all`, its three numbers bit by bit in
-/// turn. Points outside have the codes of cells at the border.
+/// The Morton code of `point`: its cell in a grid of 2^21 cells a side over `all`, the three
+/// coordinates interleaved bit by bit. Points outside get cells at the border.
 inline std::uint64_t morton_code(const Vec3<double>& point, const Eigen::AlignedBox3d& all) {
   constexpr double last = (1 << 21) - 1;
   std::uint64_t code = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double length = all.max()[axis] - all.min()[axis];
     const double at = (point[axis] - all.min()[axis]) / length;
-    // Not where the box is flat, or too long for a number.
+    // Cell 0 where the box is flat, or so long that its length overflows.
     const auto cell = at > 0 ? static_cast<std::uint64_t>(std::min(at, 1.0) * last) : 0;
     code |= detail::spread_bits(cell) << axis;
   }

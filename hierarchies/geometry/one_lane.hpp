@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Batches without vector registers: the lanes of one are computed one after the other. In place of
-/// std::experimental::simd where BVLAB_ONE_LANE is defined, so that a measurement shows what is
-/// algorithm and what is width; only what the engine uses of it. Compile with
-/// -fno-tree-vectorize -fno-tree-slp-vectorize, or the compiler fills registers again.
+/// Batches without vector registers: lanes are computed one after the other. Replaces
+/// std::experimental::simd where BVLAB_ONE_LANE is defined, so that a measurement can tell the
+/// effect of the algorithm from that of SIMD; it has only the members that the engine uses. Compile
+/// with -fno-tree-vectorize -fno-tree-slp-vectorize, or the compiler vectorises it again.
 #pragma once
 
 #include <algorithm>
@@ -51,7 +51,7 @@ class simd_mask {
 
   bool operator[](std::size_t i) const { return lane_[i]; }
   bool& operator[](std::size_t i) { return lane_[i]; }
-  /// Bit i is lane i's.
+  /// Bit i is set where lane i is true.
   std::uint64_t bits() const {
     std::uint64_t result = 0;
     each_lane<W>([&](auto i) { result |= static_cast<std::uint64_t>(lane_[i]) << i; });
@@ -183,7 +183,7 @@ template <class T, class Abi>
 simd<T, Abi> sqrt(const simd<T, Abi>& x) {
   return simd<T, Abi>::of([&](auto i) { return std::sqrt(x[i]); });
 }
-/// Where one is NaN, the second.
+/// Lane by lane; where an operand is NaN, the result is `b`.
 template <class T, class Abi>
 simd<T, Abi> min(const simd<T, Abi>& a, const simd<T, Abi>& b) {
   return simd<T, Abi>::of([&](auto i) { return a[i] < b[i] ? a[i] : b[i]; });
@@ -206,7 +206,7 @@ inline constexpr bool is_simd_v = false;
 template <class T, class Abi>
 inline constexpr bool is_simd_v<simd<T, Abi>> = true;
 
-/// `where(mask, x) = y` assigns the lanes whose bits are set.
+/// `where(mask, x) = y` assigns y to the lanes of x that are set in the mask.
 template <class T, class Abi>
 class Where {
  public:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Memory that is about to be written for the first time, asked of the system beforehand: its pages
-/// cost two thirds of what they cost one by one, as they are touched, and huge pages a third.
-/// Nothing but time depends on any of it, and elsewhere than on Linux nothing is done.
+/// Asks the system for memory pages before they are first written: in bulk they cost two thirds of
+/// the page faults one by one, and huge pages a third. Only time depends on this; on systems other
+/// than Linux nothing is done.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@
 namespace bvlab::pages {
 
 inline constexpr std::size_t small = 4096, huge = std::size_t{1} << 21;
-/// Where a single huge page that comes slowly (`bring`) does not cost more than all others save.
+/// From this size on, huge pages pay even if the first one turns out to be slow (see `bring`).
 inline constexpr std::size_t worth_huge = 8 * huge;
 
-/// Whether the memory from `begin` to `end`, which is nobody else's, shall come in huge pages.
+/// Sets whether the memory from `begin` to `end`, which must hold nothing else, uses huge pages.
 inline void advise([[maybe_unused]] void* begin, [[maybe_unused]] void* end,
                    [[maybe_unused]] bool in_huge_pages) {
 #if defined(__linux__) && defined(MADV_HUGEPAGE) && defined(MADV_NOHUGEPAGE)
@@ -29,9 +29,9 @@ inline void advise([[maybe_unused]] void* begin, [[maybe_unused]] void* end,
 #endif
 }
 
-/// Has the system provide what lies from `begin` to `end` now. False where a huge page took as long
-/// as two times its small ones: on a virtual machine, the host may not have touched large pieces of
-/// memory yet, or the system may have had to make room.
+/// Has the system populate the pages from `begin` to `end` now. False where huge pages took about
+/// twice as long as small ones (1 ms each): on a virtual machine the host may not have backed the
+/// memory yet, or the system had to make room.
 inline bool bring([[maybe_unused]] void* begin, [[maybe_unused]] void* end) {
 #if defined(__linux__) && defined(MADV_POPULATE_WRITE)
   const auto first = (reinterpret_cast<std::uintptr_t>(begin) + small - 1) / small * small;

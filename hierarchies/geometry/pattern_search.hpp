@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A search that needs values alone (hooke1961direct): steps this way and that while they help,
-/// halved where none does. Ends after twenty rounds or four halvings.
+/// Pattern search, a minimisation that needs no derivatives (hooke1961direct): tries steps while
+/// they help, and halves the step where none does. Ends after twenty rounds or four halvings.
 #pragma once
 
 namespace bvlab {
 
-/// `gained(step)` tries steps of that length, relative to whatever is searched, and says whether
-/// one was taken.
+/// `gained(step)` tries steps of that relative length, and returns whether one was an
+/// improvement.
 template <class Gained>
 void pattern_search(Gained&& gained) {
   constexpr int halvings = 4, most_rounds = 20;

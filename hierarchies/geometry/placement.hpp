@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A pose made ready for bounding volumes over T: rounded to T, relative to an origin chosen near
-/// the bodies, and accompanied by a bound on everything that rounding can have moved.
+/// A pose prepared for bounding volumes over T: rounded to T, relative to an origin chosen near the
+/// bodies, with a bound on the position error that all this rounding can cause.
 ///
-/// Let w = fl64(Rv + t) be a vertex as it stands in the world (Pose::operator()), o the origin,
+/// Let w = fl64(Rv + t) be the position of a vertex in the world (Pose), o the origin,
 /// u = 2^-53, and let a volume in the mesh's frame be given by reference points c in T with
 /// |v|, |c| <= reach. With p = fl_T(fl_T(R) c + fl_T(t - o)) as `moved` computes it, and
 /// e = unit roundoff of T,
@@ -10,10 +10,10 @@
 ///   |w - o - p| <= |w - (Rv + t)| + |R (v - c)| + |R c - Q c| + |Q c + t - o - p|
 ///               <= 8u (reach + |t|) + stretch |v - c| + |R - Q| reach + 10e (reach + |t - o|):
 ///
-/// - Q is R where R is orthonormal to 32u, as far as that can be told in float64; else the
-///   orthonormal matrix next to it, by Newton's iteration for the polar factor (higham1986polar):
-///   a product of a thousand rotations has drifted, and volumes with axes rely on right angles.
-///   where R is off by more than 0.01, `slack` is infinite, and nothing is told apart;
+/// - Q is R where R is orthonormal to 32u, as far as float64 can show; else the
+///   nearest orthonormal matrix, by Newton's iteration for the polar factor (higham1986polar):
+///   a product of a thousand rotations drifts, and volumes with axes rely on right angles.
+///   Where R is off by more than 0.01, `slack` is infinite, and no volumes are found disjoint;
 /// - each component of w is a sum of four products and terms, off by at most
 ///   gamma_4 (|R_i| |v| + |t_i|); over three components and with |R_i| <= 1.01 that is less than
 ///   8u (|v| + |t|);
@@ -25,8 +25,8 @@
 /// roundings in a component, none larger than e |Q_i| |d|, and 4 sqrt(3) < 7.
 ///
 /// `slack` is the sum of all terms but the second, plus a length whose square is still a normal
-/// number of T, which pays for every underflow in what is computed from posed volumes. Lengths
-/// therefore become `length * stretch + slack`, and that is what `grown` gives, rounded safely.
+/// number of T, which covers every underflow in tests of posed volumes. A length therefore becomes
+/// `length * stretch + slack`, which is what `grown` computes, safely rounded.
 #pragma once
 
 #include <cmath>
@@ -43,13 +43,13 @@ struct Placement {
   Mat3<T> rotation = Mat3<T>::Identity();
   Vec3<T> translation = Vec3<T>::Zero();
   T stretch = 1;  ///< at least the 2-norm of the rotation, with room for two roundings
-  T slack = 0;    ///< in units of the mesh
+  T slack = 0;    ///< position error, in units of the mesh
   T tilt = 0;     ///< at least |R d - directed(d)| for a unit vector d
 
   Placement() = default;
 
-  /// `reach`: the largest distance of any vertex and any volume's reference point from the mesh's
-  /// own origin.
+  /// `origin` is the common origin in the world; `reach`, in units of the mesh, is the largest
+  /// distance of any vertex or reference point from the mesh's own origin.
   Placement(const Pose& pose, const Vec3<double>& origin, double reach) {
     constexpr double u = unit_roundoff<double>, e = unit_roundoff<T>;
     const Vec3<double> offset = pose.translation - origin;
@@ -74,8 +74,8 @@ struct Placement {
       columns_[k] = Quad{rotation(0, k), rotation(1, k), rotation(2, k), 0};
   }
 
-  /// The same for a rotation that is known to be orthonormal to 128u (float volumes only: theirs is
-  /// the larger rounding by far), and `error bound` beside what is said above.
+  /// The same for a rotation that is known to be orthonormal to 128u, with `error_bound` added to
+  /// `slack`. For float volumes only, whose own rounding is far larger than 128u.
   struct Orthonormal {};
   Placement(Orthonormal, const Mat3<double>& exactly, const Vec3<double>& offset, double reach,
             double error_bound) {
@@ -92,17 +92,17 @@ struct Placement {
       columns_[k] = Quad{rotation(0, k), rotation(1, k), rotation(2, k), 0};
   }
 
-  /// The point c, given in the mesh's frame, relative to the origin. S is T or a batch of it.
+  /// The point c of the mesh's frame, posed relative to the origin. S is T or a batch of T.
   template <Scalar S>
   Vec3<S> moved(const Vec3<S>& c) const {
     return directed(c) + translation.template cast<S>();
   }
 
-  /// The direction d, given in the mesh's frame.
+  /// The direction d of the mesh's frame, rotated.
   template <Scalar S>
   Vec3<S> directed(const Vec3<S>& d) const {
     if constexpr (std::is_same_v<S, T>) {
-      // The same sums, all three at once.
+      // The same sums, all three components at once.
       const Quad sum = (columns_[0] * d[0] + columns_[1] * d[1]) + columns_[2] * d[2];
       return {sum[0], sum[1], sum[2]};
     }
@@ -112,7 +112,7 @@ struct Placement {
     return result;
   }
 
-  /// A length that still suffices once its ends have been moved.
+  /// `length` enlarged to cover the stretch and the position error of posing.
   template <Scalar S>
   S grown(const S& length) const {
     return length * S(stretch) + S(slack);
@@ -124,8 +124,8 @@ struct Placement {
 
   static constexpr double sound_defect = 32 * unit_roundoff<double>;
 
-  /// Each step squares the defect, down to less than 32u, which is rounding. What is no rotation by
-  /// far is replaced, lest it make numbers that are none.
+  /// The nearest orthonormal matrix. Each step squares the defect, down to rounding, below 32u. A
+  /// matrix far from any rotation is replaced by the identity, to avoid NaN.
   static Mat3<double> orthonormal(Mat3<double> m, double defect) {
     if (!(defect <= 0.01)) return Mat3<double>::Identity();
     for (int step = 0; step < 8 && !(defect <= sound_defect); ++step) {

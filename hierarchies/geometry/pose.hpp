@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where a body stands: a rotation and a translation, object to world, in double precision.
+/// The pose of a body: a rotation and a translation, object to world, in double precision.
 #pragma once
 
 #include <algorithm>
@@ -15,11 +15,11 @@ struct Pose {
   Mat3<double> rotation = Mat3<double>::Identity();  ///< orthonormal up to rounding
   Vec3<double> translation = Vec3<double>::Zero();   ///< in units of the mesh
 
-  /// The vertex `v` as it stands in the world.
+  /// The position of vertex `v` in the world.
   ///
-  /// This is the one place in which a vertex is moved, and its order of operations is part of the
-  /// definition of every exact answer: ((R_i0 x + R_i1 y) + R_i2 z) + t_i, each step rounded to
-  /// float64, nothing contracted (the build sets -ffp-contract=off).
+  /// No other code moves a vertex, and the order of operations is part of the definition of every
+  /// exact answer: ((R_i0 x + R_i1 y) + R_i2 z) + t_i, each step rounded to float64, without
+  /// contraction to fused operations (the build sets -ffp-contract=off).
   Vec3<double> operator()(const Vec3<double>& v) const {
     Vec3<double> world;
     for (int i = 0; i < 3; ++i)
@@ -27,7 +27,7 @@ struct Pose {
                  translation[i];
     return world;
   }
-  /// The corners of a triangle.
+  /// The positions of a triangle's corners in the world.
   std::array<Vec3<double>, 3> operator()(const std::array<Vec3<double>, 3>& corners) const {
     return {(*this)(corners[0]), (*this)(corners[1]), (*this)(corners[2])};
   }
@@ -37,8 +37,8 @@ struct Pose {
   }
 };
 
-/// The pose with the given translation and rotation; the quaternion (w, x, y, z) need not be of
-/// unit length. Nothing where the quaternion is zero or a number is not finite.
+/// The pose with this translation and the rotation of the quaternion (w, x, y, z), which need not
+/// be of unit length. Nothing where the quaternion is zero or a number is not finite.
 inline std::optional<Pose> pose_from(const Vec3<double>& translation, double w, double x, double y,
                                      double z) {
   const double largest = std::max({std::abs(w), std::abs(x), std::abs(y), std::abs(z)});
@@ -46,7 +46,7 @@ inline std::optional<Pose> pose_from(const Vec3<double>& translation, double w, 
                       std::isfinite(z) && std::isfinite(translation[0]) &&
                       std::isfinite(translation[1]) && std::isfinite(translation[2]);
   if (!finite || largest == 0) return std::nullopt;
-  // A power of two changes no digit, and keeps the squares from under- and overflowing.
+  // Scaling by a power of two is exact, and keeps the squares from over- or underflowing.
   if (largest < 0x1p-301 || largest >= 0x1p300) {
     int exponent = 0;
     std::frexp(largest, &exponent);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// On which side a point lies: the exact signs of determinants of float64 coordinates.
+/// Exact orientation predicates: the signs of determinants of float64 coordinates.
 ///
-/// A float64 filter with a derived bound decides nearly all calls; the rest are decided in
-/// integers, which hold every float64 exactly whatever its exponent, so nothing is ever refused.
-/// Cost: about 5 ns where the filter decides, 30 to 100 ns where it does not, microseconds where
-/// the magnitudes of the coordinates spread over hundreds of binary orders. [shewchuk1997adaptive]
+/// A float64 filter with a proved error bound decides nearly all calls; the rest are decided in
+/// integers, which represent every float64 exactly, so every finite input has an answer. Cost:
+/// about 5 ns where the filter decides, 30 to 100 ns where it does not, microseconds where the
+/// magnitudes of the coordinates span hundreds of binary orders (shewchuk1997adaptive).
 #pragma once
 
 #include <algorithm>
@@ -50,15 +50,15 @@ int wide_orientation(const double* a, const double* b, const double* c, int i, i
       .sign();
 }
 
-/// Float64 coordinates as 60-bit integers of one common unit, where they are such: a scaling, a
-/// conversion and a comparison each, and most of what a filter leaves open passes.
+/// Float64 coordinates as 60-bit integers of one common unit, if they are that (`exact`). Costs a
+/// scaling, a conversion and a comparison each, and holds for most calls that the filter leaves.
 template <int N>
 struct FixedPoint {
   std::int64_t at[N];
   bool exact;
 
   explicit FixedPoint(const double (&x)[N]) {
-    // As bits, magnitudes are in order, too.
+    // The bits of magnitudes are ordered as the magnitudes are.
     std::uint64_t largest = 0;
     for (int i = 0; i < N; ++i)
       largest = std::max(largest, std::bit_cast<std::uint64_t>(std::abs(x[i])));
@@ -74,14 +74,14 @@ struct FixedPoint {
       at[i] = static_cast<std::int64_t>(scaled);
       off |= static_cast<double>(at[i]) != scaled;
     }
-    // Scaled down (the largest is above 2^60), a number that is small enough has become 0, which
-    // looks like an integer: nothing but 0 may be one.
+    // Where the scale is below 1 (the largest is above 2^60), a small number may round to 0, which
+    // looks like an integer: only 0 itself may become 0.
     if (exponent > 1082)
       for (int i = 0; i < N; ++i) off |= at[i] == 0 && x[i] != 0;
     exact = off == 0;
   }
 
-  /// Of coordinates that follow each other as x, y, z.
+  /// Point i, where the coordinates are consecutive points x, y, z.
   std::array<std::int64_t, 3> point(int i) const {
     return {at[3 * i], at[3 * i + 1], at[3 * i + 2]};
   }
@@ -121,8 +121,8 @@ struct FixedNormal {
   }
 };
 
-/// Calls `f` with the number of limbs that coordinates of that number of binary digits need.
-/// Float64 spans 2^-1074 to 2^1024, so 33 limbs hold anything.
+/// Calls `f` with a number of limbs that suffices for coordinates of `bits` binary digits. Float64
+/// spans 2^-1074 to 2^1024, so 33 limbs always suffice.
 template <class F>
 int with_limbs(int bits, const F& f) {
   if (bits <= 2 * 64 - 3) return f(std::integral_constant<int, 2>{});
@@ -169,8 +169,8 @@ static_assert(33 * 64 - 3 >= 1074 + 1024);
 
 }  // namespace detail
 
-/// The sign of det [b-a, c-a, d-a]: 1 where d lies on that side of the plane a, b, c from which
-/// they turn counterclockwise, 0 where all four lie in one plane, else -1. Exact for finite
+/// The sign of det [b-a, c-a, d-a]: 1 where d is on the side of the plane a, b, c from which they
+/// appear counterclockwise, 0 where all four points are coplanar, else -1. Exact for finite
 /// coordinates.
 ///
 /// Filter: each of three differences carries one rounding (factor 1+u), each of the six triple
@@ -178,10 +178,10 @@ static_assert(33 * 64 - 3 >= 1074 + 1024);
 /// the last sum's own rounding changes no sign. In all that is at most 7u + O(u^2) of the sum P of
 /// the magnitudes of the six products, and P as computed is at most 7u + O(u^2) of itself too
 /// small, so that (7 + 56 u) u P bounds the error [shewchuk1997adaptive, orient3d's bound A].
-/// Range: differences of float64 never underflow. Each product is off by at most 2^-1075 more: a
-/// minor's two, which are multiplied by a difference below 2^340 (`reach`), and the three last
-/// ones; 2^-700 bounds the sum, in P too. What overflows makes P infinite or no number, and the
-/// question goes to the integers.
+/// Range: differences of float64 never underflow. Each product may be off by 2^-1075 more: the two
+/// of a minor, which are multiplied by a difference below 2^340 (`reach`), and the three last
+/// ones; 2^-700 bounds the sum, in P too. An overflow makes P infinite or NaN, and the integers
+/// decide.
 inline int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c,
                        const Vec3<double>& d) {
   constexpr double u = unit_roundoff<double>;
@@ -200,10 +200,10 @@ inline int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<
   return detail::exact_orientation(a, b, c, d);
 }
 
-/// The same in the plane of the coordinates i and j: 1 where a, b, c turn counterclockwise.
+/// The same in the plane of coordinates i and j: 1 where a, b, c are counterclockwise.
 /// Filter: (3 + 16 u) u times the magnitudes [shewchuk1997adaptive, orient2d's bound A], and
-/// 2^-1000 for the two products, which may underflow. Where one overflows, the magnitude is not
-/// below 2^1020.
+/// 2^-1000 for underflow of the two products. Where one overflows, the magnitude is not below
+/// 2^1020.
 inline int orientation(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c, int i,
                        int j) {
   constexpr double u = unit_roundoff<double>;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The directions in which points or a surface spread most and least: eigenvectors of the
-/// covariance, after gottschalk1996obbtree. O(n).
+/// Principal axes of points or of a surface: the eigenvectors of the covariance, in the order of
+/// decreasing spread (gottschalk1996obbtree). O(n).
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -16,8 +16,8 @@ namespace bvlab {
 
 namespace detail {
 
-/// Rows that are nearly orthonormal made so in long double, and rounded: each is off by u in length
-/// then, as volumes with axes rely on. Nothing where they are not nearly orthonormal.
+/// Nearly orthonormal rows, made orthonormal in long double and rounded, so that each is off by u
+/// in length, as volumes with axes require. Nothing where they are not nearly orthonormal.
 template <class = double>
 std::optional<Mat3<double>> orthonormalised(const Mat3<double>& rows) {
   using Wide = Eigen::Matrix<long double, 3, 1>;
@@ -36,7 +36,7 @@ std::optional<Mat3<double>> orthonormalised(const Mat3<double>& rows) {
   return result;
 }
 
-/// In rows, by decreasing spread; the identity where the covariance says nothing.
+/// The axes as rows, by decreasing spread; the identity where the covariance is degenerate.
 // Templates, so that only those who call them compile them.
 template <class = double>
 Mat3<double> axes_of(const Mat3<double>& covariance) {
@@ -48,7 +48,7 @@ Mat3<double> axes_of(const Mat3<double>& covariance) {
   return orthonormalised(axes).value_or(Mat3<double>::Identity());
 }
 
-/// The largest coordinate's distance from `origin`, to scale by: squares must not overflow.
+/// The largest coordinate difference to `origin`, to scale by: squares must not overflow.
 template <class Points>
 double extent_about(const Vec3<double>& origin, const Points& points) {
   double extent = 0;
@@ -58,7 +58,7 @@ double extent_about(const Vec3<double>& origin, const Points& points) {
 
 }  // namespace detail
 
-/// Of one point or more.
+/// The principal axes of points (one or more), as rows.
 template <class = double>
 Mat3<double> principal_axes(std::span<const Vec3<double>> points) {
   const Vec3<double> origin = points[0];
@@ -75,8 +75,8 @@ Mat3<double> principal_axes(std::span<const Vec3<double>> points) {
   return detail::axes_of(covariance);
 }
 
-/// Of the surface: the second moment of a triangle with corners p, q, r and mean m is
-/// area / 12 (9 mm' + pp' + qq' + rr'). Of the corners where the surface has no area.
+/// The principal axes of a surface, as rows: the second moment of a triangle with corners p, q, r
+/// and mean m is area / 12 (9 mm' + pp' + qq' + rr'). Those of the points where the area is 0.
 template <class = double>
 Mat3<double> principal_axes(std::span<const Vec3<double>> points,
                             std::span<const Triangle> triangles) {

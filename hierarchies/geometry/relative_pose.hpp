@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where one body stands as seen from another, and what that view can be off by.
+/// The pose of one body relative to another, and a bound on its error.
 ///
-/// Let w_a = fl64(R_a v + t_a) be a vertex of a as it stands in the world, likewise w_b, and u =
+/// Let w_a = fl64(R_a v + t_a) be a vertex of a in the world, w_b one of b, and u =
 /// 2^-53. Let Q_a, Q_b be matrices with |Q'Q - I| <= 32u next to the rotations (R itself where that
-/// is so, see Placement), and P_b the orthonormal matrix next to Q_b, |P_b - Q_b| <= 17u. The map
+/// is so, see Placement), and P_b the orthonormal matrix nearest Q_b, |P_b - Q_b| <= 17u. The map
 ///
 ///   x -> P_b' (x - t_b)
 ///
-/// moves nothing relative to anything else: two triangles of the world share a point where their
-/// images do, and are as far apart. It takes
+/// is rigid: two triangles of the world share a point exactly where their images do, and are as far
+/// apart. It takes
 ///
 ///   w_a  to within  8u (r_a + |t_a|) + |R_a - Q_a| r_a + 17u (r_a + |t_a - t_b|)
 ///        of  Q_b' Q_a v + Q_b' (t_a - t_b)           (|v| <= r_a, the reach of a),
 ///   w_b  to within  8u (r_b + |t_b|) + |R_b - Q_b| r_b + (17u + 32u) r_b   of  v.
 ///
-/// The product Q_b' Q_a is computed in float64 with three roundings of each product in a component
-/// at most, and the vector with four. As |Q| of moduli is at most 5/3, that is less than
-/// 9u (r_a + |t_a - t_b|) in all. `error bound` is at least the sum of everything,
-/// so that b can be taken to stand exactly where its mesh is given, and a within `error bound` of
-/// where rotation and translation put it. All of it is below 64u of the lengths: in float volumes
-/// it is lost beside their own rounding unless bodies are far from the origin of the world, as it
-/// should be, for then float64 has lost it too.
+/// The product Q_b' Q_a is computed in float64 with at most three roundings of each product in a
+/// component, and the vector with four. As |Q| of moduli is at most 5/3, that is less than 9u
+/// (r_a + |t_a - t_b|) in all. `error_bound` is at least the sum of all these errors, so that b
+/// may be taken to be exactly where its mesh is given, and a within `error_bound` of where
+/// rotation and translation put it. All of it is below 64u of the lengths: float volumes round
+/// much more, unless bodies are far from the origin of the world; but there float64 poses are as
+/// inexact.
 #pragma once
 
 #include <array>
@@ -32,11 +32,11 @@
 
 namespace bvlab {
 
-/// What there is to know of one body, once whenever it moves.
+/// The part of a relative pose that depends on one body; computed once per move.
 struct OrthonormalPose {
   using Four = Batch<double, 4>;
 
-  alignas(32) double rows[3][4] = {};  ///< of Q, orthonormal to 32u, and a zero: read as one
+  alignas(32) double rows[3][4] = {};  ///< of Q, orthonormal to 32u, each padded by 0
   Vec3<double> translation = Vec3<double>::Zero();
   double reach = 0;        ///< of the mesh, from its own origin
   double error_bound = 0;  ///< 8u (r + |t|) + |R - Q| r; infinite where R is off by more than 0.01
@@ -52,7 +52,7 @@ struct OrthonormalPose {
       keep(made_orthonormal(pose.rotation));
   }
 
-  /// Q' v, v by its coordinates; the last number is 0.
+  /// Q' v for v = (x, y, z); the fourth number is 0.
   [[gnu::always_inline]] Four transposed_times(double x, double y, double z) const {
     const auto row = [&](int i) { return Four(rows[i], stdx::vector_aligned); };
     return (row(0) * Four(x) + row(1) * Four(y)) + row(2) * Four(z);
@@ -69,7 +69,7 @@ struct OrthonormalPose {
   Mat3<double> made_orthonormal(const Mat3<double>& given) {
     Mat3<double> rotation = given;
     double left = squared_defect_of(rotation);
-    // As Placement does: each step of Newton's iteration squares the defect.
+    // As in Placement, each step of Newton's iteration squares the defect.
     if (left <= 1e-4)
       for (int step = 0; step < 8 && !(left <= sound); ++step) {
         rotation = towards_orthonormal(rotation);
@@ -95,13 +95,13 @@ struct OrthonormalPose {
   }
 };
 
-/// a as seen from b.
+/// The pose of body a in the frame of body b.
 struct RelativePose {
   using Four = OrthonormalPose::Four;
 
   std::array<Four, 3> column;  ///< of the rotation; the last number of each is 0
   Four translation;
-  double length;  ///< of the translation: the sum of its numbers, all taken positive
+  double length;  ///< 1-norm of the translation
   double error_bound;
 
   RelativePose(const OrthonormalPose& a, const OrthonormalPose& b) {

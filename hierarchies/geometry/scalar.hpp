@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The scalar `S` of a volume: float, double, or a SIMD batch of either.
+/// The scalar type `S` of a volume: float, double, or a SIMD batch of either.
 ///
-/// A batch holds W independent problems, one per lane. Code written over `S` uses `+ - * /`,
-/// `sqrt`, `min`, `max` and comparisons; a comparison gives `Mask<S>`, which is `bool` for one
-/// problem and one bit per lane for a batch.
+/// A batch holds W independent problems, one per lane. Code over `S` uses `+ - * /`, `sqrt`, `min`,
+/// `max` and comparisons; a comparison returns a `Mask<S>`: a `bool` for a scalar, one bit per lane
+/// for a batch.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,8 +20,8 @@
 #include <experimental/simd>
 #endif
 
-// Bounds on rounding, infinities and NaN are relied on. What clang does not tell of itself is
-// -funsafe-math-optimizations without the rest.
+// The error bounds need IEEE rounding, infinities and NaN. This catches all but clang's
+// -funsafe-math-optimizations alone, of which clang defines no macro.
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || \
     defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)
 #error "bvlab: answers are wrong under -ffast-math, -Ofast and what they stand for: compile without"
@@ -37,12 +37,12 @@ namespace stdx = vector_lanes;
 namespace stdx = std::experimental;
 #endif
 
-/// W values of type T in vector registers. Keep to one register (`native_width`): GCC 12 at -O3
-/// takes comparisons of sixteen doubles, which fill two, for true where they are not.
+/// W values of type T in vector registers. Use at most one register (`native_width`): GCC 12 at -O3
+/// miscompiles comparisons of sixteen doubles, which fill two (false lanes become true).
 template <class T, int W>
 using Batch = stdx::simd<T, stdx::simd_abi::deduce_t<T, W>>;
 
-/// As many as one vector register holds.
+/// The number of values that one vector register holds.
 template <class T>
 constexpr int native_width = static_cast<int>(stdx::native_simd<T>::size());
 
@@ -67,11 +67,11 @@ using Element = typename detail::ElementOf<S>::type;
 template <class S>
 concept Scalar = std::is_floating_point_v<Element<S>>;
 
-/// What a comparison of two `S` gives.
+/// The result type of a comparison of two `S`.
 template <Scalar S>
 using Mask = decltype(std::declval<S>() < std::declval<S>());
 
-/// Number of problems held by one `S`.
+/// The number of lanes of `S`; 1 for a scalar.
 template <Scalar S>
 constexpr int width() {
   if constexpr (Batched<S>)
@@ -86,7 +86,7 @@ template <class T, class Abi>
 [[gnu::always_inline]] inline std::uint64_t bits(const stdx::simd_mask<T, Abi>& mask) {
   if constexpr (requires { mask.bits(); })
     return mask.bits();
-  else  // the only name we use of libstdc++'s own: it has had it from 11 on
+  else  // the only internal name of libstdc++ used here; there since 11
     return mask.__to_bitset().to_ullong();
 }
 
@@ -104,12 +104,12 @@ template <Batched S>
   return result;
 }
 
-/// Half the distance from 1 to the next number: one rounded operation is off by at most this
-/// factor, so long as nothing underflows.
+/// The unit roundoff: half the distance from 1 to the next number. One rounded operation has at
+/// most this relative error, unless it underflows.
 template <class T>
 constexpr Element<T> unit_roundoff = std::numeric_limits<Element<T>>::epsilon() / 2;
 
-/// The next larger (smaller) number; infinity stays where it is.
+/// The next larger (smaller) number; an infinity in that direction is unchanged.
 template <class T>
   requires std::is_floating_point_v<T>
 T next_up(T x) {
@@ -121,7 +121,7 @@ T next_down(T x) {
   return std::nextafter(x, -std::numeric_limits<T>::infinity());
 }
 
-/// A float (or double) that is not below (not above) `x`.
+/// `x` rounded to T, but not below (not above) `x`.
 template <class T>
 T rounded_up(double x) {
   const T y = static_cast<T>(x);
@@ -138,7 +138,7 @@ using Vec3 = Eigen::Matrix<S, 3, 1>;
 template <class S>
 using Mat3 = Eigen::Matrix<S, 3, 3>;
 
-/// Products and sums in this order, so that a batch gives lane by lane what a scalar gives.
+/// Always in this order, so that a batch gives lane by lane what a scalar gives.
 template <class S>
 [[gnu::always_inline]] inline S dot(const Vec3<S>& a, const Vec3<S>& b) {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
@@ -148,13 +148,13 @@ template <class S>
   return dot(v, v);
 }
 
-/// A vector rounded to T, to nearest: off by at most half a last digit, or half the least number,
-/// and infinite beyond the largest. A volume about an infinite centre has an infinite radius or
-/// none that is a number, and is disjoint from nothing.
+/// A vector rounded to the nearest T: the error is at most half a unit in the last place, or half
+/// the smallest number; infinite on overflow. A volume with an infinite centre has a radius that is
+/// infinite or NaN, and is disjoint from nothing.
 ///
-/// The result is hidden from the optimiser: GCC 12 at -O2 takes a pair of doubles through float and
-/// back without rounding them (its SLP vectoriser merges the two conversions), and a volume whose
-/// radius is measured from a centre that it does not hold encloses nothing.
+/// The `asm` hides the result from the optimiser: GCC 12 at -O2 converts a pair of doubles to float
+/// and back without rounding (its SLP vectoriser merges the two conversions), and a radius measured
+/// from an unrounded centre would not enclose the points.
 template <class T>
 Vec3<T> rounded(const Vec3<double>& v) {
   Vec3<T> result = v.template cast<T>();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where the centre of a spherical shell around a surface may lie, which way its axis then goes,
-/// and how near the surface comes to the centre. In float64; shell.hpp rounds and makes safe.
+/// Candidate centres for a spherical shell around a surface, the axis of its cone, and lower bounds
+/// on the distance from a centre to the surface. In float64; shell.hpp rounds the results safely.
 #pragma once
 
 #include <Eigen/Dense>
@@ -19,8 +19,8 @@ namespace bvlab {
 
 namespace detail {
 
-/// At most the distance from `o` to the triangle. For any vector m the triangle is beyond the plane
-/// m.(x - o) = min m.(corner - o); m leads to its nearest point as far as that was found.
+/// A lower bound on the distance from `o` to the triangle. For any vector m the triangle is beyond
+/// the plane m.(x - o) = min m.(corner - o); m points to the nearest point found.
 // Templates, so that only those who call them compile them.
 template <class = double>
 double distance_below(const Vec3<double>& o, const Triangle& triangle) {
@@ -71,8 +71,8 @@ Vec3<double> thin_direction(const Vec3<double>& middle, double radius,
 
 }  // namespace detail
 
-/// The centre of the sphere that fits the points best, if it is near, and centres on both sides of
-/// the surface at 1.5 to 12 radii of the ball around it. None where that is a point or not finite.
+/// Candidate centres: that of the best-fitting sphere, if near, and points on both sides of the
+/// surface, 1.5 to 12 enclosing radii away. None where the ball is a point or not finite.
 template <class = double>
 std::vector<Vec3<double>> shell_centres(const Ball& ball, std::span<const Vec3<double>> points) {
   std::vector<Vec3<double>> centres;
@@ -89,8 +89,8 @@ std::vector<Vec3<double>> shell_centres(const Ball& ball, std::span<const Vec3<d
   return centres;
 }
 
-/// Of the narrowest cone from the centre around the points, where they are all within a half space:
-/// the smallest ball around their directions is centred on it. Elsewhere any direction, or none.
+/// The axis of the narrowest cone at `centre` around the points, if they lie in a half space: it
+/// leads to the centre of the smallest sphere around their directions. Else any direction or 0.
 template <class = double>
 Vec3<double> narrowest_axis(const Vec3<double>& centre, std::span<const Vec3<double>> points) {
   std::vector<Vec3<double>> directions;
@@ -100,9 +100,9 @@ Vec3<double> narrowest_axis(const Vec3<double>& centre, std::span<const Vec3<dou
   return axis.norm() > 0.01 ? axis.normalized() : Vec3<double>(Vec3<double>::Zero());
 }
 
-/// Moves `centre` where `better(other)` is true, which looks at the shell about another centre:
-/// around the ball's and towards it or away, by steps that halve where none of them helps. At most
-/// 120 are tried.
+/// Improves `centre` by pattern search: `better(other)` tries the shell about another centre. Steps
+/// go around the ball's centre, towards it and away, and halve where none helps. At most 120 are
+/// tried.
 template <class Better>
 void improve_centre(Vec3<double>& centre, const Ball& ball, Better&& better) {
   const double radius = std::sqrt(std::max(0.0, ball.squared_radius));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Rectangles and the radius by which points are around them, in float64 without a thought of
-/// roundings: what rss.hpp rounds and makes safe.
+/// Fits a rectangle swept by a sphere to points, in float64 without regard to rounding; rss.hpp
+/// makes the result safe.
 ///
 /// Along given axes O(n) for n points, after larsen2000fast. `tight_swept_rectangle` tries some
-/// eighty of them, at most 160, by surface: as boxes are chosen by what a line hits of them
-/// (goldsmith1987automatic).
+/// eighty sets of axes, at most 160, and keeps the one of least surface area, which is proportional
+/// to how many lines hit it (goldsmith1987automatic).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,10 +21,10 @@ namespace bvlab {
 
 struct SweptRectangle {
   Mat3<double> axes;     ///< rows, orthonormal: along the sides, then the normal
-  Vec3<double> origin;   ///< what coordinates along the axes are relative to
-  double middle;         ///< the rectangle's place along the normal
-  Eigen::Matrix2d ends;  ///< from row 0 to row 1, of either side in a column
-  double radius;         ///< no point is farther, but for rounding
+  Vec3<double> origin;   ///< of the coordinates along the axes
+  double middle;         ///< the rectangle's coordinate along the normal
+  Eigen::Matrix2d ends;  ///< column k: where side k begins and ends
+  double radius;         ///< bounds the distance of all points, up to rounding
 
   Vec3<double> centre() const {
     Vec3<double> centre = origin + middle * axes.row(2).transpose();
@@ -32,7 +32,7 @@ struct SweptRectangle {
     return centre;
   }
   double half(int side) const { return (ends(1, side) - ends(0, side)) / 2; }
-  /// Two sides, four half pipes, one ball.
+  /// The surface area: two rectangles, four half cylinders, one sphere.
   double surface() const {
     constexpr double pi = 3.14159265358979;
     return 8 * half(0) * half(1) + 4 * pi * radius * (half(0) + half(1) + radius);
@@ -41,14 +41,14 @@ struct SweptRectangle {
 
 namespace detail {
 
-/// How far beside a point, at this height over the rectangle, the rectangle may end.
+/// How far the rectangle may end before a point at this height over its plane.
 // Templates, so that only those who call them compile them.
 template <class = double>
 double beside(double radius, double height) {
   return std::sqrt(std::max(0.0, radius * radius - height * height));
 }
 
-/// Pushes corners outward along the diagonal until no point is beyond the radius.
+/// Moves corners outward along the diagonal until every point is within the radius.
 template <class = double>
 void push_corners(SweptRectangle& rectangle, std::span<const Vec3<double>> along) {
   Eigen::Matrix2d& ends = rectangle.ends;
@@ -71,8 +71,8 @@ void push_corners(SweptRectangle& rectangle, std::span<const Vec3<double>> along
 
 }  // namespace detail
 
-/// In the plane of the first two axes, halfway through the points; around it what they need there,
-/// and `wider` more, by which the rectangle may be smaller. Sides first, then corners.
+/// The rectangle in the plane of the first two axes, halfway through the points. Its radius is the
+/// one needed there plus `wider`, which lets the rectangle shrink. Sides first, then corners.
 template <class = double>
 SweptRectangle swept_rectangle(const Mat3<double>& axes, std::span<const Vec3<double>> points,
                                double wider = 0) {
@@ -101,10 +101,10 @@ SweptRectangle swept_rectangle(const Mat3<double>& axes, std::span<const Vec3<do
   return rectangle;
 }
 
-/// Of little surface when it is swept: from given axes on, the best of the three choices of a
-/// normal, then turned and widened a little this way and that while it helps, by steps that halve
-/// where it does not. A local minimum, no worse than `start` has; where numbers are too large or
-/// too small to tell, that of `start`.
+/// A rectangle with a small swept surface area: the best of the three choices of a normal among
+/// the axes of `start`, then rotated and widened by pattern search. A local minimum, no worse than
+/// the rectangle along `start`, and equal to it where numbers are too large or too small to
+/// compare.
 template <class = double>
 SweptRectangle tight_swept_rectangle(const Mat3<double>& start,
                                      std::span<const Vec3<double>> points) {

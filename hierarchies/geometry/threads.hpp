@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Threads that share out a piece of work: TBB's where the library was configured with it
-/// (BVLAB_TBB), else the calling one alone. They sleep between pieces of work, and take some
+/// A pool of threads that share a piece of work: TBB's where the library was configured with it
+/// (BVLAB_TBB), else the calling thread alone. Between pieces of work they sleep, and take some
 /// microseconds to wake.
 #pragma once
 
@@ -22,10 +22,10 @@ namespace bvlab {
 
 #if BVLAB_TBB
 namespace detail {
-/// Calls call(with, worker) for each worker below `workers` on the arena's threads.
+/// Calls call(with, worker) for each worker below `workers`, on the arena's threads.
 ///
-/// BVLAB_TBB_IN_A_UNIT: in a unit of its own that is compiled without thread sanitizer. That sees
-/// nothing of TBB's library, and takes for races what its headers do in accord with it.
+/// BVLAB_TBB_IN_A_UNIT: defined in a separate unit, compiled without thread sanitizer, which does
+/// not see inside TBB's library and reports races in its headers that are none.
 #ifdef BVLAB_TBB_IN_A_UNIT
 void call_on_threads(tbb::task_arena& arena, std::size_t workers,
                      void (*call)(void* with, std::size_t worker), void* with);
@@ -50,10 +50,10 @@ class Threads {
   static constexpr bool available = false;
 #endif
 
-  /// At least 1; 1 where no more are available.
+  /// `count` threads, at least 1; always 1 without TBB.
   explicit Threads(int count = 1) : count_(available ? std::max(count, 1) : 1) {
 #if BVLAB_TBB
-    // More than there are processors wait for each other.
+    // Threads beyond the number of processors would wait for each other.
     if (count_ == 1) return;
     arena_ = std::make_unique<tbb::task_arena>(std::min(count_, tbb::info::default_concurrency()));
     left_ = std::vector<Left>(this->count());
@@ -62,10 +62,10 @@ class Threads {
 
   std::size_t count() const { return static_cast<std::size_t>(count_); }
 
-  /// Calls work(part, worker) for each part below `parts`, where a worker below `count()` does one
-  /// part at a time. Each begins with its own share of them, the same for the same `parts`, so that
-  /// what a worker had in its cache is there for it again; who is done helps the others. Returns
-  /// when all are done. What throws ends the work, and is thrown here.
+  /// Calls work(part, worker) for each part below `parts`; a worker, below `count()`, does one part
+  /// at a time. Each begins with its own share of the parts, the same for the same `parts`, so that
+  /// its cache is still warm; workers that are done help the others. Returns when all are done. An
+  /// exception ends the work and is rethrown here.
   template <class Work>
   void share(std::size_t parts, const Work& work) {
     share_ranges(parts, 1, 0, [&](std::size_t begin, std::size_t end, std::size_t worker) {
@@ -73,9 +73,9 @@ class Threads {
     });
   }
 
-  /// The same with work(begin, end, worker) for ranges that together are everything below `count`:
-  /// at least `least` at a time, half of what is left of a worker's share while that is more,
-  /// so that all are done at the same time.
+  /// The same with work(begin, end, worker) for ranges that partition 0 .. `count`. A worker takes
+  /// half of what is left of its share, but at least `least` at a time, so that all workers end at
+  /// about the same time.
   template <class Work>
   void share_out(std::size_t count, std::size_t least, const Work& work) {
     share_ranges(count, least, 2, work);
@@ -104,15 +104,15 @@ class Threads {
   }
 
 #if BVLAB_TBB
-  /// Work on its way to the workers and back: what was written before is seen by them, and what
-  /// they write by who comes after. TBB sees to that, too, but where thread sanitizers see nothing.
+  /// Hands work to the workers and back with memory ordering: workers see what was written before,
+  /// and later code sees what they wrote. TBB ensures this too, but invisibly to thread sanitizers.
   template <class Work>
   class HandedOver {
    public:
     explicit HandedOver(const Work& work) : work_(work) {
       handed_.store(true, std::memory_order_release);
     }
-    /// Also where work throws.
+    /// Also runs where work throws.
     ~HandedOver() { static_cast<void>(returned_.load(std::memory_order_acquire)); }
     HandedOver(const HandedOver&) = delete;
     HandedOver& operator=(const HandedOver&) = delete;
@@ -138,15 +138,15 @@ class Threads {
   struct Range {
     std::uint32_t begin, end;
   };
-  /// What is left of a worker's share; in cache lines of its own. Who takes a range learns nothing
-  /// of what was done in others.
+  /// The rest of a worker's share, aligned to cache lines of its own. Taking a range does not order
+  /// memory with respect to other ranges.
   class alignas(128) Left {
    public:
     void set(std::size_t begin, std::size_t end) {
       range_.store({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)},
                    std::memory_order_relaxed);
     }
-    /// Others take from the end, so that the owner's go on from each other.
+    /// Others take from the end, so that the owner's ranges are contiguous.
     Range take(std::size_t least, std::size_t divisor, bool from_end) {
       Range now = range_.load(std::memory_order_relaxed);
       for (;;) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Directions along which a box around points is small: from given ones on, the box is turned about
-/// each of its axes in turn to the rectangle of least surface, found among the edges of a projected
-/// convex hull (toussaint1983solving), until a round gains less than a hundredth. A local minimum:
-/// what it gains over principal axes depends on the points. O(n log n) a turn for n points.
+/// Axes of a small box around points: starting from given axes, the box is rotated about each axis
+/// in turn to the rectangle of least surface, found among the edges of a projected convex hull
+/// (toussaint1983solving), until a round gains less than 1 %. A local minimum: the gain over
+/// principal axes depends on the points. O(n log n) per rotation for n points.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,8 +19,8 @@ namespace bvlab {
 
 namespace detail {
 
-/// In counterclockwise order, without points on edges but for rounding (Andrew's monotone chain).
-/// Points that are all the same are left twice.
+/// The convex hull, counterclockwise, without points on edges up to rounding (Andrew's monotone
+/// chain). Where all points are equal it holds two copies.
 // Templates, so that only those who call them compile them.
 template <class = double>
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
@@ -61,7 +61,7 @@ Vec3<double> sides_along(const Mat3<double>& axes, std::span<const Vec3<double>>
   return high - low;
 }
 
-/// Turns the axes about the k-th of them; nothing where no edge says how far.
+/// Rotates the axes about the k-th; nothing where no hull edge gives a direction.
 template <class = double>
 std::optional<Mat3<double>> turned_about(int k, const Mat3<double>& axes, double height,
                                          std::span<const Vec3<double>> points) {
@@ -75,7 +75,7 @@ std::optional<Mat3<double>> turned_about(int k, const Mat3<double>& axes, double
   for (std::size_t e = 0; e < hull.size(); ++e) {
     const Eigen::Vector2d along = (hull[(e + 1) % hull.size()] - hull[e]).normalized(),
                           across(-along.y(), along.x());
-    // An edge without a length, or too short to be told the direction of.
+    // Skip an edge too short to have a direction.
     if (!(std::abs(along.squaredNorm() - 1) < 0.5)) continue;
     Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()),
                     high = -low;
@@ -95,8 +95,8 @@ std::optional<Mat3<double>> turned_about(int k, const Mat3<double>& axes, double
 
 }  // namespace detail
 
-/// Orthonormal to a few roundings, in rows, by decreasing length of the box; `start` likewise. No
-/// worse than `start`, which it is where the numbers are too large or too small to tell.
+/// The axes as rows, orthonormal up to rounding, by decreasing length of the box; `start` likewise.
+/// No worse than `start`, and equal to it where numbers are too large or small.
 template <class = double>
 Mat3<double> tight_axes(const Mat3<double>& start, std::span<const Vec3<double>> points) {
   const Vec3<double> origin = points[0];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A soup of triangles over shared vertices; it may be open, self-intersecting or degenerate.
+/// A triangle mesh: triangles over shared vertices; may be open, self-intersecting or degenerate.
 #pragma once
 
 #include <array>

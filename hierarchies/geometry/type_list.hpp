@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A list of types, each with a `name` and a `description`: THE list of volumes, of strategies, of
-/// queries is one of these, and commands, tests and sweeps walk it.
+/// A list of types, each with a `name` and a `description`. THE lists of volumes, strategies and
+/// queries are such lists; commands, tests and sweeps iterate over them.
 #pragma once
 
 #include <cstddef>
@@ -23,13 +23,13 @@ struct TypeList {
     (visit(std::type_identity<Types>{}), ...);
   }
 
-  /// Calls `visit` for the type of that name; false where there is none.
+  /// Calls `visit` for the type of that name; returns false where there is none.
   template <class Visit>
   static constexpr bool with(std::string_view name, Visit&& visit) {
     return ((Types::name == name && (visit(std::type_identity<Types>{}), true)) || ...);
   }
 
-  /// "a, b, c"
+  /// All names: "a, b, c".
   static std::string names() {
     std::string text;
     for_each([&](auto type) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Batches on the vector types that compilers have of their own: in place of
-/// std::experimental::simd where that one is not GCC's. In libstdc++ 12 clang takes a blend of
-/// AVX-512 for a choice of all lanes (simd_x86.h, _S_blend_avx512), and libc++ has next to nothing.
-/// What the engine uses of it, and no more; as `one_lane`, which has the lanes one by one.
+/// Batches on the compilers' built-in vector types, which replace std::experimental::simd where
+/// that is not GCC's own: with libstdc++ 12, clang miscompiles a blend of AVX-512 (simd_x86.h,
+/// _S_blend_avx512), and libc++ has next to none of it. It has only the members that the engine
+/// uses, as `one_lane` does.
 #pragma once
 
 #include <Eigen/Core>
@@ -42,11 +42,11 @@ struct VectorOf {
   static_assert(std::has_single_bit(static_cast<unsigned>(W)));
   using type [[gnu::vector_size(sizeof(T) * W)]] = T;
 };
-/// W numbers in the compiler's own vector type.
+/// W numbers in the compiler's built-in vector type.
 template <class T, int W>
 using Vector = typename VectorOf<T, W>::type;
 
-/// What a comparison of such vectors gives: all bits of a lane, or none.
+/// The lane type of a comparison: all bits set, or none.
 template <class T>
 using Word = std::conditional_t<sizeof(T) == 8, std::int64_t, std::int32_t>;
 
@@ -113,11 +113,11 @@ class simd_mask {
   bool operator[](std::size_t i) const { return words_[i] != 0; }
   const Words& words() const { return words_; }
 
-  /// Bit i is lane i's.
+  /// Bit i is set where lane i is true.
   [[gnu::always_inline]] std::uint64_t bits() const {
 #if defined(__clang__) && __clang_major__ >= 15
     if constexpr (W < 8) {
-      // Vectors of fewer bits than a byte are not dependable.
+      // Boolean vectors of fewer than eight lanes are not reliable.
       return [&]<int... i>(std::integer_sequence<int, i...>) {
         const auto eight = __builtin_shufflevector(words_, Words{}, (i < W ? i : W)...);
         typedef bool Bools __attribute__((ext_vector_type(8)));
@@ -180,7 +180,7 @@ class simd {
     detail::each_lane<W>([&](auto i) { lanes_[i()] = static_cast<T>(f(i)); });
   }
   explicit simd(const Vector& lanes) : lanes_(lanes) {}
-  /// From what intrinsics give, and back.
+  /// Conversion from the types of intrinsics, and back.
   template <class R>
     requires(!std::is_class_v<R> && !std::is_arithmetic_v<R> && !std::is_same_v<R, Vector> &&
              !std::is_pointer_v<R> && sizeof(R) == sizeof(Vector))
@@ -261,7 +261,7 @@ template <class T, class Abi>
 [[gnu::always_inline]] inline simd<T, Abi> sqrt(const simd<T, Abi>& x) {
   return simd<T, Abi>(detail::root<T, Abi::width>(x.lanes()));
 }
-/// Where one is NaN, the second.
+/// Lane by lane; where an operand is NaN, the result is `b`.
 template <class T, class Abi>
 [[gnu::always_inline]] inline simd<T, Abi> min(const simd<T, Abi>& a, const simd<T, Abi>& b) {
   return blend(a < b, a, b);
@@ -284,7 +284,7 @@ inline constexpr bool is_simd_v = false;
 template <class T, class Abi>
 inline constexpr bool is_simd_v<simd<T, Abi>> = true;
 
-/// `where(mask, x) = y` assigns the lanes whose bits are set.
+/// `where(mask, x) = y` assigns y to the lanes of x that are set in the mask.
 template <class T, class Abi>
 class Where {
  public:
@@ -313,7 +313,7 @@ template <class T, class Abi>
 }
 
 namespace detail {
-/// By halves.
+/// Reduces the upper half onto the lower, again and again.
 template <class T, class Abi, class Better>
 [[gnu::always_inline]] inline T reduced(const simd<T, Abi>& x, const Better& better) {
   alignas(sizeof x) T lane[Abi::width];
@@ -336,7 +336,7 @@ T hmax(const simd<T, Abi>& x) {
 }  // namespace bvlab::vector_lanes
 
 /// @cond
-/// Batches have their own alignment, which Eigen's for plain numbers is less than.
+/// Batches have an alignment of their own, which is larger than Eigen's for plain numbers.
 template <class T, class Abi, int Size>
 struct Eigen::internal::compute_default_alignment<bvlab::vector_lanes::simd<T, Abi>, Size> {
   enum { value = 0 };

@@ -9,8 +9,8 @@
 
 namespace bvlab {
 
-/// Every finite double is an integer multiple of 2^bottom; `top` is the least exponent with
-/// |x| < 2^top. Zero constrains neither.
+/// The binary range of the numbers included: each is an integer multiple of 2^bottom and below
+/// 2^top in magnitude, `top` being the least such exponent. Zero constrains neither.
 struct BinaryRange {
   int bottom = 1 << 20;
   int top = -(1 << 20);
@@ -31,7 +31,7 @@ template <int N>
 struct WideInteger {
   std::array<std::uint64_t, N> limb{};  ///< least significant first
 
-  /// x / 2^bottom, where that is an integer of fewer than 64 N bits.
+  /// x / 2^bottom, which must be an integer of fewer than 64 N bits.
   static WideInteger scaled(double x, int bottom) {
     WideInteger result;
     if (x == 0) return result;
@@ -83,7 +83,7 @@ struct WideInteger {
   __extension__ typedef unsigned __int128 Double;
 };
 
-/// The whole product: nothing is lost.
+/// The exact product.
 template <int N, int M>
 WideInteger<N + M> operator*(const WideInteger<N>& a, const WideInteger<M>& b) {
   __extension__ typedef unsigned __int128 Double;
@@ -97,7 +97,7 @@ WideInteger<N + M> operator*(const WideInteger<N>& a, const WideInteger<M>& b) {
     }
     product.limb[i + M] = carry;
   }
-  // What was multiplied is the number plus 2^(64 N) wherever it is negative.
+  // The factors were read as unsigned: a negative one as itself plus 2^(64 N).
   const auto subtract_high = [&](const auto& limbs, int from) {
     std::uint64_t borrow = 0;
     for (int i = from; i < N + M; ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What Eigen could say in a line, written out: nearly every unit compiles it, and as expressions
-/// these few take longer than all other inline functions together. Nothing is contracted, so that
-/// every processor finds the same.
+/// A few functions of vectors and matrices, written without Eigen's expressions: nearly every unit
+/// compiles them, and as expressions they take longer to compile than all other inline functions
+/// together. No operation is contracted, so that results agree on every processor.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace bvlab {
 
-/// Neither over- nor underflows on the way.
+/// The Euclidean norm, without over- or underflow of intermediate results.
 inline double stable_norm(const Vec3<double>& v) {
   const double x = std::abs(v[0]), y = std::abs(v[1]), z = std::abs(v[2]);
   if (std::isnan(x) || std::isnan(y) || std::isnan(z))
@@ -30,7 +30,7 @@ inline double stable_norm(const Vec3<double>& v) {
   return scale * std::sqrt((a * a + b * b) + c * c);
 }
 
-/// |M'M - I|_F: how far a matrix is from a rotation.
+/// |M'M - I|_F: how far a matrix is from being orthonormal.
 inline double defect_of(const Mat3<double>& m) {
   double squares[9];
   for (int j = 0; j < 3; ++j)
@@ -43,8 +43,8 @@ inline double defect_of(const Mat3<double>& m) {
   return std::sqrt(((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + (s[7] + s[8]))));
 }
 
-/// M (3/2 - M'M / 2): a step of Newton's iteration to the nearest rotation, which squares the
-/// defect.
+/// M (3/2 - M'M / 2): a step of Newton's iteration to the nearest orthonormal matrix, which squares
+/// the defect.
 inline Mat3<double> towards_orthonormal(const Mat3<double>& m) {
   Mat3<double> half, result;
   for (int j = 0; j < 3; ++j)

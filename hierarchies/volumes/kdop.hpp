@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The intersection of K/2 slabs with fixed directions (klosowski1998efficient): K = 6 is the
-/// axis-aligned box, 14 adds the directions of a cube's corners, 18 those of its edges, 26 both.
+/// A K-DOP: the intersection of K/2 slabs with fixed directions (klosowski1998efficient). K = 6 is
+/// the axis-aligned box, 14 adds a cube's corner directions, 18 its edge directions, 26 both.
 ///
-/// Kept as K support values bounds[m] >= n_m.x, where n_{2k} is a direction and n_{2k+1} its
-/// opposite. A rotated K-DOP is bounded again by the same directions; how is a policy: see
-/// Realigned, the default, and ByCorners. Whatever the policy, tests are made on plain bounds:
-/// Kdop<S, K>. One N_v is K additions and comparisons.
+/// Stored as K support values bounds[m] >= n_m.x, where n_{2k} is a direction and n_{2k+1} its
+/// opposite. A rotated K-DOP is bounded again in the same directions; how is a policy: Realigned,
+/// the default, or ByCorners. Under either policy, tests are made on plain bounds: Kdop<S, K>. One
+/// N_v is K additions and comparisons.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,8 @@
 
 namespace bvlab {
 
-/// Posing: how a rotated K-DOP is bounded again, and what is kept for that. Policies that keep
-/// nothing but bounds share this template; see kdop_corners.hpp for one that keeps more.
+/// `Posing` is the policy: how a rotated K-DOP is bounded again, and what is stored for that.
+/// Policies that store only bounds share this template; kdop_corners.hpp has one that stores more.
 template <Scalar S, int K, class Posing = Realigned>
 struct Kdop {
   static constexpr std::string_view name = Posing::template name<K>;
@@ -40,7 +40,7 @@ struct Kdop {
     for (const auto& p : points)
       for (int k = 0; k < K / 2; ++k) {
         const double at = Directions::along(k, p);
-        // Covers rounding; along the axes there is none.
+        // Covers rounding; projections to the axes are exact.
         const double room = Directions::squared_length(k) == 1
                                 ? 0
                                 : 4 * unit_roundoff<double> * p.template lpNorm<1>();
@@ -76,8 +76,8 @@ Kdop<S, K> posed(const Kdop<S, K>& volume, const Realignment<Element<S>, K>& pos
   return result;
 }
 
-/// A rounded sum has the sign of the exact one, so there is no margin. A NaN (from an overflow)
-/// compares as not disjoint.
+/// A rounded sum has the sign of the exact one, so no margin is needed. A comparison with NaN (from
+/// an overflow) means not disjoint.
 template <class S, int K>
 [[gnu::always_inline]] inline Mask<S> disjoint(const Kdop<S, K>& a, const Kdop<S, K>& b) {
   Mask<S> apart(false);
@@ -85,8 +85,8 @@ template <class S, int K>
   return apart;
 }
 
-/// The distance between the two boxes that the axes alone make, or between the slabs of the
-/// direction in which they are farthest apart. Five roundings at most, all relative.
+/// A lower bound on the distance: that of the boxes along the axes, or of the two slabs that are
+/// farthest apart, whichever is larger. At most five roundings, all relative.
 template <class S, int K>
 S gap(const Kdop<S, K>& a, const Kdop<S, K>& b) {
   using std::max, std::min, std::sqrt;
@@ -102,7 +102,7 @@ S gap(const Kdop<S, K>& a, const Kdop<S, K>& b) {
       farthest =
           max(farthest, apart * S(static_cast<Element<S>>(1 / Kdop<S, K>::Directions::length(k))));
   }
-  // A square that overflows belongs to a distance that is larger still.
+  // Where a square overflows, the largest number is still a lower bound.
   const S largest(std::numeric_limits<Element<S>>::max());
   return max(sqrt(min(largest, squared)), min(largest, farthest)) * S(1 - 8 * unit_roundoff<S>);
 }
@@ -118,7 +118,7 @@ bool contains(const Kdop<S, K>& volume, const Vec3<long double>& point) {
   return true;
 }
 
-/// Half the diagonal of the box that the axes make.
+/// Half the diagonal of the box along the axes.
 template <class S, int K, class Posing>
 S size(const Kdop<S, K, Posing>& volume) {
   S squared(0);
@@ -130,7 +130,7 @@ S size(const Kdop<S, K, Posing>& volume) {
   return sqrt(squared) / S(2);
 }
 
-/// The largest distance of a slab's side from the origin, and of the box's corners.
+/// The largest distance from the origin of a slab's face or of a corner of the box.
 template <class S, int K, class Posing>
 S reach(const Kdop<S, K, Posing>& volume) {
   using std::abs, std::max, std::sqrt;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// K-DOPs that are posed by their vertices (klosowski1998efficient): the vertices are rotated and
-/// bounded again. That is the optimum of the linear programme of which Realignment takes one dual
-/// basis.
+/// K-DOPs posed by their vertices (klosowski1998efficient): the vertices are rotated and
+/// bounded again, which is the optimum of a linear programme for which Realignment takes one
+/// dual basis.
 ///
-/// Vertices are found once, when a volume is fitted (see kdop_vertices.hpp). Posing does not rotate
-/// them but the directions, so that one vertex is bounded along all of them side by side. One N_u
-/// is 3 K/2 multiplications and 4 K/2 additions and comparisons for each vertex, of which there are
-/// at most 2K - 4; a volume takes K + 3(2K - 4) + 2 numbers.
+/// Vertices are enumerated once, when a volume is fitted (kdop_vertices.hpp). Posing rotates the
+/// directions instead of the vertices, so that one vertex is projected on all of them in SIMD
+/// lanes. One N_u is 3 K/2 multiplications and 4 K/2 additions and comparisons for each vertex, of
+/// which there are at most 2K - 4; a volume takes K + 3(2K - 4) + 2 numbers.
 #pragma once
 
 #include <algorithm>
@@ -43,7 +43,7 @@ struct RotatedDirections {
       for (int i = 0; i < 3; ++i) normal[i][k] = Directions::direction(k)[i];
   }
 
-  /// `error_bound`: how much farther than that a point can be from where the pose puts it.
+  /// `error_bound`: an error of the pose itself, added to `slack`.
   RotatedDirections(const Pose& pose, const Vec3<double>& origin, double reach,
                     double error_bound = 0) {
     const KdopOffsets<T, K> offsets(pose, origin, reach, error_bound);
@@ -60,14 +60,14 @@ struct RotatedDirections {
   using Directions = detail::KdopDirections<K>;
 };
 
-/// The policy of a K-DOP that is bounded again by its vertices.
+/// The policy that bounds a rotated K-DOP again by its vertices.
 struct ByCorners {
   template <class T, int K>
   using placement = RotatedDirections<T, K>;
 };
 
-/// What is posed is the hull of the corners, widened by `grain` in every direction. It encloses all
-/// that the bounds enclose, see KdopVertices.
+/// The hull of `corners`, widened by `grain` in every direction, is posed. It encloses all that the
+/// bounds enclose, see KdopVertices.
 template <Scalar S, int K>
 struct Kdop<S, K, ByCorners> {
   static constexpr std::string_view name = K == 6    ? "aabb-corners"
@@ -82,7 +82,7 @@ struct Kdop<S, K, ByCorners> {
   using placement = RotatedDirections<Element<S>, K>;
   static constexpr int room = detail::KdopVertices<K>::room;
 
-  // Only scalars S: a batch of volumes has the same members over batches.
+  // Fitted for scalar S only; a batch of volumes has the same members over batches.
   std::array<S, K> bounds;
   std::array<std::array<S, 3>, room> corners;  ///< those beyond `count` repeat the first
   S count, grain;
@@ -103,14 +103,14 @@ struct Kdop<S, K, ByCorners> {
       wide[m] = static_cast<double>(bounds[m]);
       scale = std::max(scale, std::abs(wide[m]));
     }
-    // Bounds rounded to S split a vertex where many planes meet into several, at most this far
+    // Rounding the bounds to S splits a vertex of many planes into several, at most this far
     // apart.
     const detail::KdopVertices<K> vertices(wide, scale, 4 * e * scale);
     Kdop result;
     result.bounds = bounds;
     result.count = static_cast<S>(vertices.count);
-    // A corner is off by `error` and by being rounded, in each component; times 3 |R'd| / |d| along
-    // any direction. The rest is for sums of three components and for this one.
+    // A corner is off by `error` plus its rounding, in each component; times 3 |R'd| / |d| along
+    // any direction. The rest covers sums of three components and the rounding here.
     result.grain = rounded_up<S>(3.1 * (vertices.error + e * scale) + 8 * e * scale +
                                  8 * static_cast<double>(std::numeric_limits<S>::min()));
     for (int i = 0; i < room; ++i) {
@@ -126,7 +126,7 @@ Kdop<S, K, ByCorners> merge(const Kdop<S, K, ByCorners>& a, const Kdop<S, K, ByC
   return Kdop<S, K, ByCorners>::around(merge(Kdop<S, K>{a.bounds}, Kdop<S, K>{b.bounds}).bounds);
 }
 
-/// One N_u, in batches of directions.
+/// One N_u, computed in batches of directions.
 template <class S, int K>
   requires(!Batched<S>)
 Kdop<S, K> posed(const Kdop<S, K, ByCorners>& volume, const RotatedDirections<S, K>& pose) {
@@ -157,7 +157,7 @@ Kdop<S, K> posed(const Kdop<S, K, ByCorners>& volume, const RotatedDirections<S,
   return result;
 }
 
-/// The same for a batch of volumes, lane by lane.
+/// The same for a batch of volumes, one per lane.
 template <Batched S, int K>
 Kdop<S, K> posed(const Kdop<S, K, ByCorners>& volume,
                  const RotatedDirections<Element<S>, K>& pose) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The fixed directions of K-DOPs (klosowski1998efficient): axes, corners and edges of a cube,
+/// The fixed directions of K-DOPs (klosowski1998efficient): a cube's axes, corners and edges, as
 /// small integers, so that products with them are exact and their determinants are integers.
 #pragma once
 
@@ -34,7 +34,7 @@ struct KdopDirections {
     constexpr double root[] = {0, 1, 1.4142135623730951, 1.7320508075688774};
     return root[squared_length(slab)];
   }
-  /// The index of the support value of the direction (x, y, z).
+  /// The index of the support value in direction (x, y, z); -1 where there is none.
   static constexpr int index(int x, int y, int z) {
     for (int k = 0; k < slabs; ++k) {
       const auto* d = direction(k);
@@ -44,13 +44,13 @@ struct KdopDirections {
     return -1;
   }
 
-  /// The direction of support value m: 2k is that of slab k, 2k + 1 its opposite.
+  /// Component i of the direction of support value m: 2k for slab k, 2k + 1 for its opposite.
   static constexpr int component(int m, int i) {
     return m % 2 ? -direction(m / 2)[i] : direction(m / 2)[i];
   }
 
-  /// Products with 1, 0, -1 are exact; there are at most two roundings, each of at most the sum of
-  /// the magnitudes.
+  /// The projection of p on a slab's direction. Products with 1, 0, -1 are exact; the at most two
+  /// roundings are each relative to the sum of the magnitudes.
   template <class X>
   static X along(int slab, const Vec3<X>& p) {
     const auto* d = direction(slab);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How a rotated K-DOP is bounded again by its own directions, after zachmann1998rapid: the default
-/// policy of Kdop.
+/// Bounds a rotated K-DOP again in its own directions, after zachmann1998rapid: the default policy
+/// of Kdop.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace bvlab {
 
-/// What a pose adds to bounds along each direction d and its opposite: d.(t - o), and twice the
-/// `slack` of Placement, which covers rounding; the derivations are in Realignment and
+/// The offsets that a pose adds to bounds along each direction d and its opposite: d.(t - o), and
+/// twice the `slack` of Placement, which covers rounding; derivations are in Realignment and
 /// RotatedDirections.
 template <class T, int K>
 struct KdopOffsets {
@@ -57,7 +57,7 @@ template <class T, int K>
 struct Realignment {
   struct Row {
     std::array<T, 3> weight;
-    std::array<std::int32_t, 3> from;  ///< support values; for the opposite direction: from ^ 1
+    std::array<std::int32_t, 3> from;  ///< support values; for the opposite direction: ^ 1
     T offset, opposite_offset;
   };
   std::array<Row, K / 2> rows;
@@ -66,7 +66,7 @@ struct Realignment {
     for (int k = 0; k < K / 2; ++k) rows[k] = {{1, 0, 0}, {2 * k, 2 * k, 2 * k}, 0, 0};
   }
 
-  /// `error_bound`: how much farther than that a point can be from where the pose puts it.
+  /// `error_bound`: an error of the pose itself, added to `slack`.
   Realignment(const Pose& pose, const Vec3<double>& origin, double reach, double error_bound = 0) {
     const KdopOffsets<T, K> offsets(pose, origin, reach, error_bound);
     for (int k = 0; k < K / 2; ++k) {
@@ -108,8 +108,8 @@ struct Realignment {
   }
 };
 
-/// The policy of a K-DOP that is bounded again by one dual basis for each direction, see
-/// Realignment. One N_u is 3K multiplications and as many additions.
+/// The policy that bounds a rotated K-DOP again by one dual basis per direction, see Realignment.
+/// One N_u is 3K multiplications and as many additions.
 struct Realigned {
   template <class T, int K>
   using placement = Realignment<T, K>;

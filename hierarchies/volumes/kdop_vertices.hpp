@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The vertices of a K-DOP, from triples of its planes. O(K^3) when a volume is fitted; most
-/// triples are dismissed by the first planes they are tested against.
+/// Enumerates the vertices of a K-DOP from triples of its planes. O(K^3) when a volume is fitted;
+/// most triples are rejected by the first planes that they are tested against.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace bvlab::detail {
 
-/// Points whose hull encloses { x : n_m.x <= bounds[m] } but for `error` in each component: every
-/// vertex of that polytope is so near to one of them. None is outside of the box along the axes.
+/// Points whose hull encloses { x : n_m.x <= bounds[m] } up to `error` in each component: every
+/// vertex of that polytope is that near to one of them. None is outside the box along the axes.
 ///
 /// Where three planes meet is a quotient of integer combinations of bounds by an integer, computed
 /// to 18u scale in each component: |n_i x n_j| has components up to 2 and products with them are
@@ -36,7 +36,7 @@ class KdopVertices {
   int count = 0;
   double error = 0;
 
-  /// scale: the largest magnitude of all bounds.
+  /// `scale`: the largest magnitude of all bounds; `nearness`: points this near are one vertex.
   KdopVertices(const std::array<double, K>& bounds, double scale, double nearness)
       : bounds_(bounds) {
     constexpr double u = unit_roundoff<double>, tiny = std::numeric_limits<double>::min();
@@ -89,8 +89,8 @@ class KdopVertices {
     return true;
   }
 
-  /// Clamped to the box first: the true vertex is in the box, so that this takes no point farther
-  /// from it.
+  /// Adds a point, first clamped to the box: the true vertex is in the box, so clamping moves no
+  /// point farther from it.
   bool add(Vec3<double> x) {
     for (int c = 0; c < 3; ++c)
       x[c] = std::max(-bounds_[2 * c + 1], std::min(bounds_[2 * c], x[c]));

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A box in any orientation: three axes, three half lengths, a centre (gottschalk1996obbtree).
-/// Close to flat and elongated surface, more expensive to pose and to test than a sphere.
+/// An oriented box: three axes, three half lengths, a centre (gottschalk1996obbtree). Fits flat and
+/// elongated surfaces closely; costs more to pose and to test than a sphere.
 ///
-/// The box is the set of points centre + sum s_i a_i with |s_i| <= half_i, for the axes exactly as
-/// stored. They are orthonormal but for rounding: with A the matrix of rows a_i,
+/// The box is the set of points centre + sum s_i a_i with |s_i| <= half_i, for the axes a_i as
+/// stored. They are orthonormal up to rounding: with A the matrix of rows a_i,
 ///
 ///   |AA' - I| <= 72e      (e the unit roundoff of S; the 2-norm)
 ///
 /// - `enclosing` rounds orthonormal axes: each is off by e in length, their matrix by sqrt(3)e, and
 ///   AA' by 4e;
-/// - `posed` rotates them by a matrix with |QQ' - I| <= 32u + 9u, the second for the accuracy of
-/// the
-///   float64 check, and rounds: 7e an axis (see Placement), 12.2e the matrix, 25e its product.
+/// - `posed` rotates them by a matrix with |QQ' - I| <= 32u + 9u, the second for the accuracy
+///   of the float64 check, and rounds:
+///   7e an axis (see Placement), 12.2e the matrix, 25e its product.
 ///
 /// One N_u is 33 multiplications and additions, one N_v about 200.
 #pragma once
@@ -38,7 +38,7 @@ struct Obb {
   using scalar = S;
   template <class Other>
   using over = Obb<Other>;
-  /// How it is tested in a relative frame: include wide/obb_sibling_test.hpp.
+  /// Its test in a relative frame; include wide/obb_sibling_test.hpp to use it.
   using sibling_test = ObbSiblingTest<S>;
 
   Vec3<S> centre;
@@ -55,7 +55,7 @@ struct Obb {
   {
     return along(principal_axes(points, triangles), points);
   }
-  /// Around the points, with the axes of the smallest box that is found from the principal axes on.
+  /// The box around the points with `tight_axes`, a local optimum from the principal axes.
   static Obb tight(std::span<const Vec3<double>> points, std::span<const Triangle> triangles)
     requires(!Batched<S>)
   {
@@ -97,7 +97,7 @@ struct Obb {
   }
 };
 
-/// Around the corners of both boxes, each off by at most 8u of the magnitudes it is summed from.
+/// The box around the corners of both, each off by at most 8u of the magnitudes in its sum.
 template <class S>
 Obb<S> merge(const Obb<S>& a, const Obb<S>& b) {
   std::array<Vec3<double>, 16> corners;
@@ -117,9 +117,9 @@ Obb<S> merge(const Obb<S>& a, const Obb<S>& b) {
   return both;
 }
 
-/// A point centre + sum s_i a_i is taken to within slack + tilt sum |s_i| of the posed centre plus
-/// sum s_i a'_i (see Placement); the offset has coordinates along the new axes that are at most 1 +
-/// 73e longer, and five roundings are made here.
+/// A point centre + sum s_i a_i goes to within slack + tilt sum |s_i| of the posed centre plus sum
+/// s_i a'_i (see Placement). This error is at most 1 + 73e longer in coordinates along the new
+/// axes, and five more roundings are made here.
 template <class S>
 Obb<S> posed(const Obb<S>& box, const Placement<Element<S>>& placement) {
   Obb<S> result;
@@ -135,7 +135,7 @@ Obb<S> posed(const Obb<S>& box, const Placement<Element<S>>& placement) {
 
 namespace detail {
 
-/// Two boxes in each other's axes, and the margin of the separating-axis test.
+/// Two boxes in each other's axes, and the error margin of the separating-axis test.
 ///
 /// For ANY vector n the boxes are apart where
 ///   |n.t| > sum_i half_a_i |n.a_i| + sum_j half_b_j |n.b_j|,   t the vector between the centres.
@@ -174,7 +174,7 @@ struct ObbPair {
   }
 
   /// A lower bound on the gap along a_i; negative where the boxes overlap there. In units of a
-  /// vector that is 1 + 37e long at most.
+  /// vector whose length is at most 1 + 37e.
   [[gnu::always_inline]] S beyond_a(const Obb<S>& a, const Obb<S>& b, int i) const {
     using std::abs;
     return abs(along_a[i]) - (((a.half[i] + b.half[0] * absolute[i][0]) +
@@ -200,7 +200,7 @@ struct ObbPair {
 
 }  // namespace detail
 
-/// A NaN (from an overflow) compares as not disjoint.
+/// A comparison with NaN (from an overflow) means not disjoint.
 template <class S>
 [[gnu::always_inline]] inline Mask<S> disjoint(const Obb<S>& a, const Obb<S>& b) {
   const detail::ObbPair<S> pair(a, b);
@@ -212,8 +212,8 @@ template <class S>
   return apart;
 }
 
-/// The distance from one box to the box that encloses the other along the first one's axes; the
-/// larger of the two. 0 where they may overlap.
+/// A lower bound on the distance: that of one box from the box around the other along the first
+/// one's axes, the larger of both ways. 0 where they may overlap.
 template <class S>
 S gap(const Obb<S>& a, const Obb<S>& b) {
   using std::max, std::min, std::sqrt;
@@ -225,13 +225,13 @@ S gap(const Obb<S>& a, const Obb<S>& b) {
     const S p = select(x > S(0), x, S(0)), q = select(y > S(0), y, S(0));
     squared_a = squared_a + p * p, squared_b = squared_b + q * q;
   }
-  // A square that overflows belongs to a distance that is larger still. Coordinates along the axes
-  // are longer than lengths by 1 + 37e at most, and four roundings are made.
+  // Where a square overflows, the largest number is still a lower bound. Coordinates along the axes
+  // are at most 1 + 37e longer than lengths, and four roundings are made.
   const S largest(std::numeric_limits<Element<S>>::max());
   return sqrt(min(largest, max(squared_a, squared_b))) * S(1 - 64 * unit_roundoff<S>);
 }
 
-/// True where the box is not finite.
+/// Whether the point is inside; true where the box is not finite.
 template <class S>
 bool contains(const Obb<S>& box, const Vec3<long double>& point) {
   using Wide = Vec3<long double>;
@@ -254,7 +254,7 @@ S size(const Obb<S>& box) {
   return box.half.norm();
 }
 
-/// No point of the volume is farther from the origin of its frame, nor is its centre.
+/// An upper bound on the distance of the box's points and centre from the origin of its frame.
 template <class S>
 S reach(const Obb<S>& box) {
   return box.centre.norm() + box.half.norm() * S(1 + 80 * unit_roundoff<S>);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A rectangle swept by a sphere: all points within `radius` of centre + s side_0 + t side_1, |s|
-/// and |t| at most half_0 and half_1 (larsen2000fast). As close to flat surface as a box, and
-/// rounder: the field's choice for distances.
+/// A rectangle swept by a sphere (RSS): all points within `radius` of centre + s side_0 + t side_1,
+/// |s| <= half_0 and |t| <= half_1 (larsen2000fast). Fits flat surfaces as a box does, with rounded
+/// edges: the usual choice for distance queries.
 ///
-/// The set is defined by the sides exactly as stored; nothing below needs them to be orthonormal,
+/// The set is defined by the sides exactly as stored; correctness does not need them orthonormal,
 /// only tightness does. One N_u is 33 multiplications and additions, one N_v about 150.
 #pragma once
 
@@ -30,7 +30,7 @@ struct Rss {
   using over = Rss<Other>;
 
   Vec3<S> centre;
-  std::array<Vec3<S>, 2> side;  ///< unit length but for rounding
+  std::array<Vec3<S>, 2> side;  ///< of unit length up to rounding
   std::array<S, 2> half;
   S radius;
 
@@ -41,20 +41,20 @@ struct Rss {
                        std::span<const Triangle> triangles) requires(!Batched<S>) {
     return along(principal_axes(points, triangles), points);
   }
-  /// Around the points, with the least surface that is found from the principal axes on: four to
+  /// The volume around the points with the least surface found from the principal axes on: four to
   /// five times as expensive to fit.
   static Rss tight(std::span<const Vec3<double>> points,
                    std::span<const Triangle> triangles) requires(!Batched<S>) {
     return of(tight_swept_rectangle(principal_axes(points, triangles), points), points);
   }
 
-  /// The rectangle in the plane of the first two directions (orthonormal rows).
+  /// The volume with its rectangle in the plane of the first two directions (orthonormal rows).
   static Rss along(const Mat3<double>& directions,
                    std::span<const Vec3<double>> points) requires(!Batched<S>) {
     return of(swept_rectangle(directions, points), points);
   }
 
-  /// The rectangle rounded, with the radius that the points need then.
+  /// The rounded rectangle, with the radius that the points then need.
   static Rss of(const SweptRectangle& rectangle,
                 std::span<const Vec3<double>> points) requires(!Batched<S>) {
     Rss rss;
@@ -68,9 +68,9 @@ struct Rss {
     return rss;
   }
 
-  /// The distance of the farthest point from the rectangle as it is stored: any point of the
-  /// rectangle gives a bound. Sums and squares take fewer than ten roundings, each less than u of
-  /// the lengths that are summed.
+  /// A bound on the farthest point's distance from the stored rectangle: the distance to any point
+  /// of the rectangle is one. Sums and squares take fewer than ten roundings, each less than u of
+  /// the lengths in the sum.
   static S radius_for(const Rss& rss, std::span<const Vec3<double>> points) requires(!Batched<S>) {
     constexpr double u = unit_roundoff<double>;
     const Vec3<double> centre = rss.centre.template cast<double>();
@@ -90,8 +90,8 @@ struct Rss {
   }
 };
 
-/// Around the corners of both rectangles, with the larger of the two radii added; the corners are
-/// off by at most 8u of the magnitudes they are summed from.
+/// The volume around the corners of both rectangles, its radius enlarged by the larger of the two;
+/// the corners are off by at most 8u of the magnitudes in their sums.
 template <class S>
 Rss<S> merge(const Rss<S>& a, const Rss<S>& b) {
   constexpr double u = unit_roundoff<double>;
@@ -112,8 +112,8 @@ Rss<S> merge(const Rss<S>& a, const Rss<S>& b) {
   return both;
 }
 
-/// A point centre + sum s_k side_k + y is taken to within slack + tilt (|s_0| + |s_1|) + stretch
-/// |y| of the posed rectangle (see Placement); four roundings are made here.
+/// A point centre + sum s_k side_k + y goes to within slack + tilt (|s_0| + |s_1|) + stretch |y| of
+/// the posed rectangle (see Placement); four more roundings are made here.
 template <class S>
 Rss<S> posed(const Rss<S>& rss, const Placement<Element<S>>& placement) {
   Rss<S> result;
@@ -125,14 +125,14 @@ Rss<S> posed(const Rss<S>& rss, const Placement<Element<S>>& placement) {
   return result;
 }
 
-/// At most the distance between the two, found along one direction; 0 where they may overlap.
+/// A lower bound on the distance, found along one direction; 0 where they may overlap.
 ///
-/// For ANY vector n the two are apart by at least
+/// For ANY vector n their distance is at least
 ///   (n.t - sum_k half_a_k |n.a_k| - sum_k half_b_k |n.b_k|) / |n| - radius_a - radius_b
-/// with t the vector between the centres, and by exactly that where n joins the nearest points of
-/// the rectangles. So n is taken from points that are nearly nearest: each in turn is replaced by
-/// the point of its rectangle next to the other, which converges to the nearest (cheney1959). What
-/// rounding did to n does not matter; t is off by e in each coordinate, each product with n by 4e
+/// with t the vector between the centres, and exactly that where n joins the nearest points of
+/// the rectangles. So n joins points that are nearly nearest: each in turn is replaced by
+/// its rectangle's nearest point to the other, which converges (Cheney, Goldstein 1959). How
+/// n was rounded does not matter; t is off by e in each coordinate, each product with n by 4e
 /// |n| of the other factor's length, and what is summed by 5e: with lengths 1.01 at most for the
 /// sides, all of it is less than
 ///   16e |n| (|t_0| + |t_1| + |t_2| + sum of the half lengths).
@@ -166,7 +166,7 @@ template <class S>
       ((abs(t[0]) + abs(t[1])) + abs(t[2])) + ((a.half[0] + a.half[1]) + (b.half[0] + b.half[1]));
   const S apart = ((dot<S>(n, t) - extent) / length) * S(1 - 8 * e) -
                   ((a.radius + b.radius) * S(1 + 4 * e) + scale * S(16 * e));
-  // Where squares under- or overflow nothing is known; NaN counts as no gap.
+  // Where squares under- or overflow the gap is unknown, so 0; NaN counts as 0.
   const S largest(std::numeric_limits<T>::max() / 16), smallest(std::numeric_limits<T>::min() * 64);
   const Mask<S> known = apart > S(0) && squared > smallest && scale * scale < largest;
   return select(known, apart, S(0));
@@ -177,9 +177,9 @@ template <class S>
   return gap(a, b) > S(0);
 }
 
-/// Tests against the nearest point of the rectangle, found by alternating between its two
-/// coordinates. That ends at once where the sides are at right angles, and soon where they are
-/// nearly so. True where the volume is not finite.
+/// Whether the point is inside, by the nearest point of the rectangle, found by alternating between
+/// its two coordinates: exact at once where the sides are at right angles, soon where they nearly
+/// are. True where the volume is not finite.
 template <class S>
 bool contains(const Rss<S>& rss, const Vec3<long double>& point) {
   const Vec3<long double> x = point - rss.centre.template cast<long double>();
@@ -196,14 +196,14 @@ bool contains(const Rss<S>& rss, const Vec3<long double>& point) {
   return !((x - at[0] * side[0] - at[1] * side[1]).squaredNorm() > radius * radius);
 }
 
-/// Half the diagonal of the rectangle, and the radius.
+/// Half the diagonal of the rectangle, plus the radius.
 template <class S>
 S size(const Rss<S>& rss) {
   using std::sqrt;
   return sqrt(rss.half[0] * rss.half[0] + rss.half[1] * rss.half[1]) + rss.radius;
 }
 
-/// No point of the volume is farther from the origin of its frame, nor is its centre.
+/// An upper bound on the distance of the volume and its centre from the origin of its frame.
 template <class S>
 S reach(const Rss<S>& rss) {
   return rss.centre.norm() + size(rss) * S(1 + 80 * unit_roundoff<S>);

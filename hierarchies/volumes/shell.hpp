@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A spherical shell: all points between the inner and the outer radius from the centre, and within
-/// an angle of the axis (krishnan1998spherical). Thin where surface is curved, which no box is.
+/// A spherical shell: all points between an inner and an outer radius from the centre, within an
+/// angle of the axis (krishnan1998spherical). It stays thin on curved surfaces, unlike any box.
 ///
 /// The shell is the set of points centre + y with inner <= |y| <= outer and
-/// y.axis >= cosine |y| |axis|; in all directions where the cosine is not positive. The axis is of
-/// unit length but for 16e. One N_u is about 40 operations, one N_v about 250.
+/// y.axis >= cosine |y| |axis|; all directions where the cosine is not positive. The axis is of
+/// unit length up to 16e. One N_u is about 40 operations, one N_v about 250.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +36,7 @@ struct Shell {
 
   static constexpr Element<S> all_around = -2;
 
-  /// Around points without a surface between them.
+  /// The shell around points only.
   static Shell enclosing(std::span<const Vec3<double>> points)
     requires(!Batched<S>)
   {
@@ -47,16 +47,16 @@ struct Shell {
     });
   }
 
-  /// Around a surface, which comes nearer to the centre than its corners.
+  /// The shell around a surface, which may come nearer to the centre than its vertices.
   static Shell enclosing(std::span<const Vec3<double>> points, std::span<const Triangle> triangles)
     requires(!Batched<S>)
   {
     return thinnest(points, to_nearest(triangles));
   }
 
-  /// Around a surface, with the least surface of its own that is found: of the published shell and
-  /// others about the same centres, each with the narrowest cone, the best one's centre is
-  /// improved. Five to seven times as expensive.
+  /// The shell around a surface with the least surface area found: starts from the published shell
+  /// and others about the same centres, each with the narrowest cone, and improves the centre of
+  /// the best one. Five to seven times as expensive.
   static Shell tight(std::span<const Vec3<double>> points, std::span<const Triangle> triangles)
     requires(!Batched<S>)
   {
@@ -91,7 +91,7 @@ struct Shell {
     };
   }
 
-  /// The one of least volume among a hollow sphere about the enclosing sphere's centre and shells
+  /// The shell of least volume among a hollow sphere about the enclosing sphere's centre and shells
   /// about `shell_centres` with their axes towards it.
   template <class Inner>
   static Shell thinnest(std::span<const Vec3<double>> points, const Inner& inner) {
@@ -109,7 +109,7 @@ struct Shell {
   }
 
   /// The smallest shell about a centre with an axis of any length. Lengths are computed in float64
-  /// with fewer than 8 roundings, cosines with fewer than 16; the axis as it is rounded counts.
+  /// with fewer than 8 roundings, cosines with fewer than 16, for the axis as rounded.
   template <class Inner>
   static Shell about(const Vec3<S>& rounded_centre, const Vec3<double>& along,
                      std::span<const Vec3<double>> points, const Inner& inner) {
@@ -131,33 +131,33 @@ struct Shell {
     cosine -= 32 * u;
     shell.outer = rounded_up<S>(farthest * (1 + 16 * u) + tiny);
     shell.inner = rounded_down<S>(std::max(0.0, inner(centre) * (1 - 16 * u) - tiny));
-    // A cone wider than a right angle is not convex; near it, a posed one would not be.
+    // A cone wider than a half space is not convex, and one nearly as wide may pose to such.
     shell.cosine = cosine > 0.01 ? rounded_down<S>(cosine) : all_around;
     return shell;
   }
 
-  /// The volume, up to a factor 2 pi / 3.
+  /// The volume, divided by 2 pi / 3.
   static double volume(const Shell& shell) {
     const double outer = shell.outer, inner = shell.inner;
-    // Tests do not profit from a thickness below their margin.
+    // A thickness below the tests' margin brings no benefit.
     const double thickness = outer - inner + 64 * unit_roundoff<S> * outer;
     const double cap = shell.cosine > 0 ? 1 - double(shell.cosine) : 2;
     return cap * thickness * (outer * outer + outer * inner + inner * inner);
   }
 
-  /// The surface of both caps and the cone between them, up to a factor 2 pi.
+  /// The area of both caps and the cone between them, divided by 2 pi.
   static double surface(const Shell& shell) {
     const double outer = shell.outer, inner = shell.inner, cosine = shell.cosine;
     const double caps = outer * outer + inner * inner;
     if (!(cosine > 0)) return 2 * caps;
-    // The thickness that tests see, their margin included.
+    // The thickness in tests, which includes their margin.
     const double thickness = outer - inner + 64 * unit_roundoff<S> * outer;
     const double sine = std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
     return (1 - cosine) * caps + sine * (outer + inner) / 2 * thickness;
   }
 };
 
-/// A sphere around both. It need not be tight, since the volume fitted to the triangles mostly is.
+/// A full sphere around both. It need not be tight, as a parent mostly takes the fitted volume.
 template <class S>
 Shell<S> merge(const Shell<S>& a, const Shell<S>& b) {
   const Vec3<double> from = a.centre.template cast<double>(), to = b.centre.template cast<double>();
@@ -175,7 +175,7 @@ Shell<S> merge(const Shell<S>& a, const Shell<S>& b) {
   return both;
 }
 
-/// With s the stretch and D = |R'R - I| < s^2 - 1, a point centre + y is taken to the posed centre
+/// With s the stretch and D = |R'R - I| < s^2 - 1, a point centre + y goes to the posed centre
 /// plus y' = Ry + g, |g| <= slack (see Placement), so that
 ///   |y'| <= s |y| + slack, |y'| >= sqrt(1 - D) |y| - slack >= (3 - 2s) |y| - slack,
 /// since (1 - D)(1 + D)^2 >= 1 makes sqrt(1 - D) >= 1 / s^2. For the axis as it is posed,
@@ -203,9 +203,9 @@ Shell<S> posed(const Shell<S>& shell, const Placement<Element<S>>& placement) {
 
 namespace detail {
 
-/// One shell seen along a direction of which the cosine and sine of its angle with the axis are
-/// given: cosines of the angles from there to the nearest and to the farthest direction of the
-/// shell.
+/// A shell seen along a direction that is given by the cosine and sine of its angle with the axis:
+/// the cosines of the angles between that direction and the nearest and the farthest direction in
+/// the shell's cone.
 ///
 /// Given values off by 24e (16e for the axis' length, 8e for the rest) the sums are off by 28e.
 /// Where f passes t on the wrong side of the comparison, the cosines differ by 24e at most, and so
@@ -225,8 +225,8 @@ struct ShellAngles {
 
 }  // namespace detail
 
-/// At most the distance between the two shells; 0 where they may overlap. It is the largest of
-/// these bounds, each of which holds by itself:
+/// A lower bound on the distance of two shells; 0 where they may overlap. The largest of these
+/// bounds, each of which holds by itself:
 /// - the points of one shell are at distances from the other's centre that miss what the other
 ///   spans: from a point p at distance d from the centre, at angle f from the axis, a shell of half
 ///   angle t is no nearer than |r, c| = sqrt(r^2 + d^2 + 2 r d c) with c = cos min(pi, f + t) and
@@ -247,7 +247,7 @@ S gap(const Shell<S>& a, const Shell<S>& b) {
   const Vec3<S> t = b.centre - a.centre;
   const S scale = ((abs(t[0]) + abs(t[1])) + abs(t[2])) + (a.outer + b.outer);
   const S margin = scale * S(96 * e), square_margin = scale * margin;
-  // Squares below this may have lost digits to underflow.
+  // Squares below this may be inexact by underflow.
   const S smallest(64 * std::numeric_limits<T>::min());
   constexpr T infinity = std::numeric_limits<T>::infinity();
   const S squared_distance = squared_norm<S>(t), distance = sqrt(squared_distance);
@@ -304,7 +304,7 @@ S gap(const Shell<S>& a, const Shell<S>& b) {
     return shell.axis * select(shell.cosine > S(0), (shell.inner + shell.outer) / S(2), S(0));
   };
   along(Vec3<S>(t + (centre_of_axis(b) - centre_of_axis(a))));
-  // Where squares under- or overflow nothing is known.
+  // Where squares under- or overflow the gap is unknown, so 0.
   const Mask<S> known =
       scale * scale < S(std::numeric_limits<T>::max() / 16) && squared_distance > smallest;
   return select(known, apart * S(1 - 4 * e), S(0));
@@ -315,7 +315,7 @@ Mask<S> disjoint(const Shell<S>& a, const Shell<S>& b) {
   return gap(a, b) > S(0);
 }
 
-/// True where it is not finite.
+/// Whether the point is inside; true where the shell is not finite.
 template <class S>
 bool contains(const Shell<S>& shell, const Vec3<long double>& point) {
   const Vec3<long double> y = point - shell.centre.template cast<long double>();
@@ -336,7 +336,7 @@ S size(const Shell<S>& shell) {
                 max(shell.outer * sine, (shell.outer - shell.inner * c) / S(2)), shell.outer);
 }
 
-/// No point of the volume is farther from the origin of its frame, nor is its centre.
+/// An upper bound on the distance of the shell and its centre from the origin of its frame.
 template <class S>
 S reach(const Shell<S>& shell) {
   return shell.centre.norm() + shell.outer;

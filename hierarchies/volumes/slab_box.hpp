@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A box along the axes of the mesh's own frame, cut by a slab across the normal of the surface in
-/// it. A patch of surface is flat: the slab makes the box thin, as in slab-cut balls
-/// (larsson2009slabcut), and costs a third of the nine edge axes of an oriented box.
+/// A box along the axes of the mesh's own frame, cut by a slab across the normal of the surface.
+/// Small patches of surface are flat: the slab makes the box thin, as in slab-cut balls
+/// (larsson2009slabcut), at a third of the cost of an oriented box's nine edge axes.
 ///
-/// Made to be tested in a relative frame (see wide/sibling_test.hpp). Posed into the world it is an
+/// Meant for tests in a relative frame (wide/sibling_test.hpp). Posed into the world it is an
 /// oriented box with a slab, and costs as much. The slab is the set of points x with |n.(x -
-/// centre) - slab_centre| <= width for the normal n exactly as stored.
+/// centre) - slab_centre| <= width, for the normal n exactly as stored.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -32,7 +32,7 @@ struct SlabBox {
   using scalar = S;
   template <class Other>
   using over = SlabBox<Other>;
-  /// How it is tested in a relative frame: include wide/slab_box_sibling_test.hpp.
+  /// Its test in a relative frame; include wide/slab_box_sibling_test.hpp to use it.
   using sibling_test = SlabBoxSiblingTest<S>;
 
   Vec3<S> centre, half, normal;
@@ -51,8 +51,8 @@ struct SlabBox {
     return box;
   }
 
-  /// The slab is the thinner one of those across the mean normal and across the direction that the
-  /// surface faces most; of a lone triangle they are the same.
+  /// The slab is the thinner of two: across the mean normal, or across the direction that the
+  /// surface faces most; for a single triangle they coincide.
   static SlabBox enclosing(std::span<const Vec3<double>> points,
                            std::span<const Triangle> triangles)
     requires(!Batched<S>)
@@ -81,7 +81,7 @@ struct SlabBox {
   }
 
  private:
-  /// A difference of two coordinates is off by one rounding.
+  /// The box without its slab. A difference of two coordinates has one rounding.
   static SlabBox box_around(std::span<const Vec3<double>> points) {
     Vec3<double> low = points[0], high = low;
     for (const auto& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -95,9 +95,9 @@ struct SlabBox {
     return box;
   }
 
-  /// Sums of three products of differences are off by less than 8u of their magnitudes, which are
-  /// at most |x|_1 for a normal of about unit length. A direction that is zero or not finite
-  /// becomes the x axis.
+  /// Sets the slab across `direction`; the x axis if that is zero or not finite. Sums of three
+  /// products of differences are off by less than 8u of their magnitudes, which are at most |x|_1
+  /// for a normal of about unit length.
   void cut(const Vec3<double>& direction, std::span<const Vec3<double>> points) {
     normal = rounded<S>(direction.allFinite() && direction.squaredNorm() > 0.5
                             ? direction
@@ -128,8 +128,8 @@ struct PosedSlabBox {
   S slab_centre, width;
 };
 
-/// Around the corners of both; the slab is the box's thinnest side. Used only where no triangles
-/// are given.
+/// The box around the corners of both, with the slab across the direction in which the corners
+/// spread least. Looser than a volume fitted to triangles.
 template <class S>
 SlabBox<S> merge(const SlabBox<S>& a, const SlabBox<S>& b) {
   std::array<Vec3<double>, 16> corners;
@@ -144,9 +144,9 @@ SlabBox<S> merge(const SlabBox<S>& a, const SlabBox<S>& b) {
   return SlabBox<S>::enclosing(corners);
 }
 
-/// A point centre + y of the slab is taken to within slack of the posed centre plus Qy, and its
-/// normal to within tilt of Qn (see Placement): |n'.(x' - centre') - slab_centre| is wider than it
-/// was by at most tilt |y| + slack |n'|. Five roundings are made here.
+/// A point centre + y of the slab goes to within slack of the posed centre plus Qy, and its normal
+/// to within tilt of Qn (see Placement): |n'.(x' - centre') - slab_centre| grows by at most tilt
+/// |y| + slack |n'|. Five more roundings are made here.
 template <class S>
 PosedSlabBox<S> posed(const SlabBox<S>& volume, const Placement<Element<S>>& placement) {
   const S one(1), zero(0);
@@ -161,7 +161,7 @@ PosedSlabBox<S> posed(const SlabBox<S>& volume, const Placement<Element<S>>& pla
 
 namespace detail {
 
-/// Whether the slab of a has all of b's box on one side.
+/// Whether all of b's box is on one side of a's slab.
 ///
 /// n.t and n.b_k are off by less than 8e of |t| and 1; what they are summed with adds as much of
 /// itself. The margin of ObbPair is more than that: 256e of |t| and all half lengths, and
@@ -178,7 +178,7 @@ Mask<S> apart_by_slab(const PosedSlabBox<S>& a, const PosedSlabBox<S>& b, const 
 
 }  // namespace detail
 
-/// A NaN (from an overflow) compares as not disjoint.
+/// A comparison with NaN (from an overflow) means not disjoint.
 template <class S>
 Mask<S> disjoint(const PosedSlabBox<S>& a, const PosedSlabBox<S>& b) {
   const S margin = detail::ObbPair<S>(a.box, b.box).margin;

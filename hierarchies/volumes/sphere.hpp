@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A sphere: the cheapest volume to pose (one point) and to test (one distance), and the volume of
+/// A sphere: the cheapest volume to pose (one point) and to test (one distance); the volume used in
 /// the talk (quinlan1994efficient, hubbard1993interactive).
 ///
-/// There is no tighter construction: `enclosing` gives the smallest sphere (gartner1999miniball).
-/// The looser one is `merge`, the smallest sphere around two spheres (quinlan1994efficient).
+/// `enclosing` gives the smallest sphere around points (gartner1999miniball), so there is no
+/// tighter fit; `merge` is the smallest sphere around two spheres (quinlan1994efficient).
 ///
 /// One N_u is 15 multiplications and additions, one N_v is 9.
 #pragma once
@@ -42,8 +42,8 @@ struct Sphere {
     return sphere;
   }
 
-  /// A radius computed in float64 from at most eight roundings, made safe: the first factor covers
-  /// those, and the smallest normal number covers underflow.
+  /// Makes a radius safe that was computed in float64 with at most eight roundings: the factor
+  /// covers these, and the added length covers underflow.
   static S safe_radius(double radius)
     requires(!Batched<S>)
   {
@@ -73,20 +73,20 @@ Sphere<S> posed(const Sphere<S>& sphere, const Placement<Element<S>>& placement)
   return {placement.moved(sphere.centre), placement.grown(sphere.radius)};
 }
 
-/// Squares and sums are off by less than 16 unit roundoffs in all; `slack` keeps them from
-/// underflowing. A NaN (from an overflow) compares as not disjoint.
+/// Squares and sums are off by less than 16 unit roundoffs in all; `slack` prevents underflow. A
+/// comparison with NaN (from an overflow) means not disjoint.
 template <class S>
 Mask<S> disjoint(const Sphere<S>& a, const Sphere<S>& b) {
   const S radii = a.radius + b.radius;
   return squared_norm<S>(a.centre - b.centre) > radii * radii * S(1 + 16 * unit_roundoff<S>);
 }
 
-/// At most the distance between the two spheres; 0 where they may overlap.
+/// A lower bound on the distance of the two spheres; 0 where they may overlap.
 template <class S>
 S gap(const Sphere<S>& a, const Sphere<S>& b) {
   using std::min, std::sqrt;
   constexpr Element<S> e = unit_roundoff<S>;
-  // A square that overflows belongs to a distance that is larger still.
+  // Where a square overflows, the largest number is still a lower bound.
   const S largest = std::numeric_limits<Element<S>>::max();
   const S distance = sqrt(min(largest, squared_norm<S>(a.centre - b.centre)));
   const S apart = distance * S(1 - 8 * e) - (a.radius + b.radius) * S(1 + 2 * e);
@@ -106,7 +106,7 @@ S size(const Sphere<S>& sphere) {
   return sphere.radius;
 }
 
-/// No point of the volume is farther from the origin of its frame, nor is its centre.
+/// An upper bound on the distance of the sphere and its centre from the origin of its frame.
 template <class S>
 S reach(const Sphere<S>& sphere) {
   return sphere.centre.norm() + sphere.radius;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A tree of bounding volumes with up to four children a node, kept lane by lane in two ways: as
-/// rows of four, the children of a node, to be tested against four of another node; and as blocks
-/// of four rows, the sixteen grandchildren, to be tested against one volume (see mixed_kernel.hpp).
-/// The rows of a block would do for both, but lie in seventeen cache lines, where a row by itself
-/// lies in five.
+/// A tree of bounding volumes with up to four children a node, stored in SIMD lanes in two forms: a
+/// row, the four children of a node, for tests against four of another node; and a block of four
+/// rows, the sixteen grandchildren, for tests against one volume (see mixed_kernel.hpp). A row is
+/// also a part of a block, but lies there in seventeen cache lines (of oriented boxes), where a row
+/// alone takes five.
 ///
-/// A leaf holds up to four triangles; in a block, its row holds the leaf itself. Vacant lanes and
-/// rows repeat another. Nothing depends on a body's pose: bodies of one mesh share the tree.
+/// A leaf holds up to four triangles; in a block its row repeats the leaf itself. Vacant lanes and
+/// rows repeat another. Nothing here depends on a body's pose: bodies of one mesh share the tree.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ class BlockHierarchy {
   static constexpr int fan_out = 4, lanes = 16;
   static constexpr int fields = sizeof(V) / sizeof(scalar);
 
-  /// A node's name in a lane: its index, and whether it is a leaf.
+  /// The word that names a node in a lane: its index, and a flag for leaves.
   static constexpr std::uint32_t leaf_flag = 0x80000000u;
   static constexpr std::uint32_t number_of(std::uint32_t name) { return name & ~leaf_flag; }
 
@@ -41,7 +41,7 @@ class BlockHierarchy {
     V volume;
     scalar size;
     std::uint32_t first;          ///< the index of its row and block; leaf: of its first triangle
-    std::uint16_t grandchildren;  ///< which lanes of its block hold one
+    std::uint16_t grandchildren;  ///< which lanes of its block are in use
     std::uint8_t children;        ///< which lanes of its row hold a child; leaf: of its triangles
     std::uint8_t leaf;            ///< 0 or 1
   };
@@ -58,7 +58,7 @@ class BlockHierarchy {
   BlockHierarchy(const TriangleMesh& mesh, const Topology& binary, Fit fit = Fit::published,
                  std::uint32_t leaf_size = fan_out, Threads&& threads = Threads())
       : BlockHierarchy(mesh, binary, fit, leaf_size, threads) {}
-  /// On several threads. The result does not depend on their number.
+  /// The same on several threads. The result does not depend on their number.
   BlockHierarchy(const TriangleMesh& mesh, const Topology& binary, Fit fit, std::uint32_t leaf_size,
                  Threads& threads)
       : sphere_(mesh), supports_(mesh, sphere_.centre, threads) {
@@ -87,7 +87,7 @@ class BlockHierarchy {
   /// The row of an inner node, by its `first`.
   const Row& row(std::uint32_t first) const { return rows_[first]; }
   const Block& block(std::uint32_t first) const { return blocks_[first]; }
-  /// A root that is a leaf, as a row.
+  /// The row for a root that is a leaf.
   const Row& root_alone() const { return rows_.back(); }
   /// The corners of a leaf, by its `first`.
   const TriangleLanes<scalar, 4>& corners(std::uint32_t first) const {
@@ -96,11 +96,11 @@ class BlockHierarchy {
   /// The mesh's index of the triangle in lane `k - first` of a leaf.
   std::uint32_t triangle(std::uint32_t k) const { return triangles_[k]; }
   std::uint32_t root() const { return nodes_[0].leaf ? leaf_flag : 0; }
-  /// No vertex is farther than this from the mesh's own origin, and no volume extends beyond.
+  /// An upper bound on the distance of vertices and volumes from the mesh's own origin.
   double reach() const { return reach_; }
 
   const MeshSphere& sphere() const { return sphere_; }
-  /// About the sphere's centre.
+  /// The support map about the sphere's centre.
   const SupportMap& supports() const { return supports_; }
 
   std::size_t bytes() const {
@@ -110,7 +110,7 @@ class BlockHierarchy {
   }
 
  private:
-  /// Fills a row and a block for each inner node, and a row for the root.
+  /// Fills a row and a block for each inner node, and the row for the root.
   void put_in_blocks(const WideTopology& topology) {
     std::uint32_t inner = 0;
     for (Node& node : nodes_)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Collapses a binary topology into one with up to F children a node: nodes are replaced by their
-/// children. Of all ways to do that it takes the one with the least sum of surfaces of nodes, which
-/// is proportional to how many are likely to be tested; found by dynamic programming
-/// (ylitie2017efficient). It fills nodes near the leaves, of which there are many, and leaves lanes
-/// empty near the root. Opening the largest child until there are F (wald2008getting) does the
-/// opposite, at a tenth more time. A subtree of at most `leaf_size` triangles becomes a leaf, whose
-/// triangles are its children. O(n F^2).
+/// Collapses a binary topology into one with up to F children a node, by replacing nodes with their
+/// children. Of all ways to do so it finds the one with the least total surface area of nodes,
+/// which is proportional to the expected number of tests, by dynamic programming
+/// (ylitie2017efficient). This fills nodes near the leaves, of which there are many, and leaves
+/// lanes vacant near the root; opening the largest child until there are F (wald2008getting) does
+/// the opposite and is a tenth slower. A subtree of at most `leaf_size` triangles becomes a leaf,
+/// whose triangles are its children. O(n F^2).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -29,7 +29,7 @@ struct WideTopology {
     std::uint32_t begin = 0, end = 0;  ///< the primitives below it
   };
   std::vector<Node> nodes;                ///< the root is node 0; level by level
-  std::vector<std::uint32_t> primitives;  ///< triangle indices, those below a node adjacent
+  std::vector<std::uint32_t> primitives;  ///< triangle indices; those below a node are contiguous
 };
 
 namespace detail {
@@ -83,18 +83,18 @@ class Collapsing {
     return binary_.nodes[b].count > 0 || end_[b] - begin_[b] <= leaf_size;
   }
 
-  /// The best replacement of a binary subtree by at most a given number of wide nodes, 1 to the
-  /// fan-out.
+  /// The best replacement of a binary subtree by at most a given number of wide nodes, from 1 to
+  /// the fan-out.
   struct Cut {
     double cost = 0;
-    std::uint32_t left = 0, right = 0;  ///< nodes below each child; 0: it is one node itself
+    std::uint32_t left = 0, right = 0;  ///< nodes given to each child; 0: one node for the subtree
   };
-  /// A leaf is always one node, so it has one cut.
+  /// The best cut of subtree b into at most `roots` nodes. A leaf has only one.
   Cut& cut(std::uint32_t b, std::uint32_t roots) {
     return cuts_[first_cut_[b] + (leaf_[b] ? 0 : roots - 1)];
   }
 
-  /// Children come after their parents.
+  /// Fills in all cuts, children before parents.
   void find_least_costs(std::uint32_t fan_out, std::uint32_t leaf_size) {
     const auto n = static_cast<std::uint32_t>(binary_.nodes.size());
     std::size_t needed = 0;
@@ -112,7 +112,7 @@ class Collapsing {
         if (cut(b, roots - 1).cost < cut(b, roots).cost) cut(b, roots) = cut(b, roots - 1);
     }
   }
-  /// The best way to share `roots` nodes among the children of b.
+  /// The best way to divide `roots` nodes between the children of b.
   Cut shared(std::uint32_t b, std::uint32_t roots) {
     const std::uint32_t first = binary_.nodes[b].first;
     Cut best{std::numeric_limits<double>::infinity(), 1, roots - 1};
@@ -138,13 +138,13 @@ class Collapsing {
   LargeVector<double> surface_;
   LargeVector<std::uint32_t> begin_, end_;
   std::vector<bool> leaf_;
-  std::vector<std::size_t> first_cut_;  // the index of each node's first in cuts_
+  std::vector<std::size_t> first_cut_;  // index of each node's first cut in cuts_
   LargeVector<Cut> cuts_;
 };
 
 }  // namespace detail
 
-/// A leaf of the binary topology stays a leaf: it must hold at most `fan_out` triangles.
+/// A leaf of `binary` remains a leaf, so it must hold at most `fan_out` triangles.
 inline WideTopology collapsed(const TriangleMesh& mesh, const Topology& binary,
                               std::uint32_t fan_out, std::uint32_t leaf_size) {
   return detail::Collapsing(mesh, binary).collapse(fan_out, leaf_size);

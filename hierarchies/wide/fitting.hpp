@@ -40,7 +40,7 @@ struct alignas(16) NodeSphere {
   float radius;
 
   NodeSphere() = default;
-  /// About the centre of their box.
+  /// Centred on the bounding box of the points.
   explicit NodeSphere(std::span<const Vec3<double>> points) {
     Vec3<double> low = points[0], high = points[0];
     for (const auto& point : points)
@@ -57,8 +57,8 @@ struct alignas(16) NodeSphere {
   }
 };
 
-/// Corners of a mesh's triangles in the order of a topology: those below a node lie side by side,
-/// and a vertex stands there as often as it is a corner.
+/// The corners of a mesh's triangles in the order of a topology: those below a node are contiguous,
+/// and each vertex is repeated for every triangle that it belongs to.
 class OrderedTriangles {
  public:
   OrderedTriangles(const TriangleMesh& mesh, const WideTopology& topology, Threads& threads)
@@ -69,7 +69,7 @@ class OrderedTriangles {
   }
 
   const Triangle& operator[](std::size_t k) const { return triangles_[k]; }
-  /// Of primitives `begin` to `end` of the topology.
+  /// The triangles of primitives `begin` to `end` of the topology.
   std::span<const Triangle> triangles(std::uint32_t begin, std::uint32_t end) const {
     return std::span(triangles_).subspan(begin, end - begin);
   }
@@ -86,7 +86,7 @@ class OrderedTriangles {
   LargeVector<Triangle> triangles_;
 };
 
-/// How far volumes reach, one number for each thread, in cache lines of their own.
+/// The largest reach of volumes seen by one thread, aligned to cache lines of its own.
 struct alignas(128) Reach {
   double farthest = 0;
 

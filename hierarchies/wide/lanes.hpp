@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Operations on the lanes of a wide node's siblings: fused multiply-adds, one lane of a volume
-/// over batches, and one volume in all lanes.
+/// Operations on SIMD lanes of volumes: fused multiply-adds, access to the volume in one lane of a
+/// batch, and one volume broadcast to all lanes.
 #pragma once
 
 #include <cstring>
@@ -14,8 +14,8 @@
 
 namespace bvlab {
 
-/// a * b + c, rounded once where the processor can, else twice. Only for tests that cull, whose
-/// margins cover both, and never for the position of a vertex.
+/// a * b + c, rounded once where the processor can, else twice. Only for culling tests, whose
+/// margins cover both; never for the position of a vertex.
 template <Scalar S>
 [[gnu::always_inline]] inline S fused(const S& a, const S& b, const S& c) {
 #if defined(__AVX512F__)
@@ -51,7 +51,7 @@ template <Scalar S>
   return c - a * b;
 }
 
-/// 1 / x, to 2^-14 of it where there is an instruction for that: only to put pairs in an order.
+/// 1 / x, with a relative error up to 2^-14 where the processor has that: only for ordering pairs.
 template <Scalar S>
 [[gnu::always_inline]] inline S roughly_one_over(const S& x) {
 #if defined(__AVX512F__)
@@ -67,7 +67,7 @@ template <Scalar S>
 
 namespace detail {
 
-/// Volumes are plain aggregates of their scalars: field by field, lane by lane.
+/// The number of lanes. Volumes are plain aggregates of scalars, stored field by field.
 template <class V, class Lanes>
 constexpr int lanes_of = sizeof(Lanes) / sizeof(V);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Oriented boxes against oriented boxes of another body, by fifteen directions. The nine of edges
-/// are tested only where the six of faces leave a lane open. One N_v is about 200 operations.
+/// Tests an oriented box against siblings of another body by fifteen separating axes. The nine edge
+/// axes are tested only if the six face axes leave a lane open. One N_v: about 200 operations.
 ///
 /// A box a = {c + sum s_i a_i, |s_i| <= h_i} is taken to the other body's frame by x -> Q x + t,
 /// rounded to float: c' and a'_i. For any vector n the bodies' points are apart where
@@ -59,7 +59,7 @@ struct ObbSiblingTest<float> {
     alignas(16) float column[3][4], translation[4];
     float margin;
   };
-  /// Numbers that are broadcast from memory.
+  /// One posed box, laid out to be broadcast from memory.
   struct PosedNode {
     alignas(16) float centre[4], axes[3][4], half[3];
     float size;
@@ -115,7 +115,7 @@ struct ObbSiblingTest<float> {
     }
     return box;
   }
-  /// A box in each lane, taken from the other body's frame.
+  /// One box per lane, posed from the other body's frame.
   template <Batched S>
   [[gnu::always_inline]] static Obb<S> in_lanes(const Obb<S>& boxes,
                                                 const FrameChange& frame_change) {
@@ -135,9 +135,9 @@ struct ObbSiblingTest<float> {
     return box;
   }
 
-  /// A lower bound on the gap, along the direction in which it is largest; negative where the boxes
-  /// may overlap, and then the depth along the faces' directions. Directions are 1 + 26e long at
-  /// most. Edges are not tested for lanes that faces separate.
+  /// A lower bound on the gap along the best separating axis; negative where the boxes may overlap,
+  /// and then the penetration along face axes. Axes are at most 1 + 26e long. Edge axes are skipped
+  /// for lanes that face axes separate.
   template <Batched S>
   [[gnu::always_inline]] static S separation(const Obb<S>& one, const FrameChange& frame_change,
                                              const Obb<S>& lanes) {
@@ -150,7 +150,7 @@ struct ObbSiblingTest<float> {
     return separation<S>(in_lanes<S>(one), frame_change, lanes);
   }
 
-  /// The order is the depth relative to the sizes, deepest first.
+  /// The order is the penetration relative to the sizes, deepest first.
   template <Batched S>
   [[gnu::always_inline]] static OverlapLanes<S> overlap(const Obb<S>& one,
                                                         const FrameChange& frame_change,
@@ -166,8 +166,8 @@ struct ObbSiblingTest<float> {
     return overlap<S>(in_lanes<S>(one), frame_change, lanes, sizes + S(one.size));
   }
 
-  /// At most the distance of the boxes: of one box from the box around the other along its axes, or
-  /// along an edge direction.
+  /// A lower bound on the distance: of one box from the box around the other along its axes, or
+  /// along an edge axis.
   template <Batched S>
   [[gnu::always_inline]] static S gaps(const Obb<S>& one, const FrameChange& frame_change,
                                        const Obb<S>& lanes) {
@@ -183,7 +183,7 @@ struct ObbSiblingTest<float> {
  private:
   static constexpr double tiny = 0x1p-61;
 
-  /// Two boxes in one frame: `a` has been taken to the frame of `b`.
+  /// Two boxes in one frame: `a` has been posed into the frame of `b`.
   template <Batched S>
   struct Between {
     const Obb<S>&a, &b;
@@ -270,7 +270,7 @@ struct ObbSiblingTest<float> {
       return max(faces, select(edges > zero, edges, zero)) * S(below);
     }
 
-    /// Covers the lengths of directions, and four roundings.
+    /// Covers the lengths of the axes, and four roundings.
     static constexpr float below = 1 - 64 * unit_roundoff<float>;
   };
 };

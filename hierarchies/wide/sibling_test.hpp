@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The sibling test: one volume of a body against siblings of another, which stay in their mesh's
-/// frame. Its members:
+/// The sibling test: one volume of a body against siblings of another body, which are stored in
+/// their mesh's frame. Its members:
 ///
-///   FrameChange                 takes one body's frame to the other's: once a pair of bodies
+///   FrameChange                 from one body's frame to the other's: once per pair of bodies
 ///   PosedNode, posed_node(...)  one volume, posed into the other's frame: one N_u
-///   overlap(one, ...)           which lanes are apart from it, and an order of the rest: those
-///                               likeliest to touch first
-///   gaps(one, ...)              at most its distance to each lane
-///   separation(one, ...)        optional: the same, negative where they may overlap, and cheaper
+///   overlap(one, ...)           which lanes are disjoint from it, and an order of the rest: those
+///                               likeliest to touch come first
+///   gaps(one, ...)              a lower bound on its distance to each lane
+///   separation(one, ...)        optional and cheaper: the same, negative where they may overlap
 ///
-/// Any volume whose posed form is of its own kind gets all of this by being posed
-/// (PosedSiblingTest). A volume that can do better declares a `sibling_test` of its own.
+/// A volume whose posed form has its own type gets all of this from `posed` (PosedSiblingTest). A
+/// volume with a better test declares a `sibling_test` of its own.
 #pragma once
 
 #include <type_traits>
@@ -48,8 +48,8 @@ auto centre_of_volume(const V& v) {
                    (v.bounds[4] - v.bounds[5]) * S(0.5f));
 }
 
-/// By their posed forms, both volumes over S. The order is that of the distance of the centres over
-/// both sizes.
+/// The overlap test of posed volumes over S. The order is by the distance of the centres relative
+/// to the sum of the sizes.
 template <Scalar S, class P>
 [[gnu::always_inline]] inline OverlapLanes<S> overlap_of_posed(const P& one, const P& lanes,
                                                                const S& size, const S& sizes) {
@@ -60,7 +60,7 @@ template <Scalar S, class P>
 
 }  // namespace detail
 
-/// The sibling test of a volume whose posed form is of its own kind.
+/// The default sibling test, for volumes whose posed form has their own type.
 template <class V>
 struct PosedSiblingTest {
   using T = typename V::scalar;

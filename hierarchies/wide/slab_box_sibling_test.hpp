@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A box with its slab, posed into another body's frame, against siblings of that body: eight
-/// directions, six of faces and two of slabs. One N_v is about 70 operations, all of them for all
+/// Tests one slab-box, posed into another body's frame, against siblings of that body by eight
+/// separating axes, six of faces and two of slabs. One N_v is about 70 operations, each for all
 /// lanes at once.
 ///
 /// The box a is rotated by Q and moved by t (FrameChange); its axes are Q's columns q_i. With T the
@@ -33,8 +33,8 @@ struct SlabBoxSiblingTest<float> {
     alignas(16) float column[3][4], absolute[3][4], translation[4];
     float margin;
   };
-  /// All numbers that are needed in all lanes, next to each other in memory: broadcasting them from
-  /// there is free.
+  /// One posed slab-box: all numbers that are broadcast to all lanes, contiguous in memory, from
+  /// where a broadcast is free.
   struct PosedNode {
     alignas(16) float centre[4], reached[4], normal[4], absolute[4];
     float half[3], grown[3], slab_centre, width, size;
@@ -85,8 +85,8 @@ struct SlabBoxSiblingTest<float> {
     return one;
   }
 
-  /// A lower bound on the gap, along the direction in which it is largest; negative where they may
-  /// overlap, and then the depth.
+  /// A lower bound on the gap along the best separating axis; negative where they may overlap, and
+  /// then the penetration.
   template <Batched S>
   [[gnu::always_inline]] static S separation(const PosedNode& one, const FrameChange& frame_change,
                                              const SlabBox<S>& lanes) {
@@ -122,7 +122,7 @@ struct SlabBoxSiblingTest<float> {
     return max(max(max(faces_b, face_0), max(face_1, face_2)), max(slab_a, slab_b));
   }
 
-  /// The order is the depth relative to the sizes, deepest first.
+  /// The order is the penetration relative to the sizes, deepest first.
   template <Batched S>
   [[gnu::always_inline]] static OverlapLanes<S> overlap(const PosedNode& one,
                                                         const FrameChange& frame_change,
@@ -131,8 +131,8 @@ struct SlabBoxSiblingTest<float> {
     return {apart > S(0.0f), apart * roughly_one_over<S>(sizes + S(one.size))};
   }
 
-  /// At most the distance: of the boxes around one of them along the other's axes, or of a slab.
-  /// Axes and normals are 1 + 4e long at most, and fewer than ten roundings are made.
+  /// A lower bound on the distance: of boxes along the axes of one of them, or of a slab. Axes and
+  /// normals are at most 1 + 4e long, and fewer than ten roundings are made.
   template <Batched S>
   [[gnu::always_inline]] static S gaps(const PosedNode& one, const FrameChange& frame_change,
                                        const SlabBox<S>& lanes) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How far a mesh extends in any direction, in a few nanoseconds: its support function
+/// The extent of a mesh in any direction, in a few nanoseconds: its support function
 ///
 ///   h(g) = max over vertices v of g.(v - c),   c the centre of its sphere,
 ///
-/// sampled over a cube of directions. h is convex and h(s g) = s h(g) for s > 0, so what is
-/// interpolated between samples is never below it: if g is a sum of directions g_i with weights w_i
-/// >= 0, h(g) <= sum of w_i h(g_i). On a face of the cube, bilinear weights are such. The excess is
+/// sampled over a cube of directions. h is convex and h(s g) = s h(g) for s > 0, so interpolation
+/// between samples never falls below it: if g is a sum of directions g_i with weights w_i >= 0,
+/// then h(g) <= sum w_i h(g_i), and bilinear weights on a face of the cube are such. The excess is
 /// less than 1 % of the sphere's radius for 8 cells along an edge.
 ///
 /// Samples are rounded up.
@@ -24,8 +24,8 @@
 
 namespace bvlab {
 
-/// The point of the mesh's convex hull that is farthest along a direction, relative to c; and its
-/// height along it.
+/// The farthest point of the mesh along a direction, relative to c, and its height along that
+/// direction, rounded up.
 struct alignas(16) SupportSample {
   float point[3], height;
 };
@@ -47,7 +47,7 @@ class SupportMap {
     for (std::size_t v = 0; v < used.size(); ++v)
       if (used[v])
         for (int k = 0; k < 3; ++k) points_[k].push_back(mesh.vertices[v][k] - centre[k]);
-    // Registers are filled up with the last point.
+    // The last register is filled up with copies of the last point.
     for (auto& coordinates : points_)
       while (coordinates.size() % stdx::native_simd<double>::size() != 0)
         coordinates.push_back(coordinates.back());
@@ -80,8 +80,8 @@ class SupportMap {
     return g;
   }
 
-  /// `far` is scratch for the heights of all points along g. A difference and three products in
-  /// float64 are off by less than 5 roundings.
+  /// The sample in direction g; `far` is a buffer for the heights of all points. A difference and
+  /// three products in float64 have fewer than 5 roundings.
   SupportSample sample(const Vec3<double>& g, std::vector<double>& far) const {
     const std::size_t count = far.size();
     const double *x = points_[0].data(), *y = points_[1].data(), *z = points_[2].data();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The corners of the triangles of a leaf, lane by lane.
+/// The corners of a leaf's triangles, one triangle per SIMD lane.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace bvlab {
 
-/// Rounded to T, as corner[corner][coordinate][lane]. Lanes beyond a leaf's triangles repeat one.
+/// Rounded to T, as corner[corner][coordinate][lane]. Vacant lanes repeat one of the triangles.
 template <class T, int F>
 struct alignas(sizeof(T) * F) TriangleLanes {
   std::array<std::array<std::array<T, F>, 3>, 3> corner;

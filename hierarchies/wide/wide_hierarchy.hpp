@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A tree of bounding volumes with up to F children a node. Siblings lie lane by lane in one volume
-/// over batches, so that one volume is tested against all of them without a gather. Children of a
-/// leaf are its triangles: they have volumes of their own, and corners lane by lane.
+/// A tree of bounding volumes with up to F children a node. Siblings are the lanes of one batched
+/// volume, so that one volume is tested against all of them without a gather. The children of a
+/// leaf are its triangles: they have volumes of their own, and corners in lanes.
 ///
 /// Nothing in it depends on a body's pose: bodies of one mesh share it.
 #pragma once
@@ -29,16 +29,16 @@ class WideHierarchy {
   using Lane = Batch<scalar, F>;
   static constexpr int fan_out = F;
 
-  /// What is read of a node before it is tested or opened.
+  /// The data of a node that are read before it is tested or opened.
   struct alignas(32) Node {
     V volume;
     scalar size;
-    std::uint32_t first;  ///< of its children; leaf: of its triangles, as triangle(lane) counts
+    std::uint32_t first;  ///< of its children; leaf: of its triangles, see triangle()
     std::uint16_t lanes;  ///< which of its lanes hold a child
     std::uint16_t leaf;   ///< 0 or 1
   };
 
-  /// The children of a node, lane by lane.
+  /// The children of a node, one per lane.
   struct Siblings {
     Over<V, Lane> volumes;
     Lane size;
@@ -47,13 +47,13 @@ class WideHierarchy {
   WideHierarchy(const TriangleMesh& mesh, const Topology& binary, Fit fit = Fit::published,
                 std::uint32_t leaf_size = F, Threads&& threads = Threads())
       : WideHierarchy(mesh, binary, fit, leaf_size, threads) {}
-  /// On several threads. The result does not depend on their number.
+  /// The same on several threads. The result does not depend on their number.
   WideHierarchy(const TriangleMesh& mesh, const Topology& binary, Fit fit, std::uint32_t leaf_size,
                 Threads& threads)
       : WideHierarchy(mesh, collapsed(mesh, binary, F, std::min<std::uint32_t>(leaf_size, F)), fit,
                       threads) {}
 
-  /// Each leaf of the topology holds at most F triangles.
+  /// From a wide topology, whose leaves hold at most F triangles each.
   WideHierarchy(const TriangleMesh& mesh, const WideTopology& topology, Fit fit,
                 Threads&& threads = Threads())
       : WideHierarchy(mesh, topology, fit, threads) {}
@@ -98,11 +98,11 @@ class WideHierarchy {
   std::uint32_t leaf_of(std::uint32_t k) const { return leaves_[k / F]; }
   /// The mesh's index of the triangle in lane `k - first` of a leaf.
   std::uint32_t triangle(std::uint32_t k) const { return triangles_[k]; }
-  /// No vertex is farther than this from the mesh's own origin, and no volume extends beyond.
+  /// An upper bound on the distance of vertices and volumes from the mesh's own origin.
   double reach() const { return reach_; }
 
   const MeshSphere& sphere() const { return sphere_; }
-  /// About the sphere's centre.
+  /// The support map about the sphere's centre.
   const SupportMap& supports() const { return supports_; }
 
   std::size_t bytes() const {
@@ -112,7 +112,7 @@ class WideHierarchy {
   }
 
  private:
-  /// Called when all nodes have their volumes.
+  /// Fills the lanes of node i. All nodes must have their volumes already.
   void put_children(std::size_t i, const WideTopology& topology, const OrderedTriangles& triangles,
                     Fit fit, Reach& reach) {
     const auto& node = topology.nodes[i];
