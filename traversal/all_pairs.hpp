@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Queries every pair of a set of moving bodies in every frame: the talk's setting. Pairs are in
-/// the order (0,1) (0,2) ... (0,n-1) (1,2) ...
+/// Queries every pair of a set of moving bodies in every frame, as in the talk's experiments. Pairs
+/// are in the order (0,1) (0,2) ... (0,n-1) (1,2) ...
 #pragma once
 
 #include <concepts>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Runs queries on several threads and delivers their answers to one, in an order that does not
-/// depend on which thread ran what. Each query is copied to its thread's list, and found there by a
-/// key.
+/// depend on the threads. Each thread keeps copies of its answered queries in a list; a table by
+/// key says where each is.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class AnswersInOrder {
   template <class Query, class Counter, class KeyOf, class RunSome, class Take>
   void run(Threads& threads, std::size_t count, std::size_t keys, Counter& counter, KeyOf&& key_of,
            RunSome&& run_some, Take&& take) {
-    struct alignas(128) Own {  // written to by one thread, beside another's
+    struct alignas(128) Own {  // written by one thread, in cache lines of its own
       std::vector<Query> answered;
       Counter counter;
     };
@@ -50,7 +50,7 @@ class AnswersInOrder {
   }
 
  private:
-  /// A share so large that the cost of handing it out vanishes beside its queries.
+  /// A share of this size makes the cost of handing it out negligible.
   static constexpr std::size_t largest_share = 32;
 
   struct Position {

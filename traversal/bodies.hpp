@@ -71,7 +71,7 @@ class Bodies {
   void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) {
     bodies_[i].move(pose, origin);
   }
-  /// All of them; one pose for each.
+  /// Moves all bodies; poses[i] is that of body i.
   void move(std::span<const Pose> poses, const Vec3<double>& origin) {
     for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i].move(poses[i], origin);
   }
@@ -83,9 +83,9 @@ class Bodies {
     return {bodies_[pair.i], bodies_[pair.j], query, counter, workspace};
   }
 
-  /// For each p of `fresh`, writes to `apart[p]` whether the query culls the roots of `pairs[p]`.
-  /// Where bodies are sparse this is most of the work. In the world frame W pairs are tested at
-  /// once, in a fraction of the time. Counts volumes posed, not tests.
+  /// For each p of `fresh`, writes to `apart[p]` whether the query culls the roots of `pairs[p]`,
+  /// which is most of the work where bodies are sparse. In the world frame W pairs are tested at
+  /// once, in a fraction of the time. Counts the volumes posed, but not the tests.
   template <class Query, class Counter>
   void cull_roots(std::span<const ObjectPair> pairs, std::span<const std::uint32_t> fresh,
                   Query& query, Counter& counter, std::uint8_t* apart) {

@@ -2,8 +2,8 @@
 /// A mesh with its hierarchy, in a pose. Volumes and triangles are posed when they are first
 /// needed, at most once between two moves; a body that does not move is never posed again.
 ///
-/// Several threads may use a body at once (see once.hpp). One thread moves it, while no other uses
-/// it.
+/// Several threads may query a body at once (see once.hpp), but it must be moved by one thread,
+/// while no other uses it.
 ///
 /// In the world frame all bodies are posed about a common origin, so that a volume posed for one
 /// pair serves all others. In a body's frame no volume is posed here (see frame.hpp).

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Two bodies and a query between them: the argument of a strategy's `run`.
 ///
-/// A strategy sees no more than this, so it is written once for all volumes, queries, counters and
+/// A strategy uses nothing else, so it is written once for all volumes, queries, counters and
 /// widths. The members:
 ///   a(), b()              the bodies, as far as their motion is concerned (MovingBody)
 ///   query()               the query, which holds the answer

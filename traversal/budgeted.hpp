@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Time-critical collision detection, as hubbard1996approximating proposed for sphere trees: a
-/// traversal of at most a given number of volume tests, the most promising pairs first. Its answer
-/// is touching, apart, or not known yet with a bound on how deep one surface can have gone into the
+/// traversal with a budget of volume tests, the most promising pairs first. The answer is
+/// touching, apart, or not known yet, with a bound on how deep one surface can have penetrated the
 /// other.
 ///
 /// The bound. An open pair of nodes stands for two patches of surface. Let D be the smaller patch's
 /// diameter in the world. If the patches share a point, no point of that patch is farther than D
-/// from it, so none has gone deeper than D past the other surface there. Open pairs are kept in the
+/// from it, so none is deeper than D behind the other surface there. Open pairs are kept in the
 /// order of D, and the largest is expanded first: its D bounds them all.
 #pragma once
 
@@ -60,7 +60,7 @@ enum class Known : std::uint8_t { apart, touching, not_yet };
 
 struct BudgetedAnswer {
   Known known = Known::not_yet;
-  double deepest = 0;       ///< bound on the depth, in units of the mesh; 0 unless not_yet
+  double deepest = 0;       ///< bound on the penetration, in units of the mesh; 0 unless not_yet
   std::uint64_t tests = 0;  ///< volume tests made
 };
 
@@ -71,8 +71,8 @@ struct PairOfPatches {
   bool operator<(const PairOfPatches& other) const { return size < other.size; }
 };
 
-/// The front of a traversal within a budget. Its sweep is the whole run: largest pairs first, as
-/// many at once as the traversal has lanes. What is left in the queue is not decided.
+/// The front of a traversal within a budget. Its sweep is the whole run: largest pairs first, one
+/// per lane of the traversal. Pairs left in the queue at the end are undecided.
 class LargestFirst : public NoFront {
  public:
   /// The sizes belong to the hierarchies that are traversed. The queue, a heap, must be empty.
@@ -112,8 +112,8 @@ class LargestFirst : public NoFront {
     return count;
   }
 
-  /// Holds the primitives of two leaves; replaces any other pair by those with the children of the
-  /// larger patch.
+  /// Buffers the primitives of two leaves; replaces any other pair by the pairs with the children
+  /// of the larger patch.
   template <class Traversal>
   void expand(Traversal& traversal, const NodePair& pair) {
     const auto& a = traversal.a().node(pair.a);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Counters of the terms of T = N_u C_u + N_v C_v + N_p C_p (gottschalk1996obbtree,
-/// li1998incremental), and one that counts nothing and compiles to nothing.
+/// li1998incremental), and a counter that counts nothing and compiles to nothing.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Which node of a pair is opened, that is, replaced by its children. At least one of the two is no
-/// leaf.
+/// Which node of a pair is opened, that is, replaced by its children. At least one of the two is an
+/// inner node.
 #pragma once
 
 namespace bvlab {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A first upper bound for a query that wants one (distance): one descent from the roots to two
-/// leaves, always to the nearest child, and a test of their primitives.
+/// Finds a first upper bound for a query that wants one (distance): descends once from the roots to
+/// two leaves, always to the nearest child, and tests their primitives.
 #pragma once
 
 #include "traversal/tracked_front.hpp"

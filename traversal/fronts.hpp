@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The fronts that no single strategy owns. The bvlab program compiles each volume's loops from all
-/// of these together. A strategy with a front of another kind declares it (`using OwnFronts =
+/// The fronts shared by several strategies. The bvlab program compiles each volume's loops for all
+/// of these together. A strategy with another kind of front declares it (`using OwnFronts =
 /// TypeList<...>`); loops from that front are compiled separately for each volume.
 #pragma once
 

@@ -85,7 +85,7 @@ template <Batched B, class V>
           out + from * lanes);
     }
   } else {
-    // Filled beside the batch and copied: a batch may not be written through a T*.
+    // Filled in an array and copied: a batch may not be written through a T*.
     for (int field = 0; field < fields; ++field) {
       T column[lanes];
       for (int i = 0; i < lanes; ++i)

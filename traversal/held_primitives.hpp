@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A buffer of primitive pairs from leaves whose volumes overlap, held until there are enough of
-/// them to be tested together. Two leaves with more than `portion` pairs are not buffered: they are
-/// tested at once, `portion` pairs at a time.
+/// A buffer of primitive pairs from leaves whose volumes overlap, held until there are enough to be
+/// tested together. Two leaves with more than `portion` pairs are not buffered but tested at once,
+/// `portion` pairs at a time.
 #pragma once
 
 #include <algorithm>
@@ -54,9 +54,9 @@ class HeldPrimitives {
            pending_.size() > std::max<std::size_t>(Query::buffer_size, F::held_at_least);
   }
 
-  /// Tests what is held and returns whether the query is satisfied. If two large leaves have
-  /// satisfied it already, nothing is tested: the entries of leaves that came after them stay
-  /// untested until the next run.
+  /// Tests the held pairs and returns whether the query is satisfied. Where two large leaves have
+  /// satisfied it already, nothing is tested: the entries of later leaves stay untested until the
+  /// next run.
   bool flush() {
     if (!satisfied_) return test();
     for (const Candidate& candidate : pending_)
@@ -79,8 +79,8 @@ class HeldPrimitives {
     std::size_t triangles, witness;
   };
 
-  /// Tests all that is held, then the triangles of two large leaves until the query is satisfied.
-  /// This uses an object of its own, so that the other one need not live in memory for so rare a
+  /// Tests all held pairs, then the triangles of two large leaves until the query is satisfied.
+  /// It uses a buffer object of its own, so that the caller's stays in registers in the usual
   /// case.
   [[gnu::noinline]] static Portions in_portions(Body<V>& body_a, Body<V>& body_b, Query& query,
                                                 Counter& counter, Workspace& workspace, F& front,

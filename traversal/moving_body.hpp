@@ -16,8 +16,8 @@ class MovingBody {
 
   const Pose& pose() const { return pose_; }
   const HierarchyExtent& extent() const { return extent_; }
-  /// Two equal values mean that the body has not moved in between, unless 2^32 - 1 moves lie
-  /// between.
+  /// Counts the moves: equal values mean that the body has not moved in between (unless 2^32 - 1
+  /// moves have).
   std::uint32_t epoch() const { return epoch_; }
   /// The current pose, for bounds on later motion. Computed on request: a strategy without margins
   /// never requests it.
@@ -31,7 +31,7 @@ class MovingBody {
     follow();
     return displacement_bound_;
   }
-  /// The same for the differences of its rotation matrices, in the spectral norm.
+  /// The same for the rotation: the sum of the spectral norms of its matrix differences.
   double rotation_bound() {
     follow();
     return rotation_bound_;

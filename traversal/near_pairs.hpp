@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The pairs of bodies that are near each other: a broad phase over boxes around the bodies, and a
-/// slot for each pair whose boxes overlap. A pair keeps its slot from the frame in which its boxes
-/// begin to overlap to the frame in which they part; slots are reused.
+/// Tracks the pairs of bodies that are near each other: a broad phase over boxes around the bodies,
+/// and a slot for each pair whose boxes overlap. A pair keeps its slot from the frame in which its
+/// boxes begin to overlap to the frame in which they part; slots are reused.
 ///
-/// A frame costs O(m + q) plus what the broad phase takes, for m bodies that moved and q pairs near
+/// A frame costs O(m + q) plus the broad phase, for m bodies that moved and q pairs that involve
 /// them. A body is in the scene from its first move until it is taken out.
 #pragma once
 
@@ -92,7 +92,7 @@ class NearPairs {
       const auto& [i, j] = changes.began[k];
       meet(begin({i, j}), ObjectPair{i, j});
     }
-    // Boxes beyond the range of float overlap even bodies taken out; such a pair starts afresh.
+    // Boxes clipped to the range of float overlap even removed bodies; such pairs start afresh.
     for (const auto i : movers_)
       if (!present_[i])
         for (const auto& [other, slot] : neighbours_[i]) part(slot), meet(slot, near_[slot].pair);
@@ -132,7 +132,7 @@ class NearPairs {
     std::uint32_t other, slot;
   };
 
-  /// A point far away, different for each body. It overlaps only boxes beyond the range of float.
+  /// A far point, its own for each removed body. Only boxes clipped to float's range overlap it.
   static Box<float> outside(std::size_t i) {
     constexpr float far = std::numeric_limits<float>::max() / 4;
     constexpr std::size_t cells = 1 << 11;
@@ -142,8 +142,8 @@ class NearPairs {
     return box;
   }
 
-  /// Takes the centre of the bodies as origin. Float boxes and volumes are posed relative to it, so
-  /// that their precision does not depend on where in the world the bodies are.
+  /// Makes the centre of the bodies the origin. Float boxes and volumes are posed relative to it,
+  /// so that their precision does not depend on where in the world the bodies are.
   void choose_origin() {
     Eigen::AlignedBox3d all;
     for (const auto i : movers_)
@@ -154,8 +154,8 @@ class NearPairs {
   }
 
   /// Collects the slots of the movers' pairs, each once. Where more than a quarter of the bodies
-  /// have moved, in the order of slots; else by the lists of neighbours, with movers along a Morton
-  /// curve, so that data that one pair has brought into the cache serves the next.
+  /// have moved, it scans all slots; else the movers' lists of neighbours, with movers along a
+  /// Morton curve, so that pairs share data in the cache.
   void find_due() {
     if (4 * movers_.size() > boxes_.size()) {
       for (std::uint32_t slot = 0; slot < near_.size(); ++slot) {

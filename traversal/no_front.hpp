@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The fronts that keep nothing: every run starts from the roots.
+/// The fronts without entries: every run starts from the roots.
 #pragma once
 
 #include <cstddef>

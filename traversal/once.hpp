@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Work that is done on first request, once for each stamp, even if several threads request it: one
-/// of them does it, the others wait. The work must be short and must not request work that waits in
-/// turn.
+/// Work that is done on first request, once per stamp, even if several threads request it: one
+/// thread does it, the others wait. The work must be short and must not request work that could
+/// wait for it.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 
 namespace bvlab {
 
-/// Whether several threads may request work at the same time. For one thread a request costs no
-/// more than a comparison.
+/// Whether several threads may request work at the same time. With one thread a request costs a
+/// comparison.
 enum class Sharing : std::uint8_t { one_thread, several_threads };
 
-/// Reserved stamps: of work in progress, and of work that was never done.
+/// Reserved stamps: work in progress, and work that was never done.
 inline constexpr std::uint32_t in_work = 0xffffffffu, never_done = 0xfffffffeu;
 
 /// Whether the work has been done under this stamp.

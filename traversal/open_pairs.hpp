@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Pairs waiting to be tested, last in, first out: `reserve` once, then `push` without a check.
+/// A stack of pairs waiting to be tested: `reserve` once, then `push` without a check.
 #pragma once
 
 #include <cstddef>

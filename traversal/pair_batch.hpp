@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Pairs of nodes that are tested together, as many as a batch has lanes.
+/// A batch of pairs of nodes that are tested together, one pair per lane.
 #pragma once
 
 #include <array>
@@ -124,7 +124,7 @@ class PairBatch {
     nodes_a_[lane] = pair.a, nodes_b_[lane] = pair.b;
   }
   NodePair operator[](std::size_t lane) const { return {nodes_a_[lane], nodes_b_[lane]}; }
-  /// At most the distance between the volumes tested in a lane; 0 where gaps are not measured.
+  /// A lower bound on the distance of the volumes in a lane; 0 where gaps are not measured.
   double gap(std::size_t lane) const {
     if constexpr (kGaps) return static_cast<double>(gaps_[lane]);
     return 0;

@@ -2,16 +2,16 @@
 /// The recommended configuration for given meshes, or for given meshes and their motion, for the
 /// queries touching and contacts.
 ///
-/// Three configurations are candidates. Which of them is fastest depends on the motion as much as
-/// on the meshes: where surfaces run along each other closely, oriented boxes win on any mesh, and
-/// no property of the meshes that was tried shows that. So where the motion is known, short samples
-/// of it are played by all candidates, and the expected cost
+/// There are three candidate configurations. Which one is fastest depends on the motion as much as
+/// on the meshes: where surfaces run closely along each other, oriented boxes win on any mesh, and
+/// no property of meshes that was tried predicts it. So where the motion is known, all candidates
+/// replay short samples of it, and the expected cost of a pair
 ///
 ///     C + N_f C_f + N_v C_v + N_p C_p
 ///
-/// of a pair, with the N counted on the samples and the C below, decides (N_f: entries of fronts).
-/// Counts do not depend on the machine's load, so the choice is repeatable. Where the motion is not
-/// known, the shape of the triangles decides.
+/// with the N counted on the samples and the C below, decides (N_f: entries of fronts). Counts do
+/// not depend on the machine's load, so the choice is repeatable. Where the motion is unknown, the
+/// shape of the triangles decides.
 #pragma once
 
 #include <algorithm>
@@ -32,8 +32,8 @@
 
 namespace bvlab {
 
-/// Oriented boxes, which fit best and cost most: for meshes of long triangles, as models of plates
-/// and beams have them, for surfaces that run along each other, and for contacts.
+/// Oriented boxes, which fit best and cost most: for meshes of long triangles, as in models of
+/// plates and beams, for surfaces that run closely along each other, and for contacts.
 using RecommendedOriented =
     MarginsOver<Obb<float>, 4, MixedKernel, builds::BottomUpLocal, Fit::tight, 4>;
 
@@ -41,9 +41,9 @@ using RecommendedOriented =
 using RecommendedSmallLeaves = MarginsOver<SlabBox<float>, recommended_fan_out, SiblingsKernel,
                                            builds::BottomUpLocal, Fit::published, 4>;
 
-/// What a pair of bodies (C), an entry of a front that is looked at (C_f), a test of two volumes
-/// (C_v) and one of two triangles (C_p) cost, in nanoseconds on the machine of record real-motions;
-/// posing is part of C_v. Only their ratios matter.
+/// The costs of a pair of bodies (C), a visited entry of a front (C_f), a test of two volumes (C_v)
+/// and one of two triangles (C_p), in nanoseconds on the machine of record real-motions; posing is
+/// part of C_v. Only their ratios matter.
 struct UnitCosts {
   double pair, entry, volume, triangle;
 
@@ -61,7 +61,7 @@ struct RecommendedCandidate {
   std::string_view name;
   UnitCosts touching, contacts;
 
-  /// Of a query, by its name.
+  /// The unit costs for a query, by its name.
   const UnitCosts& costs(std::string_view query) const {
     return query == Touching::name ? touching : contacts;
   }
@@ -79,8 +79,8 @@ void for_each_candidate(Do&& what) {
       "oriented boxes", {18, 10.1, 5.7, 8.8}, {184, 10.1, 5.8, 3.4}});
 }
 
-/// The frames of a motion that are played for the choice: up to sixteen runs of `run` consecutive
-/// frames, evenly spread over at most a quarter of the motion. None of a motion of fewer than 24.
+/// The frames of a motion that are replayed for the choice: up to sixteen runs of `run` consecutive
+/// frames, evenly spread, at most a quarter of the motion. None where it has fewer than 24.
 struct SampledFrames {
   static constexpr std::size_t run = 6, uncounted = 3, most_runs = 16;
   std::vector<std::size_t> frames;
@@ -91,14 +91,14 @@ struct SampledFrames {
       for (std::size_t k = 0; k < run; ++k)
         frames.push_back((2 * i + 1) * length / (2 * runs) - run / 2 + k);
   }
-  /// Whether frames[k] is counted. The first of a run are not: bodies have been put elsewhere, and
-  /// fronts begin anew.
+  /// Whether frames[k] is counted. The first frames of a run are not: there bodies have jumped and
+  /// fronts start anew.
   static bool counted(std::size_t k) { return k % run >= uncounted; }
-  /// How many are counted.
+  /// The number of counted frames.
   std::size_t size() const { return frames.size() / run * (run - uncounted); }
 };
-/// Those of a motion of so many frames. None where the meshes have more than 200 000 triangles in
-/// all: they are not built three times for a choice.
+/// The sampled frames for a motion of `frames` frames. None where the meshes have more than 200 000
+/// triangles in all, since building hierarchies for three candidates would take too long.
 inline SampledFrames samples_of(std::span<const TriangleMesh> meshes, std::size_t frames) {
   std::size_t triangles = 0;
   for (const auto& mesh : meshes) triangles += mesh.triangles.size();
@@ -119,9 +119,9 @@ decltype(auto) with_recommended(std::span<const TriangleMesh> meshes, Visit&& vi
   return visit(std::type_identity<RecommendedOriented>());
 }
 
-/// What the counted of `samples` cost by one candidate, in the unit of its unit costs. samples[k]
-/// has the poses of all bodies; body i has mesh i mod their number. `make_query(p)` returns the
-/// query of pair p, as for WidePairs::frame.
+/// The expected cost of the counted samples with one candidate, in the unit of its unit costs.
+/// samples[k] has the poses of all bodies; body i has mesh i modulo the number of meshes.
+/// `make_query(p)` returns the query of pair p, as for WidePairs::frame.
 template <class Best, class MakeQuery>
 double expected_cost(std::span<const TriangleMesh> meshes,
                      std::span<const std::vector<Pose>> samples, const UnitCosts& costs,

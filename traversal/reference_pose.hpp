@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A pose from which motion is measured, and bounds on how far a body has moved since.
+/// A reference pose, and bounds on how far a body has moved since.
 ///
 /// A point of a body, given by v relative to the body's centre c in the mesh's frame, lies at
 /// x = (Rc + t) + Rv. From a pose r to a pose f it moves by
@@ -13,8 +13,8 @@
 ///
 ///   |R_f - R_r|_2 <= (F + d_f + d_r) / sqrt(2) + d_f + d_r,   F = |R_f - R_r|_F,
 ///
-/// where both lie on the same side of O(3), which is so if F + d_f + d_r < 2; else F itself is the
-/// bound. For a point of each of two bodies the difference of their moves is at most
+/// where both are on the same side of O(3), which holds if F + d_f + d_r < 2; else F itself is the
+/// bound. For one point on each of two bodies the difference of their displacements is at most
 ///
 ///   |(c_f - c_r)_a - (c_f - c_r)_b| + |R_f - R_r|_2,a radius_a + |R_f - R_r|_2,b radius_b,
 ///

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A clock of relative motion: an upper bound on how much nearer two bodies, or any parts of them,
-/// can have come to each other. Measured gaps expire by it. The bound is derived in
-/// reference_pose.hpp.
+/// can have come to each other. A measured gap expires when the clock has advanced by it. The bound
+/// is derived in reference_pose.hpp.
 #pragma once
 
 #include <utility>
@@ -28,8 +28,8 @@ class RelativeMotionBound {
                                                to_b.error_bound);
   }
 
-  /// Makes the current poses the reference poses. Deadlines given before stay valid. But motion
-  /// back towards the former reference poses now counts as motion: it cancels nothing.
+  /// Makes the current poses the reference poses. Earlier deadlines stay valid, but motion back
+  /// towards the former reference poses now counts as motion instead of cancelling.
   void refer(MovingBody& a, MovingBody& b) {
     base_ = now();
     a_ = a.reference_pose(), b_ = b.reference_pose();
@@ -38,10 +38,10 @@ class RelativeMotionBound {
 
   /// The time on the clock.
   double now() const { return (base_ + since_) * (1 + 4 * unit_roundoff<double>); }
-  /// The part of it since the reference poses.
+  /// The part of `now()` since the reference poses.
   double since() const { return since_; }
 
-  /// Bodies (or parts) that are `gap` apart now cannot touch while the clock shows less than this.
+  /// The time until which bodies (or parts) that are `gap` apart now cannot touch.
   double deadline(double gap) const {
     return base_ + (gap - since_) - 4 * unit_roundoff<double> * (base_ + gap + since_);
   }

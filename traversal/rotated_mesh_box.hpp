@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A box along the world's axes around a mesh in any pose, from the mesh's support values in the 26
-/// directions of a cube's faces, edges and corners, which are computed once.
+/// The axis-aligned box, in the world, around a mesh in any pose, from the mesh's support values in
+/// the 26 directions of a cube's faces, edges and corners, which are computed once.
 ///
 /// Along an axis d the rotated mesh reaches as far as the mesh reaches along n = R'd. With
 /// coordinates x >= y >= z >= 0 of n, up to order and signs, n = (x-y)(1,0,0) + (y-z)(1,1,0) +
@@ -29,11 +29,11 @@ namespace bvlab {
 
 class RotatedMeshBox {
  public:
-  /// Vertices that no triangle uses count as well.
+  /// Vertices that no triangle uses are included.
   explicit RotatedMeshBox(const TriangleMesh& mesh) {
     support_.fill(-std::numeric_limits<double>::infinity());
     for (const auto& v : mesh.vertices) {
-      // For the two roundings of a sum of three.
+      // Covers the two roundings of a sum of three.
       const double room = 4 * unit_roundoff<double> * v.lpNorm<1>();
       for (int x = -1; x <= 1; ++x)
         for (int y = -1; y <= 1; ++y)
@@ -46,7 +46,7 @@ class RotatedMeshBox {
     reach_ *= 1 + 8 * unit_roundoff<double>;
   }
 
-  /// The box in a pose, relative to `origin`. Bounds too large for a float end at the largest one.
+  /// The box in a pose, relative to `origin`. Bounds beyond the range of float are clipped to it.
   Box<float> operator()(const Pose& pose, const Vec3<double>& origin) const {
     constexpr float most = std::numeric_limits<float>::max();
     Box<float> box;

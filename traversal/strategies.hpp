@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// THE list of strategies.
+/// THE list of strategies: how a pair of bodies is queried from frame to frame.
 ///
 /// A strategy belongs to one pair of bodies and lives as long as the pair. It is default
 /// constructible, and has

@@ -3,7 +3,7 @@
 ///
 /// The front (the talk's separation list) is where the last recursion stopped: the pairs of nodes
 /// that were culled, and the pairs of leaves. A front decides what it keeps of a pair, which
-/// entries a run tests, in which order, and what is opened besides.
+/// entries a run tests, in which order, and which culled pairs it opens nevertheless.
 ///
 /// Law: in every run the entries tested, with what is known of the others, decide the query; and
 /// the entries partition the product of the two bodies' leaves, so that every pair of leaves lies
@@ -29,7 +29,7 @@ struct TraversalStatistics {
   std::size_t triangles = 0;  ///< pairs of primitives tested
 };
 
-/// What a run has found out about an entry.
+/// What a run has found about an entry.
 enum class Seen {
   culled,  ///< the query culls it; its gap is known where gaps are measured
   near,    ///< not culled, both are leaves; primitives are tested unless a hit ends the run
@@ -41,10 +41,10 @@ enum class Seen {
 ///   sweep(traversal)         tests entries, by Traversal::look_at; returns whether the query is
 ///                            satisfied
 ///   front[slot]              the pair
-///   keep(slot, seen, gap)    a tested entry stays one; `seen` is what the test found
+///   keep(slot, seen, gap)    a tested entry is kept; `seen` is the result of its test
 ///   open(slot)               a tested entry is replaced: the next pair that is added, of at least
 ///                            two, takes its slot
-///   add(pair, seen, gap)     makes the pair an entry; returns its slot
+///   add(pair, seen, gap)     adds the pair as an entry; returns its slot
 ///   finish(witness, satisfied)
 ///                            the run is over, ended by the query or not; `witness` is the slot
 ///                            of the entry to test first in the next run, or Outcome::none
@@ -55,9 +55,9 @@ enum class Seen {
 ///   primitives(query, pending, workspace)
 ///                            passes candidates to the query; their slots name their entries, and
 ///                            those of one entry are consecutive
-///   measures_gaps            whether the front uses `gap`: for culled pairs, at most the distance
-///                            between the volumes, in units of the meshes; else 0
-///   held_at_least            candidates that are worth waiting for, as many as fill its batches
+///   measures_gaps            whether the front uses `gap`: a lower bound on the distance of the
+///                            volumes of culled pairs, in units of the meshes; else 0
+///   held_at_least            so many candidates may wait for a test, to fill a batch
 template <class F, class Traversal>
 concept TrackedFront =
     requires(F front, Traversal& traversal, typename Traversal::Query& query,

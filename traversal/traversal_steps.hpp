@@ -58,7 +58,7 @@ class TraversalSteps {
     }
     return test(count);
   }
-  /// At most the distance between the two volumes.
+  /// A lower bound on the distance of the two volumes.
   auto gap(const NodePair& pair) {
     require(pair);
     count_tests(1);
@@ -67,8 +67,8 @@ class TraversalSteps {
     return posed_volumes().gap(pair);
   }
 
-  /// `hold` holds the primitive pairs of two leaves, from the entry in `slot` (Outcome::none: no
-  /// entry). `flush` tests what is held and returns whether the query is satisfied.
+  /// `hold` buffers the primitive pairs of two leaves, from the entry in `slot` (Outcome::none: no
+  /// entry). `flush` tests the buffer and returns whether the query is satisfied.
   void hold(const NodePair& pair, std::size_t slot = Outcome::none) {
     held_.hold(a().node(pair.a), b().node(pair.b), slot);
   }

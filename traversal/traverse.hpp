@@ -53,7 +53,7 @@ class Traversal : public TraversalSteps<B, V, Query, Counter, Front> {
     }
     return satisfied;
   }
-  /// Tests one entry and its primitives at once: most often a witness decides the query.
+  /// Tests one entry and its primitives at once: a witness mostly decides the query.
   bool look_at_alone(std::size_t slot) {
     return look_at_entries(1, [slot](std::size_t) { return slot; }) || flush();
   }
@@ -145,8 +145,8 @@ const bvlab::PlacementOf<V>* placement_in_b(Body<V>& a, Body<V>& b, Workspace& w
 
 }  // namespace detail
 
-/// Runs the query of two bodies from a front. The front is kept up to date and stays a partition
-/// even if the query ends the run early. Returns what that cost, and whether the run was complete.
+/// Runs the query of two bodies from a front, which is updated and remains a partition even if the
+/// query ends the run early. Returns the numbers of tests, and whether the run was complete.
 template <class B, class V, class Query, class Counter, class Front>
 TraversalStatistics traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
                              Workspace& workspace, Front&& front) {

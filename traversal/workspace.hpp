@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Buffers that one traversal leaves to the next, for all pairs of bodies.
+/// Buffers that are reused from one traversal to the next, for all pairs of bodies.
 #pragma once
 
 #include <any>
@@ -16,8 +16,8 @@ struct Workspace {
   OpenPairs open;
   std::vector<Candidate> pending;
 
-  /// Scratch space that a front needs only during its sweep: one object of each type T, in the
-  /// state in which it was left.
+  /// Scratch space that a front needs only during its sweep: one object per type T, in the state in
+  /// which it was last left.
   template <class T>
   T& scratch() {
     for (std::any& each : rooms)

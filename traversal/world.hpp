@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A scene of many moving bodies. See world_of.hpp for its interface and its cost.
+/// A scene of many moving bodies: a broad phase and a configuration for pairs. See world_of.hpp.
 #pragma once
 
 #include <span>
@@ -13,10 +13,10 @@
 
 namespace bvlab {
 
-/// `World(shapes)`, of `Recommended::Shape`, is the recommended configuration; meshes and
-/// hierarchies must outlive it. recommended_for.hpp has another for meshes of long triangles, and
-/// chooses. Any other is named by the type of its pairs:
-/// `World<StrategyPairs<Bodies<B, V>, Strategy>>({shapes, strategy})`.
+/// `World(shapes)`, with shapes of type `Recommended::Shape`, is the recommended configuration;
+/// meshes and hierarchies must outlive it. recommended_for.hpp has others, and a choice among them.
+/// Any other configuration is named by the type of its pairs: `World<StrategyPairs<Bodies<B, V>,
+/// Strategy>>({shapes, strategy})`.
 template <class Pairs = Recommended::Pairs, class Method = Auto<float, Closed>>
 class World : public WorldOf<Pairs, Method> {
  public:

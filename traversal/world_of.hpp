@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A scene of many bodies. Only pairs whose boxes overlap are queried, and only when one of the two
-/// bodies has moved: a broad phase over the bodies' boxes finds them (NearPairs). A pair may
-/// remember what it needs of its last answer, and forgets it when the boxes part.
+/// bodies has moved: a broad phase over the bodies' boxes finds them (NearPairs). A pair may keep
+/// its last answer or a front, and drops them when the boxes part.
 ///
 /// Bodies that do not move cost nothing. Nothing is built for a body that no other has come near.
 ///
@@ -79,7 +79,7 @@ class WorldOf {
   std::size_t near() const { return near_.size(); }
   /// The number of pairs that the last update queried.
   std::size_t asked() const { return asked_; }
-  /// The number of entries of all fronts together; looks at every pair.
+  /// The number of entries of all fronts. O(slots).
   std::size_t front_size() const {
     std::size_t sum = 0;
     for (std::uint32_t slot = 0; slot < near_.slots(); ++slot)
@@ -127,7 +127,7 @@ class TouchingPairs {
     index_[slot] = none;
     pairs_.pop_back(), slots_.pop_back();
   }
-  /// In any order.
+  /// The touching pairs, in any order.
   std::span<const ObjectPair> pairs() const { return pairs_; }
 
  private:

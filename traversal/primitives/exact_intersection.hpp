@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Whether two closed triangles share a point, one pair at a time: plane sides first, then at most
-/// two orientations of mixed corners [guigue2003fast], each sign exact. Flat pairs (coplanar or of
-/// zero area) are decided in a projection by exact separating lines.
+/// Decides exactly whether two closed triangles share a point, one pair at a time: first the sides
+/// of the planes, then at most two orientations of mixed corners (guigue2003fast), each sign exact.
+/// Flat pairs (coplanar or of zero area) are decided in a projection by exact separating lines.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ struct Hull {
   explicit Hull(const Triangle& t) : corner(t) {
     for (int i = 0; i < 3; ++i)
       if (orientation(t[0], t[1], t[2], i, (i + 1) % 3) != 0) return;
-    // Points of one line stand in it as they stand in the dictionary.
+    // Collinear points are ordered along their line as they are lexicographically.
     const auto [first, last] = std::minmax_element(t.begin(), t.end(), lexicographically_less);
     const Point ends[] = {*first, *last};
     corner = {ends[0], ends[1], ends[1]};
@@ -42,8 +42,8 @@ struct Hull {
   }
 };
 
-/// True where a line along an edge of `a` has the hull of `b` strictly on its other side; seen in
-/// the plane of coordinates i and j, in which `a` must not be collinear if it is a triangle.
+/// Whether the line along an edge of `a` separates the hull of `b` strictly from `a`, in the plane
+/// of coordinates i and j, in which a triangle `a` must not be collinear.
 inline bool separated_by_an_edge(const Hull& a, const Hull& b, int i, int j) {
   if (a.corners == 1) return false;
   const int turn = a.corners == 3 ? orientation(a.corner[0], a.corner[1], a.corner[2], i, j) : 0;
@@ -61,8 +61,8 @@ inline bool separated_by_an_edge(const Hull& a, const Hull& b, int i, int j) {
   return false;
 }
 
-/// Both in one plane that coordinates i and j map without folding. Two convex polygons are apart
-/// exactly where an edge of one of them separates them, unless all lie in one line.
+/// For hulls in one plane, which coordinates i and j map one-to-one. Two convex polygons are apart
+/// exactly where an edge of one separates them, unless all points are collinear.
 inline bool intersect_in_plane(const Hull& a, const Hull& b, int i, int j) {
   return !separated_by_an_edge(a, b, i, j) && !separated_by_an_edge(b, a, i, j);
 }
@@ -80,7 +80,7 @@ inline bool segment_intersects_triangle(const Hull& s, const Hull& t) {
     while (orientation(a, b, c, i, (i + 1) % 3) == 0) ++i;
     return intersect_in_plane(s, t, i, (i + 1) % 3);
   }
-  // The line crosses the plane in one point; it lies in the triangle if no two edges disagree.
+  // The line crosses the plane in one point, inside the triangle if no two edges disagree.
   const int sides[] = {orientation(p, q, a, b), orientation(p, q, b, c), orientation(p, q, c, a)};
   const auto [least, greatest] = std::minmax_element(sides, sides + 3);
   return *least * *greatest >= 0;
@@ -102,7 +102,7 @@ inline bool segments_intersect(const Hull& s, const Hull& t) {
   return !lexicographically_less(q, r) && !lexicographically_less(w, p);  // all in one line
 }
 
-/// Coplanar triangles, or at least one without area.
+/// For coplanar triangles, or where at least one has no area.
 inline bool flat_intersect(const Triangle& a, const Triangle& b) {
   const Hull hull_a(a), hull_b(b);
   if (hull_a.corners < 3)
@@ -114,8 +114,8 @@ inline bool flat_intersect(const Triangle& a, const Triangle& b) {
   return intersect_in_plane(hull_a, hull_b, i, (i + 1) % 3);
 }
 
-/// The corner that lies alone on its side of the other triangle's plane, given the three sides
-/// (not all of one strict sign, not all 0), and which side that is.
+/// The corner that is alone on its side of the other triangle's plane, given the three sides (not
+/// all equal and nonzero, not all 0), and that side.
 struct Apex {
   int corner;
   int side;
@@ -125,7 +125,7 @@ struct Apex {
       const int t = sides[(corner + 1) % 3], r = sides[(corner + 2) % 3];
       side = sides[corner];
       if (side != 0 && side * t <= 0 && side * r <= 0) return;
-      // In the plane, with the others strictly on one side: as if beyond it.
+      // In the plane, the others strictly on one side: counts as beyond it.
       if (side == 0 && t * r > 0) {
         side = -t;
         return;
@@ -139,8 +139,8 @@ inline bool all_on_one_side(const std::array<int, 3>& s) {
   return s[0] != 0 && s[0] == s[1] && s[1] == s[2];
 }
 
-/// On which side of the plane of `t` three points lie; only what the filter left open is decided
-/// anew.
+/// The sides of the plane of `t` on which three points lie; only signs that the filter left open
+/// are computed exactly.
 inline std::array<int, 3> exact_sides(const Triangle& t, const Triangle& points,
                                       const std::array<double, 3>& computed, double bound) {
   std::array<int, 3> sides;
@@ -177,7 +177,7 @@ inline bool share_a_corner(const Triangle& a, const Triangle& b) {
   return false;
 }
 
-/// What is left where the boxes overlap: the filter's determinants, and exact ones where needed.
+/// The whole test of one pair: boxes, the filter's determinants, and exact ones where needed.
 inline bool exactly_intersect(const Triangle& a, const Triangle& b) {
   const Corners<double> x = corners_of(a), y = corners_of(b);
   const filter::BoxAndBound<double, CornersAre::given> box(x, y);
@@ -197,9 +197,9 @@ inline bool exactly_intersect(const Triangle& a, const Triangle& b) {
   const auto sides_a = exact_sides(b, a, computed_a, box.bound);
   if (all_on_one_side(sides_a)) return false;
   if (sides_a == in_plane) return flat_intersect(a, b);
-  // Both have area, and their planes cross in a line. Turned and flipped so that each apex lies
-  // above the other's plane, the intervals that the two cut from the line overlap unless one of
-  // two orientations is positive.
+  // Both have area, and their planes cross in a line. With corners rotated and swapped so that each
+  // apex is above the other's plane, the intervals cut from that line overlap unless one of two
+  // orientations is positive.
   const Apex apex_a(sides_a), apex_b(sides_b);
   const Point *p = &a[apex_a.corner], *q = &a[(apex_a.corner + 1) % 3],
               *r = &a[(apex_a.corner + 2) % 3];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Gathers the corners of W triangles from anywhere into batches, one triangle a lane: nine numbers
-/// each, loaded four at a time and transposed in registers. Cost: about 3 ns a triangle less than
-/// number by number.
+/// Gathers the corners of W triangles from anywhere in memory into batches, one triangle a lane:
+/// nine numbers each, loaded four at a time and transposed in registers, about 3 ns a triangle
+/// faster than one by one.
 #pragma once
 
 #include <cstring>
@@ -18,7 +18,7 @@ template <class T, int W>
 struct LanesOf {
   using type [[gnu::vector_size(sizeof(T) * W)]] = T;
 };
-/// W numbers, which are only moved and converted.
+/// W numbers, which are only moved and converted, never computed with.
 template <class T, int W>
 using Lanes = typename LanesOf<T, W>::type;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The 33 ways in which two triangles that are apart can be nearest: at a corner and an edge, at
-/// two edges, or at a corner and a face. Each is formed in T, float64 or double-double, with what
-/// its roundings may be and whether float64 can be trusted on it. triangle_distance.hpp has the
-/// bounds.
+/// The 33 candidates for the nearest points of two disjoint triangles: at a corner and an edge, at
+/// two edges, or at a corner and a face. Each is computed in T, float64 or double-double, with a
+/// bound on its rounding error and whether float64 is reliable for it. The error bounds are derived
+/// in triangle_distance.hpp.
 #pragma once
 
 #include <algorithm>
@@ -37,20 +37,20 @@ T dot(const Vector<T>& u, const Vector<T>& v) {
   return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
-/// Whether float64 can be trusted on where, or whether, a candidate is. `parallel`: two edges, or a
-/// face's own, at an angle below 2^-48. Then some end or edge is as near in all but the second
+/// Whether float64 is reliable on where, or whether, a candidate exists. `parallel`: two edges, or
+/// a face's own, at an angle below 2^-48. Then an end or another edge is as near up to second
 /// order, (2^-48 L)^2 / 2d, which matters only where d is much smaller than L. `open`: an angle
-/// below 2^-20, or points so close to where the candidate ends that rounding may have put them
+/// below 2^-20, or points so near the limits of the candidate that rounding may have put them
 /// outside, and that would matter.
 enum class Doubt { none, parallel, open };
 
-/// One way in which two triangles can be nearest: the vector from a's point to b's and the
-/// parameters of those points. Infinite where there is no such way.
+/// One candidate: the squared distance and the parameters of the two nearest points. The distance
+/// is infinite where the candidate does not exist.
 template <class T>
 struct Candidate {
   T squared = T(std::numeric_limits<double>::infinity());
   T s = T(0), t = T(0);
-  double rounding = 0;  ///< |w| + 2 |s e| + 2 |t f|, each the sum of coordinates' magnitudes
+  double rounding = 0;  ///< |w| + 2 |s e| + 2 |t f|, in the 1-norm
   Doubt doubt = Doubt::none;
 };
 
@@ -60,7 +60,7 @@ double magnitude(const Vector<T>& v) {
          std::abs(static_cast<double>(v[2]));
 }
 
-/// The vector w - s e - t f.
+/// The candidate with the vector w - s e - t f.
 template <class T>
 Candidate<T> reached(const Vector<T>& w, const T& s, const Vector<T>& e, const T& t,
                      const Vector<T>& f) {
@@ -74,7 +74,7 @@ Candidate<T> reached(const Vector<T>& w, const T& s, const Vector<T>& e, const T
   return candidate;
 }
 
-/// The vector w between two corners.
+/// The candidate with the vector w between two corners.
 template <class T>
 Candidate<T> corners_apart(const Vector<T>& w) {
   Candidate<T> candidate;
@@ -83,10 +83,10 @@ Candidate<T> corners_apart(const Vector<T>& w) {
   return candidate;
 }
 
-/// Corner p, edge a b: the point of the edge is a + s (b - a).
+/// Corner p and edge a b: the point on the edge is a + s (b - a).
 ///
-/// s |e| is off by up to 12 u |w|, so that a point said to be at an end may be inside by as much.
-/// At a that is next to nothing beside |r| = |w|. At b, where |w| <= |e| + |r|, it makes |r| too
+/// s |e| is off by up to 12 u |w|, so a point computed to be at an end may be inside by as much.
+/// At a that is negligible relative to |r| = |w|. At b, where |w| <= |e| + |r|, it makes |r| too
 /// long by a factor of up to 1 + (12 u |w| / |r|)^2 / 2, which is below 1 + 2u only if |r| > 2^-24
 /// |e|.
 template <class T>
@@ -104,9 +104,9 @@ Candidate<T> corner_edge(const Vec3<double>& p, const Vec3<double>& a, const Vec
   return reached<T>(w, along / length, e, T(0), e);
 }
 
-/// The nearest points of two lines or of a point and a plane: w - s e - t f is orthogonal to e and
-/// f. By cross products, which lose half as many digits as Gram's determinant where e and f are
-/// nearly parallel. `inner` says whether s and t are inside, given by how much (negative: outside).
+/// The nearest points of two lines, or of a point and a plane: w - s e - t f is orthogonal to e and
+/// f. Computed by cross products, which lose half as many digits as Gram's determinant where e and
+/// f are nearly parallel. `inside(s, t)` is how far s and t are inside (negative: outside).
 template <class T, class Inside>
 Candidate<T> orthogonal(const Vector<T>& w, const Vector<T>& e, const Vector<T>& f,
                         const Inside& inside) {
@@ -115,14 +115,14 @@ Candidate<T> orthogonal(const Vector<T>& w, const Vector<T>& e, const Vector<T>&
   const double sine_squared = static_cast<double>(square) /
                               (static_cast<double>(dot(e, e)) * static_cast<double>(dot(f, f)));
   Candidate<T> candidate;
-  // So written that 0 / 0 is parallel.
+  // Written so that 0 / 0 counts as parallel.
   const Doubt narrow = !(sine_squared >= 0x1p-96) ? Doubt::parallel
                        : sine_squared < 0x1p-40   ? Doubt::open
                                                   : Doubt::none;
   candidate.doubt = narrow;
   if (!(square > T(0))) return candidate;
-  // What is wrong with n would stay in s e + t f; t made from s leaves only s's own error, and of
-  // that what is orthogonal to f.
+  // An error of n would stay in s e + t f; with t computed from s, only the error of s stays, and
+  // of that the part orthogonal to f.
   const T s = dot(cross(w, f), n) / square;
   Vector<T> rest;
   for (int i = 0; i < 3; ++i) rest[i] = w[i] - s * e[i];
@@ -138,7 +138,7 @@ Candidate<T> orthogonal(const Vector<T>& w, const Vector<T>& e, const Vector<T>&
   return candidate;
 }
 
-/// Inner points of the edges a b and c d: a + s (b - a) and c + t (d - c).
+/// Inner points of edges a b and c d: a + s (b - a) and c + t (d - c).
 template <class T>
 Candidate<T> edge_edge(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c,
                        const Vec3<double>& d) {
@@ -148,7 +148,7 @@ Candidate<T> edge_edge(const Vec3<double>& a, const Vec3<double>& b, const Vec3<
                        });
 }
 
-/// Corner p, inner point a + s (b - a) + t (c - a) of a face.
+/// Corner p and the inner point a + s (b - a) + t (c - a) of a face.
 template <class T>
 Candidate<T> corner_face(const Vec3<double>& p, const Vec3<double>& a, const Vec3<double>& b,
                          const Vec3<double>& c) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Arithmetic on unevaluated sums of two numbers of S, lane by lane: exact differences and
-/// products, minors and determinants with what their rounding lost. triangle_refinement.hpp bounds
-/// the error.
+/// products, and minors and determinants with their rounding errors. triangle_refinement.hpp bounds
+/// the remaining error.
 #pragma once
 
 #if defined(__AVX512F__)
@@ -23,22 +23,22 @@ struct Pair {
   S high, low;
 };
 
-/// a - b without error.
+/// a - b, exactly.
 template <Scalar S>
 [[gnu::always_inline]] inline Pair<S> exact_difference(const S& a, const S& b) {
   const S d = a - b, t = d - a;
   return {d, (a - (d - t)) - (b + t)};
 }
 
-/// a + b without error.
+/// a + b, exactly.
 template <Scalar S>
 [[gnu::always_inline]] inline Pair<S> exact_sum(const S& a, const S& b) {
   const S s = a + b, t = s - a;
   return {s, (a - (s - t)) + (b - t)};
 }
 
-/// What a * b loses when it is rounded to `product`, without fused multiply-adds
-/// [dekker1971floating]; exact where nothing under- or overflows.
+/// The rounding error of `product`, which is a * b rounded, without fused multiply-adds
+/// (dekker1971floating); exact where nothing under- or overflows.
 template <Scalar S>
 [[gnu::always_inline]] inline S lost_in_product_by_parts(const S& a, const S& b, const S& product) {
   using T = Element<S>;
@@ -48,7 +48,7 @@ template <Scalar S>
   return ((ah * bh - product) + ah * bl + al * bh) + al * bl;
 }
 
-/// The same, by one instruction where there is one.
+/// The same, by a fused multiply-add where the processor has one.
 template <Scalar S>
 [[gnu::always_inline]] inline S lost_in_product(const S& a, const S& b, const S& product) {
 #if defined(__AVX512F__)
@@ -62,7 +62,7 @@ template <Scalar S>
   return lost_in_product_by_parts<S>(a, b, product);
 }
 
-/// a * b without error.
+/// a * b, exactly.
 template <Scalar S>
 [[gnu::always_inline]] inline Pair<S> exact_product(const S& a, const S& b) {
   const S p = a * b;

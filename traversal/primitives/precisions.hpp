@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// THE list of precisions: how much arithmetic decides whether two triangles touch, and which
-/// errors that allows. Every cheaper level errs on one side only.
+/// THE list of precisions of the triangle test: how much arithmetic decides whether two triangles
+/// touch, and which errors that allows. The cheaper ones err on one side only.
 #pragma once
 
 #include <string_view>

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How far two closed triangles are apart, and where: 0 exactly where they share a point.
+/// The distance of two closed triangles and their nearest points: 0 exactly where they touch.
 ///
-/// Triangles that are apart are nearest to each other at a corner and an edge, at two edges, or at
-/// a corner and a face. All 33 such candidates are formed in float64; whichever could be the
-/// nearest and is not accurate enough is formed again in double-double. Zero area, parallel edges
-/// and slivers need no case of their own: a candidate that does not exist is left to the others,
-/// for each gives points of the two triangles and so never too small a distance.
+/// Disjoint triangles are nearest to each other at a corner and an edge, at two edges, or at a
+/// corner and a face. All 33 such candidates are computed in float64; those that could be the
+/// nearest but are not accurate enough are computed again in double-double. Zero area, parallel
+/// edges and slivers need no special case: the other candidates remain, and each is attained by
+/// points of the two triangles, so it is never too small.
 ///
 /// Error: with d the true distance and L the largest difference of coordinates in the pair, the
-/// distance is off by at most 1e-14 d + 2^-90 L + 2^-1074, whatever finite corners: where the
-/// triangles are 10^13 times as large as their distance, that is still 1e-14 of it. (It is infinite
-/// where it is beyond the largest number.) A candidate's vector r = w - s e - t f carries the
+/// distance is off by at most 1e-14 d + 2^-90 L + 2^-1074, for all finite corners: where the
+/// triangles are 10^13 times as large as d, that is still 1e-14 of d. (The result is infinite
+/// where d exceeds the largest number.) A candidate's vector r = w - s e - t f carries the
 /// roundings of its terms, 3 u R, R = |w| + 2 |s e| + 2 |t f|, to first order. An error of s and t,
 /// at most 12 u R along e and f, stays in r at a right angle, since r is stationary in them: in
 /// |r|, that is second order unless r itself is that short. So a candidate whose value passes R /
@@ -50,8 +50,8 @@ Vec3<double> between(const Vec3<double>& p, const Vec3<double>& q, const T& r) {
   return point;
 }
 
-/// Where the edges of `edges` cross the plane of `t`: each point, and how far it is from `t`,
-/// squared.
+/// Calls f(point, squared) for each point where an edge of `edges` crosses the plane of `t`, with
+/// its squared distance from `t`.
 template <class T, class F>
 void for_each_crossing(const Triangle& t, const Triangle& edges, const F& f) {
   const Vector<T> n = cross(difference<T>(t[1], t[0]), difference<T>(t[2], t[0]));
@@ -69,8 +69,8 @@ void for_each_crossing(const Triangle& t, const Triangle& edges, const F& f) {
   }
 }
 
-/// A point that touching triangles share, up to rounding: where an edge crosses the other's plane,
-/// or the nearest candidate.
+/// A point shared by touching triangles, up to rounding: an edge's crossing with the other's plane,
+/// or that of the nearest candidate.
 template <class T>
 TriangleDistance touching(const Triangle& a, const Triangle& b) {
   double least = std::numeric_limits<double>::infinity();
@@ -86,7 +86,7 @@ TriangleDistance touching(const Triangle& a, const Triangle& b) {
   }
   for_each_crossing<T>(a, b, offer);
   for_each_crossing<T>(b, a, offer);
-  // Far from both, for rounding: in slivers float64 can miss the place.
+  // Farther from both than rounding explains: in slivers float64 can be that wrong.
   if constexpr (std::is_same_v<T, double>) {
     const double grain = 4 * unit_roundoff<double> * result.on_a.cwiseAbs().maxCoeff();
     if (least > grain * grain) return touching<DoubleDouble>(a, b);
@@ -102,13 +102,13 @@ struct Extent {
     for (const Triangle* t : {&a, &b})
       for (const auto& p : *t) low = low.cwiseMin(p), high = high.cwiseMax(p);
   }
-  /// Its longest side; at most the largest number.
+  /// Its longest side, or the largest number if that overflows.
   double longest() const {
     return std::min((high - low).maxCoeff(), std::numeric_limits<double>::max());
   }
 };
 
-/// For triangles that are apart, of coordinates and extents in the range said above.
+/// For disjoint triangles whose coordinates and extents are in the range stated above.
 template <class = double>
 TriangleDistance apart(const Triangle& a, const Triangle& b) {
   constexpr double u = unit_roundoff<double>;
@@ -120,7 +120,7 @@ TriangleDistance apart(const Triangle& a, const Triangle& b) {
     all[k] = candidate<double>(a, b, k);
     if (all[k].squared < least) least = all[k].squared, best = k;
   }
-  // Below `reach` lies the nearest for certain, but for the doubtful.
+  // The nearest candidate is below `reach`, if it is not among the doubtful.
   const auto error = [](const auto& c) { return 16 * u * c.rounding; };
   const double nearest = std::sqrt(least), reach = nearest + error(all[best]);
   const auto far_apart = [&] { return Extent(a, b).longest() <= 0x1p20 * nearest; };
@@ -141,12 +141,12 @@ TriangleDistance apart(const Triangle& a, const Triangle& b) {
       least = again.squared.high, best = k, s = again.s.high, t = again.t.high;
   }
   const auto [on_a, on_b] = points_of(a, b, best, s, t);
-  // Apart is never 0, however small.
+  // The distance of disjoint triangles is never 0, however small.
   return {std::max(std::sqrt(least), std::numeric_limits<double>::denorm_min()), on_a, on_b};
 }
 
-/// The power of two by which coordinates are divided before they are squared and multiplied; none
-/// where that is safe as they stand.
+/// The exponent of the power of two by which coordinates must be divided before they are squared
+/// and multiplied; 0 where they are safe as they are.
 inline int exponent_of(const Triangle& a, const Triangle& b) {
   double largest = 0;
   for (const Triangle* t : {&a, &b})
@@ -165,10 +165,10 @@ inline Triangle scaled(const Triangle& t, int exponent) {
   return {scaled(t[0], exponent), scaled(t[1], exponent), scaled(t[2], exponent)};
 }
 
-/// The same for any that are apart. Where all six coordinates along an axis lie within a factor of
-/// two they are taken from the lowest of them, which rounds nothing; all others are at most twice
-/// the extent along their axis. Divided by the power of two above the largest extent, none is above
-/// 4 then, and what underflows loses less than 2^-1074 of the extent.
+/// The same for disjoint triangles of any scale. On an axis where all six coordinates are within a
+/// factor of two the lowest is subtracted, which is exact; on the others they are at most twice the
+/// extent. Divided by the power of two above the largest extent, no coordinate is above 4, and what
+/// underflows is less than 2^-1074 of the extent.
 template <class = double>
 TriangleDistance apart_at_any_scale(const Triangle& a, const Triangle& b) {
   const Extent extent(a, b);
@@ -206,8 +206,8 @@ TriangleDistance distance(const Triangle& a, const Triangle& b) {
   }
   if (k != 0) return apart_at_any_scale(a, b);
   const TriangleDistance result = apart(a, b);
-  // Coordinates may be neither large nor small and yet stand next to each other: only so can the
-  // distance be this small, be it right or not.
+  // Coordinates of moderate size may be next to each other: only then is the computed distance this
+  // small, whether right or not.
   return result.distance < 0x1p-98 ? apart_at_any_scale(a, b) : result;
 }
 

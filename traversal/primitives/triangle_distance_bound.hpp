@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A lower bound on the distance of two closed triangles, for W pairs at a time, hardly below the
-/// distance where they are apart. Most candidates for the nearest pair are dismissed by it, and
-/// only the others need `distance`. Cost: about a tenth of one.
+/// A lower bound on the distance of two closed triangles, for W pairs at a time, nearly tight where
+/// they are apart. It rules out most candidates for the nearest pair, and only the others need
+/// `distance`. Cost: about a tenth of one `distance`.
 ///
 /// The bound is the least over the same 33 candidates as in triangle_distance.hpp, in float64, each
-/// lowered by what rounding can have raised it, and 0 unless the first stage is certain that the
+/// lowered by its possible rounding error; it is 0 unless the first stage is certain that the
 /// triangles are apart. Squares are compared, with u the unit roundoff:
 /// - a vector r = w - s e - t f is off by 3 u R, R = |w| + 2 |s e| + 2 |t f| >= |r|, so its square
 ///   by less than 8 u R^2;
@@ -106,8 +106,8 @@ class DistanceBound {
     square_ = min(square_, square - S(8 * u) * (rounding * rounding));
   }
 
-  /// Offers the distance between a corner and edge j. `w` leads from the edge's begin to the corner
-  /// (times `way`), `at_end` from its end.
+  /// Offers the distance of a corner and edge j. `w` points from the edge's first corner to the
+  /// corner (times `way`), `at_end` from its last.
   [[gnu::always_inline]] void corner_edge(const Vector<S>& w, const S& size,
                                           const Vector<S>& at_end, const S& size_at_end,
                                           const Edges& edges, int j, const S& way) {
@@ -115,7 +115,7 @@ class DistanceBound {
     const S s = way * dot<S>(w, e) * edges.over_square[j];
     const S step = way * s;
     const Vector<S> r = {w[0] - step * e[0], w[1] - step * e[1], w[2] - step * e[2]};
-    // Written so that an edge of length zero is its begin.
+    // Written so that an edge of length zero counts as its first corner.
     const Mask<S> inner = s > S(0), behind = s >= S(1);
     const S inner_size = size + 2 * abs(s) * edges.size[j];
     const S square =
@@ -160,7 +160,7 @@ class DistanceBound {
 
 }  // namespace filter
 
-/// At most the distance of each pair; 0 where rounding leaves open whether they touch.
+/// A lower bound on the distance of each pair; 0 where rounding leaves open whether they touch.
 template <Scalar S>
 S distance_bound(const Corners<S>& a, const Corners<S>& b) {
   using namespace filter;

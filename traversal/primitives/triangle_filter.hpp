@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Decides by rounded arithmetic whether two closed triangles touch, except where rounding leaves
-/// the question open. Written once for any scalar or batch S.
+/// A filter: decides in rounded arithmetic whether two closed triangles touch, except where the
+/// error bound leaves it open. Written once for any scalar or batch S.
 ///
-/// All signs taken are those of determinants of three difference vectors between corners of the
-/// pair, so one bound, computed once a pair from the box of all six corners, serves them all.
+/// All predicates are signs of determinants of three differences between corners of the pair, so
+/// one error bound, computed once per pair from the box of all six corners, serves them all.
 ///
 /// The bound. Let W_x, W_y, W_z be the sides of that box, u the unit roundoff, and D_x the largest
 /// error of a computed difference of x coordinates: u W_x for its own rounding, and 2 u M_x
@@ -29,11 +29,11 @@
 
 namespace bvlab {
 
-/// Three corners each in W lanes: x, y, z of one corner after the other.
+/// The corners of a triangle in each of W lanes: corners[i] is the i-th corner's x, y, z.
 template <Scalar S>
 using Corners = std::array<std::array<S, 3>, 3>;
 
-/// Whether the corners are given in S, or were rounded to S.
+/// Whether the corners are exact in S, or were rounded to S.
 enum class CornersAre { given, rounded };
 
 namespace filter {
@@ -103,8 +103,8 @@ template <Scalar S>
           pick<S>(condition, yes[2], no[2])};
 }
 
-/// Whether the boxes are apart (a comparison of corners, hence exact, and true of the given corners
-/// if it is true of rounded ones), and the error bound of a determinant.
+/// Whether the boxes are apart (a comparison of corners, hence exact, and valid for the given
+/// corners if it holds for rounded ones), and the error bound of a determinant.
 template <Scalar S, CornersAre corners>
 struct BoxAndBound {
   Mask<S> apart;
@@ -143,7 +143,7 @@ struct BoxAndBound {
   }
 };
 
-/// Determinants whose signs are the sides of the plane of `t` on which three points lie.
+/// The three determinants whose signs tell on which side of the plane of `t` the points lie.
 template <Scalar S>
 [[gnu::always_inline]] inline Vector<S> sides_of(const Corners<S>& t, const Corners<S>& points) {
   const Vector<S> normal = cross<S>(t[1] - t[0], t[2] - t[0]);
@@ -162,8 +162,8 @@ template <Scalar S>
   return min(min(abs(sides[0]), abs(sides[1])), abs(sides[2])) > bound;
 }
 
-/// The corners rotated so that the first is alone on its side; `above`: that side is the positive
-/// one. For known sides, not all the same.
+/// The corners rotated so that the first one is alone on its side of the other's plane; `above`:
+/// whether that side is the positive one. All sides must be known, and not all equal.
 template <Scalar S>
 struct Rotated {
   Vector<S> apex, next, last;
@@ -189,7 +189,7 @@ struct Certainly {
 
 namespace filter {
 
-/// What the signs of determinants decide, given whether the boxes are apart and the error bound.
+/// Decides by the signs of determinants, given whether the boxes are apart and the error bound.
 template <Scalar S>
 [[gnu::always_inline]] inline Certainly<S> decided_by_signs(const Corners<S>& a,
                                                             const Corners<S>& b,
@@ -218,7 +218,7 @@ template <Scalar S>
 
 }  // namespace filter
 
-/// Decides pairs by rounded arithmetic. Neither mask is set where rounding leaves the question
+/// Decides pairs in rounded arithmetic. Neither mask is set where the error bound leaves the answer
 /// open.
 template <Scalar S, CornersAre corners = CornersAre::given>
 [[gnu::always_inline]] inline Certainly<S> certainly(const Corners<S>& a, const Corners<S>& b) {
@@ -226,8 +226,8 @@ template <Scalar S, CornersAre corners = CornersAre::given>
   return filter::decided_by_signs<S>(a, b, box.apart, box.bound);
 }
 
-/// The same for triangles whose corners lie within `off` of those given, in each coordinate. A
-/// difference of coordinates is off by 2 off, and by its own rounding; the bound follows as above.
+/// The same for triangles whose corners are within `off` of those given, in each coordinate. A
+/// difference of coordinates is off by 2 off and by its rounding; the error bound follows as above.
 template <Scalar S>
 [[gnu::always_inline]] inline Certainly<S> certainly_within(const Corners<S>& a,
                                                             const Corners<S>& b, const S& off) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A lower bound on the distance of two triangles, in a few dozen operations: their gap along the
-/// normal of each, and along the line between their centres. It is far below the distance where two
-/// edges are nearest, and then often 0.
+/// A cheap lower bound on the distance of two triangles: their gap along the normal of each, and
+/// along the line between their centres. It is far below the distance, and often 0, where two edges
+/// are nearest.
 ///
 /// Along a vector n, as computed, the corners of one lie `s` beyond those of the other, s by dot
 /// products with differences d of corners and the first corner of a. Corners are within `off` of
@@ -18,8 +18,8 @@ namespace bvlab {
 
 namespace filter {
 
-/// By how much the corners of one lie beyond those of the other along n, in units of length; 0
-/// where n gives no bound. `from_first`: the differences of the six corners and a's first.
+/// The gap between the projections on n, in units of length; 0 where n gives no bound.
+/// `from_first`: the differences of the six corners to a's first.
 template <Batched S>
 [[gnu::always_inline]] inline S beyond(const Vector<S>& n,
                                        const std::array<Vector<S>, 6>& from_first) {
@@ -39,8 +39,8 @@ template <Batched S>
 
 }  // namespace filter
 
-/// At most the distance of each pair of triangles whose corners lie within `off` of those given, in
-/// each coordinate; 0 where no bound is known.
+/// A lower bound on the distance of each pair of triangles whose corners are within `off` of those
+/// given, in each coordinate; 0 where no bound is known.
 template <Batched S>
 [[gnu::always_inline]] inline S triangle_gap(const Corners<S>& a, const Corners<S>& b,
                                              const S& off) {

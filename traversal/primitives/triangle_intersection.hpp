@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Whether two closed triangles share a point, exactly, for any finite corners: zero-area
-/// triangles (segments and points), coplanar ones and touching included.
+/// Decides exactly whether two closed triangles share a point, for any finite corners, including
+/// coplanar triangles and those of zero area (segments and points).
 ///
-/// Three stages: a float64 filter (triangle_filter.hpp), twice the digits for what it leaves open
-/// of a batch (triangle_refinement.hpp), and exact integers for the rest (exact_intersection.hpp).
+/// Three stages: a float64 filter (triangle_filter.hpp), double the digits for open pairs of a
+/// batch (triangle_refinement.hpp), and exact integers for the rest (exact_intersection.hpp).
 #pragma once
 
 #include <algorithm>
@@ -23,18 +23,18 @@ namespace bvlab {
 
 namespace detail {
 
-/// What the first stage left open of a batch: where to find it, and how it stands in the answer.
+/// The pairs of a batch that the first stage left open, and their bits in the answer.
 struct OpenPairs64 {
   const Triangle *a[64], *b[64];
   std::uint8_t place[64];
   int count = 0;
 };
 
-/// Whether registers are wide enough for the second stage to be cheaper than integers.
+/// Whether registers are wide enough to make the second stage cheaper than integers.
 constexpr bool refines_in_batches = native_width<double> >= 8;
 
-/// Second stage, and integers for the rest: bit i is set where the pair with place i shares a
-/// point. A template so that it is compiled where it is needed alone.
+/// The second stage, and integers for the rest: bit place[i] is set where pair i shares a point. A
+/// template so that it is compiled only where it is needed.
 template <int width = 8>
 std::uint64_t refined_hits(const OpenPairs64& open) {
   using S = Batch<double, width>;
@@ -42,7 +42,7 @@ std::uint64_t refined_hits(const OpenPairs64& open) {
   for (int first = 0; first < open.count; first += width) {
     const int used = std::min(width, open.count - first);
     std::uint64_t left = (1u << used) - 1;
-    // One pair alone is decided faster by itself, and all are where registers hold few.
+    // A single pair is faster exactly, and so are all where registers are narrow.
     if (refines_in_batches && used > 1) {
       const Triangle *a[width], *b[width];
       for (int lane = 0; lane < width; ++lane) {
@@ -64,8 +64,8 @@ std::uint64_t refined_hits(const OpenPairs64& open) {
 
 }  // namespace detail
 
-/// Whether the closed triangles share a point, with finite corners. At `Exact` that is so; at a
-/// cheaper precision `false` is certain and `true` is what could not be told apart.
+/// Whether two closed triangles with finite corners share a point. Exact at `Exact`; at a cheaper
+/// precision `false` is certain, but `true` may be a pair that it could not decide.
 template <class Precision = Exact>
 bool intersect(const Triangle& a, const Triangle& b) {
   if constexpr (Precision::has_fallback) {
@@ -84,11 +84,11 @@ bool intersect(const Triangle& a, const Triangle& b) {
   }
 }
 
-/// Pairs decided at once in one vector register.
+/// The number of pairs decided at once in one vector register.
 template <class Precision>
 constexpr int batch_width = native_width<typename Precision::Number>;
 
-/// The same for `count` (at most 64) pairs (*a[i], *b[i]): bit i of the answer is pair i's.
+/// The same for `count` (at most 64) pairs (*a[i], *b[i]): bit i is pair i's answer.
 template <class Precision = Exact>
 std::uint64_t intersect_batch(const Triangle* const* a, const Triangle* const* b, int count) {
   using Number = typename Precision::Number;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The margin of a verdict on two closed triangles: how far they can be moved, in any way, before
-/// the verdict on whether they share a point can change. While every point of one moves by less
-/// than the margin relative to every point of the other, the verdict holds. In float, for up to
-/// eight pairs at once.
+/// the verdict whether they share a point can change. While every point of one moves by less than
+/// the margin relative to every point of the other, the verdict holds. In float, for up to eight
+/// pairs at once.
 ///
-/// Apart: the margin is the distance. Every direction n proves a distance of (least n.q - greatest
-/// n.p) / |n|; tried are the two normals and the vector between the nearest points of the nearest
-/// two edges, which is the best direction there is unless a normal is.
+/// Apart: the margin is a lower bound on the distance. Every direction n proves a distance of
+/// (least n.q - greatest n.p) / |n|; tried are the two normals and the vector between the nearest
+/// points of the nearest two edges, which is the best direction unless a normal is.
 ///
-/// Touching: an edge pq of one crosses the other, T, and goes on to do so while neither end reaches
-/// T and pq does not reach T's boundary, since in between the map (x, y) -> x - y of pq times T is
-/// not zero on the boundary of its domain, so that its degree, which is 1 or -1, stays and there is
-/// a zero inside. The margin is the least of the ends' distances from T's plane and of the
-/// distances of the line pq from the lines of T's edges; the best of six such crossings is taken. 0
-/// where none is certain: coplanar and grazing contacts have no margin.
+/// Touching: an edge pq of one crosses the other, T. It crosses T until one of its ends reaches T
+/// or pq reaches T's boundary: in between the map (x, y) -> x - y of pq times T is not zero on the
+/// boundary of its domain, so its degree, 1 or -1, is constant and there is a zero inside. The
+/// margin is the least of the ends' distances from T's plane and of the distances of the line pq
+/// from the lines of T's edges; the best of six such crossings is used. It is 0 where none is
+/// certain: coplanar and grazing contacts have no margin.
 ///
 /// Rounding, with u = 2^-24. The corners are taken relative to one of them and divided by the
 /// power of two above the largest such coordinate, in double, then rounded to float: all of them
@@ -22,11 +22,11 @@
 /// below 2 and
 /// - a projection n.x of a difference |x| < 3.5 is off by u |n||x| for the difference and 3u |n||x|
 ///   for the sum of products, 14u |n|; the difference of two of them by 28u |n| and its own 7u |n|;
-/// - a cross product of two differences is off by 24u in a component (two products of at most 4,
-///   each wrong by 3u of itself, and their difference of at most 8 by u... 2 * 12u + 8u = 32u), so
-///   by less than 56u in norm;
-/// - its product with a third, |x| < 3.5, is off by 56u |x| + 3u |n||x| + u |n||x| < 196u + 14u
-/// |n|,
+/// - a cross product of two differences is off by 32u in a component (24u for two products of at
+///   most 4, each wrong by 3u of itself, and 8u for their difference of at most 8), so by less
+///   than 56u in norm;
+/// - its product with a third, |x| < 3.5, is off by 56u |x| + 3u |n||x| + u |n||x|
+///   < 196u + 14u |n|,
 ///   where |n| <= 12: less than 364u.
 /// `slack` = 512u covers the last, and 64u |n| for the first, each with room for 3.6u |n| of
 /// the rounded corners and for the roots and quotients, which are off by a factor of 1 - 8u. What
@@ -86,7 +86,7 @@ template <Scalar S>
   return min(max(x, S(0)), S(1));
 }
 
-/// Approximately the vector between the nearest points of the nearest two edges.
+/// Approximates the vector between the nearest points of the nearest two edges.
 template <Scalar S>
 [[gnu::always_inline]] inline Vector<S> between_edges(const Corners<S>& a, const Corners<S>& b) {
   constexpr float least = 0x1p-60f;
@@ -119,7 +119,7 @@ template <Scalar S>
   return nearest;
 }
 
-/// The margin of triangles that are apart; not positive if they are not.
+/// The margin of disjoint triangles; not positive if they are not certainly disjoint.
 template <Scalar S>
 [[gnu::always_inline]] inline S apart(const Corners<S>& a, const Corners<S>& b) {
   const S edges = apart_along<S>(between_edges<S>(a, b), a, b);
@@ -128,15 +128,15 @@ template <Scalar S>
   return max(edges, max(face_a, face_b));
 }
 
-/// At most 1 / |n|; 0 where that is not known.
+/// A lower bound on 1 / |n|; 0 where |n| is too small.
 template <Scalar S>
 [[gnu::always_inline]] inline S over_norm(const Vector<S>& n) {
   const S square = dot<S>(n, n);
   return pick<S>(square > S(0x1p-40f), S(1 - 8 * u) / (root(square) + S(64 * u)), S(0));
 }
 
-/// The margin that an edge of `edges` crossing `t` gives; not positive where no edge does for
-/// certain.
+/// The best margin of the edges of `edges` as crossings of `t`; not positive where no edge
+/// certainly crosses it.
 template <Scalar S>
 [[gnu::always_inline]] inline S crossed(const Corners<S>& t, const Corners<S>& edges) {
   const Vector<S> normal = cross<S>(t[1] - t[0], t[2] - t[0]);
@@ -155,14 +155,14 @@ template <Scalar S>
       left = min(left, (side - S(slack)) * inverse);
       right = min(right, (-side - S(slack)) * inverse);
     }
-    // The line passes all three edges of t on the same side.
+    // If the line crosses t, it passes all three edges of t on the same side.
     least = min(least, max(left, right));
     best = max(best, least);
   }
   return best - S(8 * u);
 }
 
-/// The margin of triangles one of which has an edge that crosses the other for certain; else not
+/// The margin of triangles, one of which has an edge that certainly crosses the other; else not
 /// positive.
 template <Scalar S>
 [[gnu::always_inline]] inline S crossing(const Corners<S>& a, const Corners<S>& b) {
@@ -182,7 +182,7 @@ using FourFloats [[gnu::vector_size(16)]] = float;
   return i == 2 ? __builtin_shufflevector(four, four, 1, 2, 3, 3) : four;
 }
 
-/// The corners of W pairs relative to the first corner, divided by a power of two, one pair a lane.
+/// The corners of W pairs, one a lane, relative to the first one and divided by a power of two.
 template <int W>
 struct Scaled {
   using S = Batch<float, W>;
@@ -201,8 +201,8 @@ struct Scaled {
       }
   }
 
-  /// Writes four numbers for each corner to `row`. Returns what they were divided by, or 0 where
-  /// they are too large or too small for that.
+  /// Writes four numbers for each corner to `row`. Returns the divisor, or 0 where numbers are too
+  /// large or too small.
   [[gnu::always_inline]] static double scaled(const Triangle& p, const Triangle& q, float* row) {
     const Four origin = corner(p, 0);
     Four x[6];
@@ -227,11 +227,11 @@ struct Scaled {
 
 }  // namespace margin
 
-/// Which of the pairs (*a[i], *b[i]), i < count <= 64, share a point: bit i is pair i's.
+/// A triangle test: bit i is set if the pair (*a[i], *b[i]) shares a point, i < count <= 64.
 using TriangleTest = std::uint64_t (*)(const Triangle* const* a, const Triangle* const* b,
                                        int count);
 
-/// The same, with the margins of the pairs. Few pairs are left to `test`: a margin decides a pair.
+/// The same, with the pairs' margins. A margin decides most pairs; the rest go to `test`.
 // Flattened, because GCC does not inline everything into a function of this length. A template, so
 // that a program can compile it once (extern template).
 template <class = double>
@@ -267,8 +267,8 @@ template <class = double>
   return touching;
 }
 
-/// Margins of those pairs (*a[i], *b[i]), i < count, in which an edge of one crosses the other for
-/// certain; not positive for all others.
+/// Writes the margins of those pairs (*a[i], *b[i]), i < count, in which an edge of one certainly
+/// crosses the other; for all others, a number that is not positive.
 template <class = double>
 [[gnu::flatten]] void crossing_margins(const Triangle* const* a, const Triangle* const* b,
                                        int count, double* margins) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What twice the digits say for certain about two closed triangles that float64 could not tell
-/// apart: the second stage, W pairs at a time, about a third of the cost of exact integers.
+/// The second stage of the triangle test: decides with double the digits pairs that the float64
+/// filter left open, W at a time, at about a third of the cost of exact integers.
 ///
-/// Differences are kept with what their rounding lost, so they are exact; products and sums with
-/// what theirs lost, in float64. Let side_i be the sides of the box around both triangles, u the
-/// unit roundoff, and A_k = side_i side_j for (i, j, k) = (k + 1, k + 2, k) mod 3. To second order
-/// (high parts below side_i, low ones below u side_i):
+/// Differences are kept with their rounding errors, so they are exact; products and sums with
+/// theirs, in float64. Let side_i be the sides of the box around both triangles, u the unit
+/// roundoff, and A_k = side_i side_j for (i, j, k) = (k + 1, k + 2, k) mod 3. To second order (high
+/// parts below side_i, low ones below u side_i):
 /// - a minor u_i v_j - u_j v_i, kept as high + low with |high| <= 2 A, |low| <= 8 u A, is off by at
 ///   most 28 u^2 A: 2 for the products of two low parts left out, 4 + 4 + 4 for the four mixed
 ///   products, their two sums and the difference, 2 + 4 + 8 for what the exact products and the
@@ -31,15 +31,15 @@ namespace bvlab {
 
 namespace filter {
 
-/// What holds of all determinants of one pair.
+/// The error bounds and the grid test, for all determinants of one pair.
 template <Scalar S>
 struct RefinedBounds {
   static constexpr double u2 = 0x1p-106, minor_error = 32, determinant_error = 384;
   static constexpr double least = std::numeric_limits<double>::denorm_min();
-  S side[3], determinant, plane[3];  ///< the box, and how wrong a determinant, a minor can be
-  Mask<S> flat;                      ///< the box is: all determinants are 0
-  Mask<S> on_grid;                   ///< a determinant within its bound is 0
-  Mask<S> on_grid_2;                 ///< so is a minor
+  S side[3], determinant, plane[3];  ///< the box, and the error bounds of a determinant and a minor
+  Mask<S> flat;                      ///< the box is flat: all determinants are 0
+  Mask<S> on_grid;                   ///< a determinant within its error bound is 0
+  Mask<S> on_grid_2;                 ///< a minor within its error bound is 0
 
   [[gnu::always_inline]] RefinedBounds(const Corners<S>& a, const Corners<S>& b,
                                        const std::array<PairVector<S>, 5>& differences) {
@@ -71,7 +71,7 @@ struct RefinedBounds {
   }
 };
 
-/// -1, 0 or 1, or `known` is not set.
+/// Signs -1, 0 or 1, valid where `known` is set.
 template <Scalar S>
 struct Signs {
   S sign;
@@ -82,14 +82,14 @@ template <Scalar S>
 [[gnu::always_inline]] inline Signs<S> sign_of(const S& determinant,
                                                const RefinedBounds<S>& bounds) {
   const Mask<S> above = determinant > bounds.determinant, below = determinant < -bounds.determinant;
-  // A flat box has no volume, yet an underflow to allow for.
+  // A flat box has volume 0, but an error bound above it for underflow.
   const Mask<S> zero = bounds.flat || (bounds.on_grid && !(above || below));
   return {pick<S>(zero, S(0), pick<S>(above, S(1), pick<S>(below, S(-1), S(0)))),
           above || below || zero};
 }
 
-/// On which sides of the plane of a triangle with this normal three points lie, given from one of
-/// its corners.
+/// The sides of a plane, given by its normal, on which three points lie, given relative to a corner
+/// in the plane.
 template <Scalar S>
 struct RefinedSides {
   Vector<S> sign;
@@ -108,8 +108,8 @@ struct RefinedSides {
   }
 };
 
-/// The corners turned so that the first is alone on its side, or beyond the others, or the only one
-/// beyond the plane: `Turned` for sides that may be 0, not all of them.
+/// The corners rotated so that the first is alone on its side, or beyond the others, or the only
+/// one off the plane: as filter::Rotated, for sides that may be 0, but not all.
 template <Scalar S>
 struct RefinedTurned {
   Vector<S> apex, next, last;
@@ -132,8 +132,8 @@ struct RefinedTurned {
   }
 };
 
-/// Coplanar triangles with area, seen along the axis in which a's normal is longest: they are apart
-/// exactly where an edge of one of them has the other strictly beyond it.
+/// Decides coplanar triangles with area in the projection along the axis in which a's normal is
+/// longest: they are apart exactly where an edge of one separates them strictly.
 template <Scalar S>
 [[gnu::always_inline]] inline Certainly<S> coplanar(const Corners<S>& a, const Corners<S>& b,
                                                     const PairVector<S>& normal_a,
@@ -159,7 +159,7 @@ template <Scalar S>
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       for (int c = 0; c < 2; ++c) across[i][j][c] = exact_difference<S>(q[j][c], p[i][c]);
-  // How far the other comes to the inner side of the edge it lies deepest beyond.
+  // How far the other reaches to the inner side of the most separating edge.
   S inside(std::numeric_limits<double>::infinity());
   const S way_a = pick<S>(turn_a > S(0), S(1), S(-1)), way_b = pick<S>(turn_b > S(0), S(1), S(-1));
   for (int i = 0; i < 3; ++i) {
@@ -201,7 +201,7 @@ template <Scalar S>
 
 }  // namespace filter
 
-/// The same question as `certainly`, for float64 corners as given whose boxes overlap.
+/// As `certainly`, for corners that are exact in float64, of triangles whose boxes overlap.
 template <Scalar S>
 Certainly<S> certainly_refined(const Corners<S>& a, const Corners<S>& b) {
   using namespace filter;

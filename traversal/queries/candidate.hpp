@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Two primitives whose leaves overlap, held until they are tested; and what queries find out about
-/// them.
+/// A candidate: two primitives whose leaves overlap, held until they are tested; and what queries
+/// report about candidates.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace bvlab {
 
 struct Candidate {
-  const Triangle* triangle_a;  ///< in the world
+  const Triangle* triangle_a;  ///< in the world frame
   const Triangle* triangle_b;
   std::uint32_t a, b;  ///< their indices in their meshes
   std::size_t slot;    ///< of the front's entry they come from, if there is a front

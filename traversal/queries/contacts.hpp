@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// All pairs of triangles, one of each surface, that share a point: each once, in any order.
+/// The query for all contacts: each pair of triangles that share a point, once, in any order.
 #pragma once
 
 #include <array>

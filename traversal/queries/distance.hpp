@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How far apart are the two surfaces? 0 where they touch.
+/// The query for the distance of two surfaces; 0 where they touch.
 ///
 /// A pair of volumes is culled once its gap cannot make the answer smaller by more than the
 /// relative error allowed (quinlan1994efficient): the answer d satisfies D <= d <= (1 + a) D for
@@ -42,7 +42,7 @@ class Distance {
   auto culls(const P& a, const P& b) const {
     return culls(gap(a, b));
   }
-  /// By the gap of two volumes.
+  /// The same by the gap of two volumes.
   template <Scalar S>
   auto culls(const S& gap) const {
     return gap >= S(rounded_up<Element<S>>(limit_));
@@ -59,8 +59,8 @@ class Distance {
     return outcome;
   }
 
-  /// Margins are distances, rounded down: candidates whose margin cannot make the answer smaller
-  /// are not measured.
+  /// Margins are lower bounds of distances: candidates whose margin cannot improve the answer are
+  /// not measured.
   Outcome primitives(std::span<const Candidate> pending, std::span<Verdict> verdicts) {
     Outcome outcome;
     with_margins(pending, verdicts, intersect_batch<Exact>,
@@ -83,7 +83,7 @@ class Distance {
     distance_ = limit_ = 0;
     return true;
   }
-  /// Repeats the last answer; nothing has moved since.
+  /// Sets the answer to the last one; nothing has moved since.
   void repeat(double distance) { distance_ = distance; }
 
   /// In units of the meshes; infinity before any candidate was tested.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The concept of a query.
+/// The concept of a query between two bodies.
 #pragma once
 
 #include <concepts>
@@ -15,7 +15,7 @@ namespace bvlab {
 ///   culls(p, q)           a mask over posed volumes p of body a and q of body b; unless the query
 ///                         wants a bound, it depends on the volumes alone
 ///   primitives(pending)   tests one candidate or more; its outcome: is the query satisfied?
-///   buffer_size           the most candidates that are held before `primitives` is called
+///   buffer_size           once more candidates than this are held, `primitives` is called
 ///   wants_bound           if present and true: one pair of near leaves is tested first, near pairs
 ///                         are tested before far ones, and `culls(gap)` decides the same
 /// The bvlab program makes a query by `from_options(options)` and reads `answer()`, a bool or a

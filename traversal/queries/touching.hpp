@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Do the two surfaces share a point? Stops at the first pair of triangles that do.
+/// The query whether two surfaces share a point; stops at the first pair of triangles that do.
 #pragma once
 
 #include <cstddef>

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Recursion (both nodes of a pair descended at once), a list or margins, whichever is cheapest for
-/// this pair.
+/// Chooses per pair what is expected to be cheapest: recursion (descending both nodes of a pair at
+/// once), a separation list, or margins.
 ///
 /// Costs are counted, not timed, so that runs repeat: volume tests and triangle tests, each at its
-/// price in that way (adaptive_prices.hpp). Each way keeps a balance of its cost over what the
-/// other would have cost. It is given up when it has lost as much as it takes to come back, and
-/// tried again once 32 times that has been spent, or when the step has halved. So vain trials cost
-/// one part in thirty-two. What the other ways would cost is mostly known without a trial:
+/// price in that way (adaptive_prices.hpp). Each way keeps a balance of its cost minus that of the
+/// alternative. It is given up when it has lost as much as a return to it would cost, and tried
+/// again once 32 times that has been spent, or when the step has halved. So failed trials cost one
+/// part in thirty-two. What the other ways would cost is mostly known without a trial:
 ///
-/// - A rebuild of a list is a recursion.
+/// - A rebuild of a list costs what a recursion costs.
 /// - Margins start from a list's entries, at one test each, not from the roots. The gaps found
-///   predict how often each entry comes up. The length of a list is known from the margins.
+///   predict how often each entry is due. The length of a list is known from the margins.
 /// - Where a hit settles the query, a list with its witness serves as both. The triangles of the
 ///   witness are tested first, with a margin where bodies are slow, and no volume is posed while
 ///   they still touch.
 ///
-/// Bodies at rest are not tested again. Pairs whose spheres are apart are decided by their
-/// translations, and pairs whose roots are apart by one margin, so neither is posed.
+/// Bodies at rest are not tested again. A pair whose spheres are apart is decided by the
+/// translations alone, and one whose roots are apart by one margin; neither is posed.
 #pragma once
 
 #include <algorithm>
@@ -50,7 +50,7 @@ class Adaptive : public AdaptivePrices {
     run_list(pair);
   }
 
-  /// Roots are tested as a batch where spheres have not been apart lately.
+  /// Roots are tested in batches for pairs whose spheres were not apart lately.
   bool starts_at_roots() const { return in_batches_ && !list_is_due(); }
   void roots_are_apart() {
     answer_.forget();
@@ -82,9 +82,9 @@ class Adaptive : public AdaptivePrices {
     return !in_batches_;
   }
 
-  /// Finds the last step of the bodies; one so large that nothing is where it was ends what is in
-  /// use. That costs as much as some tests, so where margins do not ask for it anyway only two
-  /// successive runs of eight do: the same for all pairs of bodies that move together.
+  /// Measures the bodies' last step; one so large that nothing can be reused ends the way in use.
+  /// As it costs as much as some tests, unless margins need it anyway only two successive runs of
+  /// eight do it: the same ones for all pairs of bodies that move together.
   template <class Pair>
   void follow(const Pair& pair) {
     MovingBody &a = pair.a(), &b = pair.b();
@@ -138,7 +138,7 @@ class Adaptive : public AdaptivePrices {
     answer_.remember(pair, statistics);
     everything_ = statistics.everything;
     if (list_.size() == 1 && !margins_are_due()) return part();
-    // After a rebuild: all entries, or the witness that is found again.
+    // After a rebuild: the cost of all entries, or of the witness.
     next_run_ = !rebuild                ? price(statistics, plain)
                 : statistics.everything ? price({true, list_.size(), statistics.triangles}, plain)
                                         : price({false, 1, 1}, plain);
@@ -146,7 +146,7 @@ class Adaptive : public AdaptivePrices {
     worn_out_ = worn_out_ || list_.size() > longest_list(pair);
   }
 
-  /// Whether the witness is one still: with a margin of its own, unless bodies are fast.
+  /// Whether the witness still hits: by a margin of its own, unless the bodies are fast.
   template <class Pair>
   bool witness_lasts(const Pair& pair) {
     if constexpr (YesOrNo<typename Pair::Query>) {
@@ -172,10 +172,10 @@ class Adaptive : public AdaptivePrices {
     watched_ = false;
   }
 
-  /// By the rule of by_cost.hpp, triangles included, and against recursion.
+  /// Applies the rule of by_cost.hpp, with triangles included, and compares with recursion.
   void account_list(double cost, bool rebuild) {
     if (rebuild) {
-      // What the runs since the last one would have cost from the roots.
+      // The cost that the runs since the last rebuild would have had from the roots.
       const double recursion = both_over_rebuild * (rebuild_ + cost) / 2;
       rebuild_ = cost;
       balance_ = std::max(balance_ + spent_ - runs_ * recursion, -recursions_to_lose * cost);
@@ -193,7 +193,7 @@ class Adaptive : public AdaptivePrices {
     ++runs_;
   }
 
-  /// The roots are apart: there is no list to keep, and none has failed.
+  /// The roots are apart: there is no list to keep, which is not a failure of lists.
   void part() {
     use_ = Use::roots;
     forget_margins();
@@ -218,7 +218,7 @@ class Adaptive : public AdaptivePrices {
     const TraversalStatistics statistics = margins_.run(pair);
     answer_.forget();
     const double cost = price(statistics, careful) - careful.run;
-    // Roots that need not be posed are what one margin saves.
+    // What one margin saves is posing the roots.
     const double posed = list_.size() == 1 ? roots_posed : 0;
     const double expected = careful.run + toward * (cost + posed) * margins_.due_in_a_run(step_);
     const double otherwise = list_.size() == 1 ? broad.run + broad.volumes + posed : next_run_;
@@ -245,7 +245,7 @@ class Adaptive : public AdaptivePrices {
     const TraversalStatistics statistics = margins_.look(pair);
     const double cost = price(statistics, careful);
     const auto entries = static_cast<double>(margins_.front_size());
-    // What it takes to come back is what may be lost, or held in hand.
+    // The cost of a return to margins is the most that they may lose, or hold as credit.
     if (margins_.rebuilds() != rebuilds) {
       if (statistics.everything)
         entry_ = (price(statistics, plain) - plain.run) / (2 * entries - 1);
@@ -261,7 +261,7 @@ class Adaptive : public AdaptivePrices {
     if (balance_ > looks_to_lose * may_lose_) give_back();
   }
 
-  /// A list goes on with the entries of the margins, as if it had just been rebuilt.
+  /// Continues with a list of the margins' entries, as if it had just been rebuilt.
   void give_back() {
     list_.restart_from(margins_.front());
     forget_margins();
@@ -273,23 +273,23 @@ class Adaptive : public AdaptivePrices {
     swept_ = 0, balance_ = 0;
   }
 
-  // What is looked at in every run stands together.
+  // Members that every run reads are next to each other.
   Use use_ = Use::roots;
   bool in_batches_ = false;
-  bool watched_ = false;                // there are margins, of all or of the witness
-  bool worn_out_ = false;               // the list is
-  bool everything_ = true;              // seen by the list's last run
+  bool watched_ = false;                // there are margins, of all entries or of the witness
+  bool worn_out_ = false;               // the list is due for a rebuild
+  bool everything_ = true;              // the list's last run was complete
   int unseen_ = 0;                      // runs since the bodies were followed
-  int swept_ = 0;                       // runs through all of the list since its rebuild
-  double owed_ = 0, failed_at_ = 0;     // before what failed is tried again; step
-  double displacement_ = 0, step_ = 0;  // of both bodies; in the last run
+  int swept_ = 0;                       // complete runs of the list since its rebuild
+  double owed_ = 0, failed_at_ = 0;     // to spend before the next trial; step at failure
+  double displacement_ = 0, step_ = 0;  // bound of both bodies; motion in the last run
   SphereTest spheres_;
-  double leaf_ = 0;                             // size of one, mean of both bodies
-  double rebuild_ = 0;                          // what the list's last one cost
-  double balance_ = 0;                          // what was lost against the other way
-  double spent_ = 0, runs_ = 0, next_run_ = 0;  // of the list, since its rebuild; expected
-  double entry_ = 0;     // cost of a run of a list for each entry of the margins
-  double may_lose_ = 0;  // that margins may lose, or have in hand
+  double leaf_ = 0;                             // size of a leaf, mean of both bodies
+  double rebuild_ = 0;                          // cost of the list's last rebuild
+  double balance_ = 0;                          // cost of this way minus that of the other
+  double spent_ = 0, runs_ = 0, next_run_ = 0;  // of the list, since its rebuild; next cost
+  double entry_ = 0;                            // a list's cost per entry of the margins
+  double may_lose_ = 0;                         // the most that margins may lose, or hold as credit
   LastAnswer answer_;
   Front list_;
   Margins margins_;

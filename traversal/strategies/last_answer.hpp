@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The answer of a pair's last run, which holds while neither body moves.
+/// The last answer of a pair of bodies, which is valid while neither moves.
 #pragma once
 
 #include <concepts>
@@ -11,7 +11,7 @@
 
 namespace bvlab {
 
-/// The query is answered by yes or no, and a hit settles it.
+/// A query that is answered by yes or no, and decided by a single hit.
 template <class Query>
 concept YesOrNo =
     !wants_bound<Query>() && Query::one_hit_is_enough && requires(const Query& query) {
@@ -20,8 +20,8 @@ concept YesOrNo =
 
 class LastAnswer {
  public:
-  /// Gives the query the last answer if it can be repeated and nothing has moved since; returns
-  /// whether that was so.
+  /// Passes the last answer to the query if it is kept and nothing has moved since; returns whether
+  /// that was so.
   template <class Pair>
   bool repeat(const Pair& pair) {
     using Query = typename Pair::Query;
@@ -30,14 +30,14 @@ class LastAnswer {
     if constexpr (requires { pair.query().distance(); }) {
       if (same) pair.query().repeat(distance_);
     } else if constexpr (YesOrNo<Query>) {
-      if (same && touching_) pair.query().known(0, 0);  // which triangles is no part of a yes
+      if (same && touching_) pair.query().known(0, 0);  // the triangles are not part of the answer
     }
     epoch_a_ = a, epoch_b_ = b;
     query_ = &Query::name;
     return same;
   }
 
-  /// Keeps the answer if it is yes or no, or a number, or that nothing was found.
+  /// Keeps the answer if it is a yes or no or a number, or if no triangles were tested.
   template <class Pair>
   void remember(const Pair& pair, const TraversalStatistics& statistics) {
     auto& query = pair.query();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// When a list is dropped for its length alone.
+/// The length at which a list is dropped, whatever its cost.
 #pragma once
 
 #include <cstddef>

@@ -3,11 +3,11 @@
 /// of an approach (relative_motion_bound.hpp). Until the clock shows that time, nothing below the
 /// entry can touch; or, for an entry whose triangles have been tested, no verdict can have changed.
 ///
-/// More precisely, an entry of deadline e stands for surfaces at least e - now apart: for a query
-/// with a limit of l, it is due only if e <= now + l. Deadlines lie in an array of their own, and a
-/// whole register of them is compared at once: 16 entries in two or three instructions. That is
-/// cheaper than any order kept among them while a front has less than some ten thousand entries,
-/// and nothing has to be moved when a deadline changes.
+/// More precisely, an entry with deadline e stands for surfaces at least e - now apart: for a query
+/// with limit l it is due only if e <= now + l. Deadlines are in an array of their own and are
+/// compared a register at a time: 16 entries in two or three instructions. For fronts of less than
+/// some ten thousand entries that is cheaper than keeping them ordered, and nothing has to be moved
+/// when a deadline changes.
 #pragma once
 
 #include <algorithm>
@@ -22,17 +22,17 @@
 
 namespace bvlab {
 
-/// A pair of triangles that share a point, and go on to do so until the deadline.
+/// A pair of triangles that share a point, at least until the deadline.
 struct KnownHit {
   std::uint32_t slot;
   float deadline;
   std::uint32_t a, b;
 };
 
-/// A float below x, but not by much: half a unit in the last place is lost to the first rounding
-/// and as much to the second; the last term covers underflow. For any x: a value beyond the largest
-/// float comes down below it, since an infinite deadline would become NaN when something is
-/// subtracted from it, and would never pass.
+/// A float slightly below x: half a unit in the last place is lost to each of two roundings; the
+/// last term covers underflow. For any x: a value beyond the largest float becomes one below it,
+/// since an infinite deadline would become NaN when something is subtracted from it, and would
+/// never pass.
 inline float just_below(double x) {
   const auto y = static_cast<float>(std::min(x, double{std::numeric_limits<float>::max()}));
   return y - std::abs(y) * 0x1p-22f - std::numeric_limits<float>::min();
@@ -95,7 +95,7 @@ class MarginFront {
     deadlines_[slot] = std::min(deadlines_[slot], before);
   }
 
-  /// Some entries that were collected have no new deadline: the traversal was cut short.
+  /// Some collected entries got no new deadline, because the traversal was cut short.
   void leave_rest() { earliest_ = passed; }
 
   /// A lower bound on all deadlines.
@@ -151,7 +151,7 @@ class MarginFront {
   bool witnessed() const { return witness_ != nowhere; }
   std::uint32_t witness() const { return witness_; }
 
-  /// Whether the witness's margin is expected to be used up soon. If so, its next tests, up to
+  /// Sets whether the witness's margin is expected to be used up soon. If so, its next tests, up to
   /// `most_brief_looks`, only find whether it still hits, and measure no margin.
   void expect(bool soon) { brief_looks_ = soon ? most_brief_looks : 0; }
   bool take_brief_look() { return brief_looks_ > 0 && brief_looks_-- > 0; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// One run from a front with margins: entries whose deadlines have passed are tested and given new
-/// ones; pairs that are apart by a small gap are opened for wider gaps.
+/// One run from a front with margins: tests the entries whose deadlines have passed, gives them new
+/// ones, and opens culled pairs with small gaps into pairs with wider ones.
 #pragma once
 
 #include <algorithm>
@@ -61,11 +61,11 @@ class MarginSweep : public FrontDefaults {
     if (satisfied) front_.leave_rest();
   }
 
-  /// Whether opening a culled pair saves tests. An entry that has a gap of g to spare costs a test
-  /// in every g / step-th run, or in every run. A pair with an inner node, opened, costs two such
-  /// entries, whose gaps are wider by about a quarter of the size of the node opened. A pair of
-  /// leaves, whose triangles are as expensive as `triangle_cost` volumes, has triangles farther
-  /// apart by about half of both sizes. Where gaps last for many runs anyway, opening does not pay.
+  /// Whether opening a culled pair saves tests. An entry with a spare gap of g costs one test in
+  /// every g / step-th run, or in every run. A pair with an inner node, opened, becomes two such
+  /// entries, with gaps wider by about a quarter of the size of the opened node. A pair of leaves,
+  /// whose triangles cost as much as `triangle_cost` volumes, has triangles farther apart by about
+  /// half of both sizes. Where gaps last for many runs anyway, opening does not pay.
   template <class Query, class Node>
   bool opens(const Query& query, const Node& a, const Node& b, double gap) const {
     constexpr double triangle_cost = 3, leaf_gain = 0.5, inner_gain = 0.25, long_enough = 4;
@@ -77,7 +77,7 @@ class MarginSweep : public FrontDefaults {
     return spare < long_enough * step_ && cost * std::max(spare, step_) < spare + wider;
   }
 
-  /// A pair of leaves is due when the first of its verdicts can change.
+  /// A pair of leaves is due when the first of its verdicts may change.
   template <class Query>
   Outcome primitives(Query& query, std::span<const Candidate> pending, Workspace& workspace) {
     if (brief_) return briefly(query, pending);
@@ -121,8 +121,8 @@ class MarginSweep : public FrontDefaults {
     return traversal.flush();
   }
 
-  /// Whether a witness whose margins never last long still hits. This does not measure its margin,
-  /// which is as expensive as ten such tests.
+  /// Whether a witness whose margins never last long still hits. Does not measure its margin, which
+  /// costs as much as ten such tests.
   template <class Traversal>
   bool hits_still(Traversal& traversal, const NodePair& pair, std::uint32_t witness) {
     using Query = typename Traversal::Query;
@@ -142,7 +142,7 @@ class MarginSweep : public FrontDefaults {
   Outcome briefly(Query& query, std::span<const Candidate> pending) {
     const Outcome outcome = query.primitives(pending);
     if (outcome.satisfied) {
-      // Holds as long as the bodies do not move; then it is tested again.
+      // Valid while the bodies do not move; then it is tested again.
       const Candidate& hit = pending[outcome.witness];
       front_.add_hit(hit.slot, MarginFront::passed, hit.a, hit.b);
     }

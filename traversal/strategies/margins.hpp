@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A front that tests only those entries whose gaps the bodies can have closed since they were
-/// measured. Verdicts on triangles hold as long as their margins do.
+/// A front with margins: tests only those entries whose gaps the bodies can have closed since they
+/// were measured. Verdicts on triangles are reused within their margins.
 ///
 /// The cost of a run follows the motion, not the length of the front: an entry of gap g costs one
 /// test in about g / (motion per run) runs. So it pays to open pairs that are apart by a small gap:
@@ -15,9 +15,9 @@
 /// a run (smoothed) costs more than the mean since the last rebuild, including the rebuild. This
 /// replaces a front that is too long because the bodies moved apart.
 ///
-/// A run in which nothing is due costs some additions: tens of nanoseconds. When the query is
-/// another than in the last run, all entries are due. The parameters of a query must not change
-/// between runs.
+/// A run in which nothing is due costs tens of nanoseconds. When the query differs from that
+/// of the last run, all entries are due. The parameters of a query must not change between
+/// runs.
 #pragma once
 
 #include <algorithm>
@@ -42,19 +42,19 @@ class Margins {
     return look(pair);
   }
 
-  /// The first half of a run: whether nothing is due. If so, the run is over.
+  /// The first half of a run: returns whether nothing is due. If so, the run is over.
   template <class Pair>
   bool quiet(const Pair& pair) {
     return !front_.empty() && unchanged(pair.a(), pair.b(), pair.query());
   }
-  /// The second half.
+  /// The second half of a run: tests the due entries.
   template <class Pair>
   TraversalStatistics look(const Pair& pair) {
     MovingBody &a = pair.a(), &b = pair.b();
     auto& query = pair.query();
     using Query = typename Pair::Query;
     if (front_.empty() || worn_out_) rebuild(a, b);
-    // What one query found out about triangles does not serve another, such as the first hit of an
+    // Verdicts found by one query do not serve another: one may stop at the first hit of an
     // entry.
     if (last_query_ != &Query::name) front_.expire();
     if (repeat_hits(query)) {
@@ -85,11 +85,11 @@ class Margins {
     last_query_ = nullptr;
   }
 
-  /// Whether the witness is expected to last so short that measuring its margin does not pay.
+  /// Sets whether the witness is expected to last so short that measuring its margin does not pay.
   void expect(bool soon) { front_.expect(soon); }
 
-  /// The second half, but never with a rebuild. The front may lack entries: where no hit is found,
-  /// the query is not answered yet.
+  /// The second half without a rebuild. The front may be incomplete: where no hit is found, the
+  /// query is not answered yet.
   template <class Pair>
   TraversalStatistics look_as_it_is(const Pair& pair) {
     worn_out_ = false;
@@ -117,7 +117,7 @@ class Margins {
 
  private:
   static constexpr double stretch = 4;    // steps over which motion is measured
-  static constexpr double triangles = 4;  // one pair of triangles costs as much as pairs of volumes
+  static constexpr double triangles = 4;  // cost of a pair of triangles in pairs of volumes
   static constexpr double farthest = 1024;  // radii after which the clock is set back
 
   /// Follows the bodies. If nothing can have changed, answers the query and returns true.
@@ -159,14 +159,14 @@ class Margins {
     shown_ = clock_.now();
   }
 
-  /// Passes to the query the hits that are sure to stay; the others are found again. Returns
+  /// Passes the hits that are still certain to the query; the others will be found again. Returns
   /// whether the query is satisfied.
   template <class Query>
   bool repeat_hits(Query& query) {
     auto& hits = front_.hits();
     if constexpr (Query::one_hit_is_enough)
-      // The entry stays due even if the run ends before it is tested, and the bodies then go back
-      // to where its deadline has not passed.
+      // The entry is due even if the run ends before it is tested and the bodies then return to
+      // where its deadline has not passed.
       std::erase_if(hits, [&](const KnownHit& hit) {
         const bool over = !(hit.deadline > shown_);
         if (over) front_.expire_at(hit.slot, MarginFront::passed);
@@ -217,11 +217,11 @@ class Margins {
   RelativeMotionBound clock_;
   std::uint32_t epoch_a_ = 0, epoch_b_ = 0;  // at the last run
   double displacement_ = 0;                  // of both bodies, at the last run
-  double step_ = 0;                          // how much nearer since the run before, at most
+  double step_ = 0;                          // bound on how much nearer since the last run
   double shown_ = 0;                         // at least the time on the clock
-  double quiet_until_ = 0;                   // the answer is known while the clock shows less
+  double quiet_until_ = 0;                   // the answer is valid while the clock shows less
   double distance_ = 0;
-  double upkeep_ = 0, cost_ = 0, runs_ = 0;  // tests of a run, smoothed; since the rebuild
+  double upkeep_ = 0, cost_ = 0, runs_ = 0;  // smoothed cost of a run; totals since the rebuild
   std::uint32_t rebuilds_ = 0;
   bool worn_out_ = false;
   const std::string_view* last_query_ = nullptr;  // the query of the last run

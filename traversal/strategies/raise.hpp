@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A separation list that rises again where the bodies have come apart, so that it need not be
-/// rebuilt from the roots (li1998incremental; ehmann2001accurate raises its fronts, too).
+/// A separation list that is raised to parents where the bodies have come apart, so that it need
+/// not be rebuilt from the roots (li1998incremental; ehmann2001accurate raises fronts, too).
 ///
-/// The law of cost. Two siblings whose parent is apart cost one test too many in every run. A
-/// parent tried in vain costs one test; one that is apart replaces two entries and saves one. If a
-/// share h of the parents come apart in a run, trying all in every T-th run costs 1 / T + h T / 2
-/// for each, which is least where as much is spent in vain as is lost by raising late. But h falls
-/// with the time since the parent was last seen to overlap, so it is tried after 1 run, 2, 4, ...
-/// (see rising_front.hpp): of those tried first, one in seven is apart in little motion, nine in
-/// ten in violent motion, and either way what is wasted is little beside what descending had cost.
-/// Bodies at rest, with n entries, take n tests a run and at most n / 32 for parents.
+/// Cost. Two siblings whose parent is apart cost one test too many in every run. Testing a parent
+/// costs one test; if it is apart, it replaces two entries and saves one test a run. If a share h
+/// of the parents come apart in a run, testing all in every T-th run costs 1 / T + h T / 2 for
+/// each, which is least where as much is spent in vain as is lost by raising late. But h falls with
+/// the time since the parent was last seen to overlap, so it is tested after 1 run, 2, 4, ... (see
+/// rising_front.hpp): of first tests, one in seven succeeds in little motion, nine in ten in
+/// violent motion; either way the waste is small relative to the cost of descending. Bodies at
+/// rest, with n entries, take n tests a run and at most n / 32 for parents.
 ///
-/// A rebuild that finds n leaves of the test tree takes 2n - 1 tests. Where bodies jump, sinking
-/// and rising takes more than that: then the list is dropped and rebuilt in the next run. If no run
-/// of the new list is any cheaper, it is rebuilt only after twice as many runs from the roots, up
-/// to 16. As the list has more entries than the test tree would have leaves, a run is too expensive
-/// from (2n - 1) / 1.2 tests on, n being the entries it leaves (with 1 or 1.5 in place of 1.2 more
-/// tests were made on the whole).
+/// A rebuild that finds n leaves of the test tree takes 2n - 1 tests. Where bodies jump, raising
+/// and descending costs more than that: then the list is dropped and rebuilt in the next run. If no
+/// run of the new list is cheaper either, it is rebuilt only after twice as many runs from the
+/// roots, up to 16. As a list has more entries than the test tree would have leaves, a run counts
+/// as too expensive from (2n - 1) / 1.2 tests on, n being its entries at the end (with 1 or 1.5 in
+/// place of 1.2 more tests were made on the whole).
 ///
 /// Runs cut short. The pair that was hit is tested first in the next run, before any parent, and a
-/// hit there ends that run at once. Parents come next, so that what was raised stays raised if a
-/// hit then cuts the run short. Pairs that were pushed but not tested stay in the list, and are
-/// tried like all others. Such a run does not count for or against the list. For distances, parents
-/// are tried against the bound that the witness, or else one descent from the roots, has given.
+/// hit there ends that run at once. Parents come next, so that raises persist if a hit then cuts
+/// the run short. Pairs that were pushed but not tested become entries like all others. Such a run
+/// does not count for or against the list. For distances, parents are tested against the bound that
+/// the witness, or else one descent from the roots, has given.
 #pragma once
 
 #include <algorithm>
@@ -61,7 +61,7 @@ class Raise {
  private:
   static constexpr unsigned longest_pause = 16;
   static constexpr double surplus = 1.2;
-  static constexpr std::size_t few = 8;  // entries that are not worth a judgement
+  static constexpr std::size_t few = 8;  // lists up to this length are not judged
 
   /// Drops the list if recursion would have been cheaper than the run just made through it.
   void judge(double tests) {
@@ -77,7 +77,7 @@ class Raise {
   }
 
   RisingFront front_;
-  bool paid_ = false;        // some run of this list was cheaper
+  bool paid_ = false;        // some run of this list cost less than recursion
   unsigned recursions_ = 0;  // runs from the roots before it is rebuilt
   unsigned pause_ = 1;       // runs from its drop to its rebuild
 };

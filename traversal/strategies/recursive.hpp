@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The basic recursive algorithm: from the two roots in every run, nothing kept.
+/// The basic recursive algorithm: every run starts from the two roots, and nothing is kept.
 /// A run without a hit that ends in n pairs makes 2n - 1 tests.
 #pragma once
 

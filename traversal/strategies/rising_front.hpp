@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A front that can also rise: entries that are all the children of one pair are replaced by that
-/// pair where it is apart (ehmann2001accurate).
+/// A front that can also be raised: the entries that are all the children of one pair are replaced
+/// by that pair where it is apart (ehmann2001accurate).
 ///
-/// Law: whatever is raised, the front stays a partition, of pairs that recursion makes. Recursion
-/// makes a pair in one way only: larger nodes are descended before smaller ones, and a child that
-/// is larger than its parent right after it. So of the two parents the one descended last is the
-/// one with the smaller `least` (Hierarchy::Above). The siblings of an entry are the pairs with the
-/// other children of that parent; a table finds their slots.
+/// Law: whatever is raised, the front remains a partition into pairs that recursion makes.
+/// Recursion makes a pair in one way only: larger nodes are descended before smaller ones, and a
+/// child that is larger than its parent right after it. So of the two parents the one descended
+/// last is the one with the smaller `least` (Hierarchy::Above). The siblings of an entry are the
+/// pairs with the other children of that parent; a table finds their slots.
 ///
-/// Siblings that are all in the front are tried in the run after the last of them was added, and
-/// after j failures in the next run whose number 2^j divides, j up to `most_failures`. A pair just
-/// raised is tried with its siblings in the same run, so that a front can rise all the way at once.
-/// An entry that lacks a sibling costs nothing: it is idle until that sibling is added.
+/// Siblings that are all in the front are proposed in the run after the last of them was added, and
+/// after j failures in the next run whose number is divisible by 2^j, j up to `most_failures`. A
+/// raised pair is proposed with its own siblings in the same run, so that a front can rise all the
+/// way at once. An entry that lacks a sibling costs nothing: it is idle until that one is added.
 #pragma once
 
 #include <algorithm>
@@ -195,7 +195,7 @@ class RisingFront : public Front {
     if (failures < most_failures) ++failures;
   }
 
-  /// Moves raised entries behind all others, and returns their number.
+  /// Moves raised entries behind all others; returns their number.
   std::size_t settle(Proposals& proposals) {
     std::size_t raised = 0;
     for (Siblings& siblings : proposals.all) {
@@ -238,11 +238,11 @@ class RisingFront : public Front {
     return raised;
   }
 
-  /// The longest wait is 2^most_failures runs: for bodies at rest, of whose entries at most half
-  /// represent siblings, 1/32 of a test for each entry and run. Of 1 to 1024 runs, on random walks,
-  /// 8 and 16 are within 7 % of the best at every motion.
+  /// The longest wait is 2^most_failures runs: bodies at rest, of whose entries at most half
+  /// represent siblings, then cost 1/32 of a test per entry and run. Of waits from 1 to 1024 runs,
+  /// on random walks, 8 and 16 are within 7 % of the best at every motion.
   static constexpr std::uint8_t most_failures = 4;
-  /// Not counts of failures: never due; raised in this run; no longer an entry.
+  /// Special values: never due; raised in this run; no longer an entry.
   static constexpr std::uint8_t idle = 253, fresh = 254, gone = 255;
 
   /// Proposes an entry with its siblings, unless one of them is not in the front. The roots have no

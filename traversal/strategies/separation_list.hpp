@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The separation list of the talk (li1998incremental), with deferred rebuilding.
+/// The separation list of li1998incremental (the talk), with deferred rebuilding.
 ///
 /// A run starts from the pairs at which the last one stopped, and the list never shrinks. When it
 /// has stopped growing the objects are predicted to move apart, and the list is rebuilt from the

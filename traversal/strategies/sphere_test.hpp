@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Whether spheres about the origins of two bodies' frames are apart, by translations alone: no
-/// volume is posed. After a pair that is near, the test rests for eight runs.
+/// Tests spheres about the origins of two bodies' frames by the translations alone: no volume is
+/// posed. After spheres that overlap, the test is skipped for eight runs.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ class SphereTest {
   template <class Pair>
   Result operator()(const Pair& pair) {
     if (until_test_ > 0) return --until_test_, Result::not_tested;
-    // What is added to the radii is far more than rotations can be off and rounding can do.
+    // The enlargement of the radii far exceeds the errors of rotations and rounding.
     if (radii_ == 0)
       radii_ = (radius(pair.a().extent()) + radius(pair.b().extent())) * (1 + 0x1p-20) +
                (pair.a().extent().reach + pair.b().extent().reach) * 0x1p-40;
@@ -30,15 +30,15 @@ class SphereTest {
     return Result::near;
   }
 
-  /// Counts a run in which the roots were tested instead; returns whether the rest is over.
+  /// Counts a run in which the roots were tested instead; returns whether the pause is over.
   bool batch_is_over() { return --until_test_ <= 0; }
   void look_now() { until_test_ = 0; }
 
  private:
   static constexpr int rest = 8;            // runs
-  static constexpr double tiny = 0x1p-900;  // squares below have lost digits to underflow
+  static constexpr double tiny = 0x1p-900;  // smaller squares are inexact by underflow
 
-  /// Of a sphere about the frame's origin that holds the mesh. Volumes may reach much farther.
+  /// The radius of a sphere about the frame's origin that encloses the mesh, but maybe not volumes.
   static double radius(const HierarchyExtent& extent) {
     return std::min(extent.reach, stable_norm(extent.centre) + extent.radius);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A batch of triangles that crossed in the last frame, one pair of triangles for each pair of
-/// bodies. Eight are tested at a time for their margins: how far the bodies can move before the
+/// bodies. Their margins are measured eight at a time: how far the bodies can move before the
 /// triangles no longer cross (triangle_margin.hpp).
 #pragma once
 
@@ -18,7 +18,7 @@ class CrossingBatch {
       for (std::size_t k = 0; k < width; ++k) pointers_[side][k] = &triangles_[side][k];
   }
 
-  /// The triangles of pair `p`, in the world.
+  /// Adds the triangles of pair `p`, in the world frame. The batch must not be full.
   void add(std::size_t p, const Triangle& a, const Triangle& b) {
     triangles_[0][used_] = a, triangles_[1][used_] = b;
     pairs_[used_++] = p;

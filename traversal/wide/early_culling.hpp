@@ -17,14 +17,14 @@
 
 namespace bvlab {
 
-/// A set of pairs of bodies, by their indices. Each is still undecided, or decided to be apart or
-/// unchanged. One for each thread.
+/// A set of pairs of bodies, by their indices, each of them undecided or decided (to be apart, or
+/// to have its last answer). One sieve per thread.
 class PairSieve {
  public:
   using Indices = SeparatingDirections::Indices;
   static constexpr std::size_t width = SeparatingDirections::width;
 
-  /// Empties the sieve and makes room for `pairs` pairs, with a register behind them.
+  /// Empties the sieve and reserves `pairs` pairs, plus one register.
   void begin(std::size_t pairs) {
     if (undecided_.size() < pairs + width)
       undecided_.resize(pairs + width), decided_.resize(pairs + width);
@@ -43,8 +43,8 @@ class PairSieve {
   void sift(Decides&& decides) {
     sift_slowly([&](std::size_t p) { put(static_cast<std::int32_t>(p), !decides(p)); });
   }
-  /// Calls `take(pair)` for each undecided pair. `take` may let pairs wait, and `put`s them back in
-  /// any order; they are written behind the pair that is read.
+  /// Calls `take(pair)` for each undecided pair. `take` may delay pairs before it calls `put` for
+  /// them, in any order; they are written behind the pair that is read.
   template <class Take>
   void sift_slowly(Take&& take) {
     const std::size_t count = std::exchange(undecided_count_, 0);
@@ -55,9 +55,9 @@ class PairSieve {
     undecided_count_ += is_undecided, decided_count_ += 1 - is_undecided;
   }
 
-  /// Pairs for which `skips(pair)` is true stay undecided. The others are tested a register at a
-  /// time: `test(pairs, used)` returns the bits of those that stay undecided. Returns how many were
-  /// tested.
+  /// Tests pairs a register at a time: `test(pairs, used)` returns the bits of those that remain
+  /// undecided. Pairs for which `skips(pair)` is true are not tested and remain undecided. Returns
+  /// the number of tests.
   template <class Skips, class Test>
   std::size_t sift_batches(Skips&& skips, Test&& test) {
     std::size_t skipped = 0;
@@ -94,7 +94,7 @@ class EarlyCulling {
     directions_.resize(maps_.size());
   }
 
-  /// `centre` of the body's sphere from the common origin, `error_bound` as in OrthonormalPose.
+  /// `centre`: the sphere's, from the common origin; `error_bound`: as in OrthonormalPose.
   void set_pose(std::size_t body, const Mat3<double>& rotation, const Vec3<double>& centre,
                 double radius, double error_bound) {
     directions_.set_pose(body, maps_[body], rotation, centre, radius, error_bound);
@@ -108,8 +108,8 @@ class EarlyCulling {
                        });
   }
 
-  /// Decides pairs that a direction separates, and calls `apart(pair, gap)` for each, with at most
-  /// their distance. Those for which `skips(pair)` stay undecided. Returns how many were tested.
+  /// Decides pairs that a direction separates; calls `apart(pair, gap)` for each, with a lower
+  /// bound on its distance. If `skips(pair)`, it remains undecided. Returns the number tested.
   template <class Skips, class Apart>
   std::size_t cull_by_directions(PairSieve& sieve, std::span<const ObjectPair> pairs, Skips&& skips,
                                  Apart&& apart) const {

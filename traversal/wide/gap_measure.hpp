@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// What a traversal of two wide trees measures for a memory of margins (wide_margins.hpp): a lower
-/// bound on the distance of the bodies, as long as it finds them apart; and which triangles cross.
+/// bound on the distance of the bodies, while it finds them apart; and which triangles cross.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +24,8 @@ class GapMeasure {
  public:
   static constexpr bool measures = true;
 
-  /// Clears a front that is not complete, to write it anew. `rotation` bounds the rotation of both
-  /// bodies since the first frame.
+  /// Starts a traversal. A front that is not complete is cleared, to be written anew. `rotation`
+  /// bounds the rotation of both bodies since the first frame.
   void begin(WideFront* front, double rotation) {
     front_ = front, rotation_ = rotation;
     sweeps_ = front && front->is_complete(), swept_ = false, due_ = 0;
@@ -41,8 +41,8 @@ class GapMeasure {
   bool front() const { return front_; }
   std::size_t due() const { return due_; }
 
-  /// Which of the entries `first` and up, at most a register of them, are due: their gaps may have
-  /// closed.
+  /// Which of the entries from `first` on, at most a register of them, are due, that is, may have
+  /// closed their gaps.
   [[gnu::always_inline]] std::uint64_t due(std::size_t first, std::size_t entries,
                                            const CornerTransform& corners) {
     const WideFront::S left = front_->left(first, corners, rotation_);
@@ -62,7 +62,7 @@ class GapMeasure {
     return bits(apart);
   }
   /// Records a step: the lanes left, and the gap `least` of the others, measured at `sphere_of()`.
-  /// Returns those of the lanes left that have not been opened before.
+  /// Returns the lanes left that were not opened before.
   template <class SphereOf>
   [[gnu::always_inline]] std::uint64_t left(const NodePair& pair, std::uint64_t lanes,
                                             std::size_t entry, const S& least,
@@ -80,7 +80,7 @@ class GapMeasure {
     front_->is_apart(entry, stdx::hmin(least), sphere_of(), rotation_);
     return fresh;
   }
-  /// Triangles have been tested; `touching`: some may touch. Returns whether to measure their gap.
+  /// Records a test of triangles; `touching`: some may touch. Returns whether to measure their gap.
   bool triangles(const NodePair& pair, bool touching, std::size_t entry) {
     if (touching) touched_ = pair;
     if (!front_ || entry == WideFront::none) {
@@ -104,7 +104,7 @@ class GapMeasure {
 
   /// The pair whose triangles touched, or may have.
   const std::optional<NodePair>& touched() const { return touched_; }
-  /// At most the distance of the bodies; 0 where no bound is known. It covers the rounding of
+  /// A lower bound on the distance of the bodies; 0 where none is known. It covers the rounding of
   /// separations (see slab_box_sibling_test.hpp, gaps).
   double gap() const {
     const double least = std::min(stdx::hmin(least_), stdx::hmin(least_left_));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Numbers from anywhere in memory, one a lane.
+/// Gathers numbers from anywhere in memory, one per lane.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace bvlab {
 
-/// Lane by lane from[index[lane]]. The numbers may be integers of four bytes, whose bits are kept;
-/// they are copied, not read as floats.
+/// Lane by lane, from[index[lane]]. The numbers may be integers of four bytes: bits are copied,
+/// never read as floats.
 template <int W>
 [[gnu::always_inline]] inline Batch<float, W> gathered(const float* from,
                                                        const Batch<std::int32_t, W>& index) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A step of a traversal of two trees of four children a node, in sixteen lanes. Where the two
+/// A step of a traversal of two trees with four children a node, in sixteen lanes. Where the two
 /// nodes are alike in size, four children are tested against four; else one node against the
-/// sixteen grandchildren of the other, the larger one or the one that is no leaf (see
+/// sixteen grandchildren of the other, which is the larger one or the only inner one (see
 /// block_hierarchy.hpp).
 ///
-/// Four against four halves the number of steps between bodies that are alike in size. It is bad
-/// where one is far larger, as all four of its children overlap all four of the other's. See
+/// Four against four halves the number of steps between bodies of similar size. It is bad where one
+/// is far larger: then all four of its children overlap all four of the other's. See
 /// siblings_kernel.hpp for the members of a kernel.
 #pragma once
 
@@ -30,14 +30,14 @@ struct MixedKernel {
   static constexpr std::string_view description =
       "four children against four where nodes are alike in size, else one against sixteen "
       "grandchildren";
-  /// Volumes whose sibling test also compares a volume in each lane with another in each.
+  /// Volumes whose sibling test can also pose one volume in each lane.
   template <class V>
   static constexpr bool takes = requires(const typename SiblingTestOf<V>::FrameChange& frame_change,
                                          const Over<V, SixteenLanes>& lanes) {
     SiblingTestOf<V>::in_lanes(lanes, frame_change);
   };
-  /// Sixteen lanes leave so many pairs open that descending to the nearest child of a step, rather
-  /// than to the nearest of all open pairs, finds a hit sooner and waits for less.
+  /// Sixteen lanes leave many open pairs: descending to the nearest child of a step, rather than to
+  /// the nearest of all open pairs, finds a hit sooner and with fewer stalls.
   static constexpr bool nearest_child_first = true;
   /// Nodes whose sizes differ by no more than this factor are alike.
   static constexpr float alike = 2;
@@ -215,7 +215,7 @@ struct MixedKernel {
           }
         return of;
       }
-      /// At most the distance of any pair; not positive where no bound is known.
+      /// A lower bound on the distance of any pair; not positive where none is known.
       template <class Counter>
       [[gnu::noinline]] float gap(Counter&) const {
         float least = std::numeric_limits<float>::infinity();

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The memory of a pair of bodies that starts from the roots in every frame.
+/// No memory: each pair of bodies starts from the roots in every frame.
 ///
-/// A memory is what pairs of bodies keep from frame to frame. WidePairs calls
+/// A memory keeps state of pairs of bodies from frame to frame. WidePairs calls
 ///   add_body(sphere, reach), resize(pairs)  for the bodies and the number of pairs
 ///   forget(pair)                            when a pair parts
 ///   begin_frame<Query>()                    another query than before starts without memory
 ///   move(i, body, pose, culling, origin)    body i is at `pose`
 ///   rest(i)                                 body i does not move
 ///   front_size(pair), front_size()          entries of the front of one pair, of all
-///   require(body, pose)                     a traversal is about to need the body
+///   require(body, pose)                     sets the pose of a body before it is traversed
 ///   answer_valid<Query>(pair, bodies)       whether the last answer holds, by one comparison
 ///   repeat(pair, query)                     gives a query the last answer
-///   cull<Query>(sieve, scene, counter, make_query)  decides pairs by what is kept
+///   cull<Query>(sieve, scene, counter, make_query)  decides pairs by what it has kept
 ///   skips_directions(pair)                  see EarlyCulling::cull_by_directions
 ///   apart(pair, bodies, gap)                a direction has separated the pair
 ///   start<Query>(pair, bodies)              where a traversal starts
-///   remember(pair, bodies, query, measure)  what the traversal has found
-/// and has Measure<S>, what a traversal measures for it.
+///   remember(pair, bodies, query, measure)  keeps what the traversal has found
+/// and uses Measure<S>, the type of what a traversal measures for it.
 #pragma once
 
 #include <cstdint>
@@ -94,7 +94,7 @@ class NoMemory {
   static constexpr bool AnswersTouching = requires(Query query) { query.touching(); };
 
   std::vector<MeshSphere> spheres_;
-  std::vector<std::uint8_t> touched_;  // in the last frame; only the order of steps depends on it
+  std::vector<std::uint8_t> touched_;  // in the last frame; affects only the order of steps
 };
 
 }  // namespace bvlab

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Two bodies in each other's frames. Volumes stay in the frames of their meshes; the relative pose
-/// takes one node at a time into the frame of the other body. Nothing is cached but that pose.
+/// Two bodies tested in each other's frames: volumes stay in the frames of their meshes, and one
+/// node at a time is posed into the frame of the other body. Only the relative pose is cached.
 #pragma once
 
 #include <algorithm>
@@ -47,8 +47,8 @@ class WideBody {
   bool posed_ = false;
 };
 
-/// Takes corners of a into the frame of b's mesh, in float, for the float filter of triangles. The
-/// fourth number of `Four` is unused.
+/// Transforms corners of a into the frame of b's mesh, in float, for the float filter of triangles.
+/// The fourth number of `Four` is unused.
 class CornerTransform {
  public:
   using Four = Batch<float, 4>;
@@ -73,7 +73,7 @@ class CornerTransform {
                                    fused<Four>(from(column_[0]), Four(x), from(translation_))));
   }
 
-  /// The same of several points, one a lane.
+  /// The same for several points, one per lane.
   template <Batched S>
   [[gnu::always_inline]] std::array<S, 3> operator()(const S& x, const S& y, const S& z) const {
     std::array<S, 3> result;
@@ -167,8 +167,8 @@ class RelativeFrame {
     return SiblingTest::template gaps<S>(posed, frame_change_[side],
                                          hierarchies_[side]->children(node).volumes);
   }
-  /// At most the distance to each lane, negative where they may overlap; cheaper than gaps, and as
-  /// tight for volumes that are close to each other.
+  /// A lower bound on the distance to each lane, negative where they may overlap; cheaper than
+  /// gaps, and as tight for volumes that are near each other.
   [[gnu::always_inline]] GapLanes<S> separation(std::size_t side, std::uint32_t node,
                                                 const PosedNode& posed) const {
     const auto& lanes = hierarchies_[side]->children(node);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Directions that separate two bodies, for many pairs at once, one pair a lane, by the bodies'
-/// support maps: nothing is posed but a direction. The first direction is that between their
-/// centres; each further one is mirrored in the plane between the two supports (chung1996quick).
+/// Finds directions that separate two bodies, for many pairs at once, one per lane, by the bodies'
+/// support maps: no volume is posed. The first direction is that between their centres; each
+/// further one is mirrored at the plane normal to the vector between supports (chung1996quick).
 ///
-/// Of pairs of bunnies whose spheres overlap and whose convex hulls do not, the first direction
-/// separates four in five and the first two 19 in 20; and of those whose spheres overlap and that
-/// do not touch, four in five or more have hulls that are apart.
+/// Of pairs of bunnies with overlapping spheres and disjoint convex hulls, the first direction
+/// separates four in five and the first two 19 in 20; of those with overlapping spheres that do not
+/// touch, four in five or more have disjoint hulls.
 ///
 /// Derivation. A vertex of a lies within 2 error_a (`error_bound` of OrthonormalPose) of c_a + R_a
 /// v, v from the centre in the mesh, whatever matrix R_a is. For any d, with the support functions
@@ -90,8 +90,8 @@ class SeparatingDirections {
     return ~bits(squared_norm<S>(p.between) * S(1 - 16 * unit_roundoff<float>) > reach * reach);
   }
 
-  /// At most the distance of each pair, 0 where no direction separates it. Up to `most` directions
-  /// are tried, beginning with `d`; the separating one is written to `d`.
+  /// A lower bound on the distance of each pair, 0 where no direction separates it. Up to `most`
+  /// directions are tried, starting with `d`; the separating one is written to `d`.
   [[gnu::always_inline]] S gaps(const Pairs& p, Vec3<S>& d, int most) const {
     constexpr float e = unit_roundoff<float>;
     const auto rotation_a = rotation(p.a), rotation_b = rotation(p.b);
@@ -188,7 +188,7 @@ class SeparatingDirections {
     const auto position = [&](const S& at) __attribute__((always_inline)) {
       return min(S(2 * half), max(S(0.0f), fused<S>(at, scale, S(half))));
     };
-    // NaN becomes 0, so that it is in the table.
+    // NaN becomes 0, so that the table index is valid.
     const S s = finite(position(u)), t = finite(position(v));
     const S i = cell_of(s), j = cell_of(t), p = s - i, q = t - j;
     const auto sample = [&](const S& first, const S& second) __attribute__((always_inline)) {

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A step of a traversal of two wide trees: one node against all children of the other, which is
+/// A step of a traversal of two wide trees: one node is tested against all children of the other,
 /// the larger one; inner nodes are opened before leaves. The children of a leaf are its triangles.
-/// Those that are left are tested against all triangles of the other leaf at once.
+/// Those that overlap are tested against all triangles of the other leaf at once.
 ///
 /// The members of a kernel, which defines a step of two trees:
 ///   Hierarchy<V, F>, Body<V, F>
 ///   nearest_child_first    whether a step's nearest child is taken next, or the nearest of all
 ///   PairFrame<V, F>        two bodies:
 ///     begin(a, b), a_to_b()
-///     roots()                          the pair to begin with
-///     retry(touched, nodes, triangles) puts first the pair that touched in the last frame
-///     step(pair, counter, look)        calls look(step) with what is tested at once:
-///       lanes()                          those in use; they fill `parts` registers S
+///     roots()                          the pair to start with
+///     retry(touched, nodes, triangles) queues the pair that touched in the last frame first
+///     step(pair, counter, look)        calls look(step) with the volumes to test at once:
+///       lanes()                          the lanes in use, of `parts` registers S
 ///       overlap(part), separation(part), gaps(part)
 ///       push(nodes, triangles, lanes, order, next)
-///       reference_sphere()               a sphere around one of both nodes, in both frames
+///       reference_sphere()               a sphere around one of the nodes, in both frames
 ///     triangles(pair)                  triangles tested at once, of pairs that `push` found:
 ///       lanes(), corners(part) of a and of b, of_a(lane), of_b(lane)
-///       gap(counter), reference_sphere() at most their distance, and the sphere to measure it at
+///       gap(counter), reference_sphere() a lower bound on their distance, and its sphere
 ///       gaps(counter)                    the same for each lane, if triangles have volumes
 #pragma once
 
@@ -145,7 +145,7 @@ struct SiblingsKernel {
           }
         return of;
       }
-      /// At most the distance of the triangle's volume to each of the leaf's.
+      /// A lower bound on the distance of the triangle's volume to each of the leaf's.
       template <class Counter>
       [[gnu::noinline]] S gaps(Counter& counter) const {
         const auto& frame = pair_frame_.frame_;
@@ -154,7 +154,7 @@ struct SiblingsKernel {
         counter.tested(static_cast<std::uint64_t>(std::popcount(leaf_.lanes)));
         return frame.gaps(1, pair_.b, posed);
       }
-      /// At most the distance of any pair; not positive where no bound is known.
+      /// A lower bound on the distance of any pair; not positive where none is known.
       template <class Counter>
       [[gnu::noinline]] float gap(Counter& counter) const {
         const auto& frame = pair_frame_.frame_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Sixteen lanes in as many registers as they need: part `p` of them is lanes p W and up, W being
-/// the width of a register. Two sets of four numbers are spread over sixteen lanes so that each
-/// number of one meets each of the other: lane 4 i + j has number i of the one and number j of the
-/// other.
+/// Sixteen lanes in as many registers as they need: part `p` is lanes p W and up, W being the
+/// width of a register. Two sets of four numbers are spread over sixteen lanes so that each number
+/// of one meets each of the other: lane 4 i + j has number i of the first and number j of the
+/// second.
 #pragma once
 
 #include <cstddef>

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The front of two wide trees: every step of the traversal that found the bodies apart, with the
-/// lanes that were opened, the gap of the others and the sphere at which it was measured; and every
-/// triangle that was tested against a leaf, with the same once it has been measured.
+/// The front of two wide trees. Its entries: every step of the traversal that found volumes apart,
+/// with the opened lanes, the gap of the others and the sphere at which it was measured; and every
+/// triangle tested against a leaf, likewise once its gap has been measured.
 ///
 /// Law: every pair of triangles lies below an unopened lane of exactly one entry, or in one entry
 /// of triangles.
 ///
-/// For how long. One of the two nodes is represented by its sphere, of centre y and radius r. Let x
-/// -> Tx take points of a to the frame of b, M its rotation, T' and M' the same now. If the sphere
-/// is a's, each of its points x, and with it every triangle in it, has since come nearer to
-/// anything of b by at most
+/// How long a gap lasts. One of the two nodes is represented by its sphere, of centre y and radius
+/// r. Let x -> Tx take points of a to the frame of b, M its rotation, T' and M' the same now. If
+/// the sphere is a's, each of its points x, and with it every triangle in it, has since come nearer
+/// to anything of b by at most
 ///
 ///   |T'x - Tx| <= |T'y - Ty| + |M' - M|_2 r,
 ///
@@ -47,7 +47,7 @@ class WideFront {
     NodePair pair;          ///< of nodes; or a triangle of a with a leaf of b
     std::uint16_t opened;   ///< the opened lanes
     std::uint8_t triangle;  ///< 1 for a triangle against a leaf
-    std::uint8_t rest;      ///< how many more times its gap is not measured
+    std::uint8_t rest;      ///< tests to come in which its gap is not measured
   };
 
   std::size_t size() const { return entries_.size(); }
@@ -79,8 +79,8 @@ class WideFront {
     to.gap[lane] = gap - 8 * reference.error_bound;
   }
 
-  /// At most what is left of the gaps of entries `first` and up, `first` a multiple of `width`; not
-  /// positive where no gap is known.
+  /// Lower bounds on what is left of the gaps of entries `first` and up, `first` a multiple of
+  /// `width`; not positive where no gap is known.
   [[gnu::always_inline]] S left(std::size_t first, const CornerTransform& a_to_b,
                                 double rotation) const {
     using stdx::min, stdx::sqrt;
@@ -112,12 +112,12 @@ class WideFront {
   std::size_t complete_at_ = 0;
 };
 
-/// Traversals without a front, after one that wore out.
+/// Pauses of the front: traversals without one after a front that wore out.
 class FrontPause {
  public:
   /// Counts one traversal.
   bool over() { return left_ == 0 || (--left_, false); }
-  /// A front was retested: one that wore out is followed by a pause, each longer than the last.
+  /// Called when a front was retested: one that wore out starts a pause, longer each time.
   void begin(bool worn) {
     if (worn) left_ = next_;
     next_ = worn ? std::min(4 * next_, longest) : shortest;

@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The memory of a pair of bodies that keeps its last answer for as long as it must hold.
+/// A memory that keeps the last answer of each pair of bodies for as long as it is valid.
 ///
-/// A gap between two bodies comes from a direction that separates them, or from a traversal: the
+/// A gap between two bodies is found by a direction that separates them, or by a traversal: the
 /// least gap of the volumes that it found apart bounds the distance unless triangles were tested.
-/// The answer holds until the bodies can have closed that gap. That costs one comparison: of a
-/// deadline with the displacements since the first frame (MovingBody::displacement_bound).
-/// Displacements are long where bodies jitter or move together. The bound between reference poses
-/// is shorter there, and is tried before the pair is.
+/// The answer is valid until the bodies can have closed that gap. Checking costs one comparison: of
+/// a deadline with the displacements since the first frame (MovingBody::displacement_bound).
+/// Displacements overestimate motion where bodies jitter or move together. The bound between
+/// reference poses is tighter there, and is tried next.
 ///
-/// Bodies that touch go on touching until an edge that crosses a triangle can have left it. Then
-/// these two triangles are tested (triangle_margin.hpp), together with those of other pairs.
-/// Triangles that meet without a margin, as faces in one plane do, are tested in every frame by the
+/// Bodies that touch keep touching until an edge that crosses a triangle can have left it. Then
+/// these two triangles are tested (triangle_margin.hpp), in a batch with those of other pairs.
+/// Triangles that meet without a margin, as coplanar faces do, are tested in every frame by the
 /// query's own test. Only if they no longer meet are the bodies traversed, first where they
 /// touched.
 ///
 /// After two near misses a pair keeps a front (WideFront). Later traversals retest only the entries
 /// whose gaps may have closed. Where that is most of them the pair keeps no front for sixteen
-/// traversals, and four times as many whenever that happens again, at most 256.
+/// traversals, and for four times as many each time this recurs, at most 256.
 ///
 /// Tried and not kept. Volumes with a small gap can be opened so that the least gap grows. But
-/// triangles of two surfaces are close in many places, the closest ones are the distance, and that
-/// costs five times as much. Nor does it pay to measure triangles that are farther apart than their
-/// volumes, exactly or not: a third of the tests remains, each gap costs as much as four, and of
-/// 8000 polygons many are within a step or two of each other.
+/// triangles of two surfaces are close in many places, the closest ones are at the distance itself,
+/// and opening costs five times as much. Nor does it pay to measure gaps of triangles, exactly or
+/// not: a third of the tests remains, each gap costs as much as four, and of 8000 polygons many are
+/// within a step or two of each other.
 #pragma once
 
 #include <algorithm>
@@ -42,7 +42,7 @@
 
 namespace bvlab {
 
-/// For every pair of bodies its last answer, until when it holds, and where they touched.
+/// For every pair of bodies: its last answer, how long it is valid, and where they touched.
 class WideMargins {
  public:
   static constexpr std::string_view name = "margins";
@@ -81,7 +81,7 @@ class WideMargins {
     std::fill(front_sizes_.begin(), front_sizes_.end(), 0);
     last_query_ = &Query::name;
   }
-  /// Body i is at `pose` in this frame. Its own pose is set when a traversal needs it.
+  /// Body i is at `pose` in this frame. The pose of `Body` itself is set when a traversal needs it.
   template <class Body>
   void move(std::size_t i, Body&, const Pose& pose, EarlyCulling& culling,
             const Vec3<double>& origin) {
@@ -110,8 +110,8 @@ class WideMargins {
     return displacements_[pair.i] + displacements_[pair.j] < answer.until ||
            (keeps_answer<Query> && epochs(pair) == answer.epochs);
   }
-  /// Decides the pairs whose answers hold by the bound between reference poses and, where one hit
-  /// is enough, those whose last crossing still exists.
+  /// Decides the pairs whose answers are valid by the bound between reference poses and, where one
+  /// hit is enough, those whose last crossing still exists.
   template <class Query, class Counter, class MakeQuery>
   void cull(PairSieve& sieve, const PairScene& scene, Counter& counter, MakeQuery&& make_query) {
     sieve.sift([&](std::size_t p) { return answer_valid_by_reference_pose(p, scene.pairs[p]); });
@@ -184,8 +184,8 @@ class WideMargins {
     }
     if (found.front()) {
       WideFront& front = kept.front;
-      // An entry retested costs as much as a step of a traversal; what is saved has to pay for
-      // making fronts.
+      // Retesting an entry costs as much as a step of a traversal; the saved ones must also pay for
+      // writing fronts.
       const bool worn = found.sweeps() && 4 * found.due() > 3 * front.size();
       if (found.sweeps())
         kept.pause.begin(worn);
@@ -209,7 +209,7 @@ class WideMargins {
   static constexpr int longest_rest = 64;  // traversals without a crossing
 
   struct Answer {
-    double until = unknown;  ///< as a sum of displacements; negative: holds while nothing moves
+    double until = unknown;  ///< valid below this displacement; negative: while nothing moves
     std::uint32_t epochs = 0;
     bool touching = false;
   };
@@ -221,7 +221,7 @@ class WideMargins {
     WideFront front;
     FrontPause pause;
     std::optional<Crossing> crossing;
-    int rest = 0, next_rest = 1;  // traversals whose crossing is not kept
+    int rest = 0, next_rest = 1;  // number of traversals whose crossing is not kept
     bool was_apart = false, touched_again = false;
   };
 
@@ -273,15 +273,15 @@ class WideMargins {
     });
     test();
   }
-  /// The triangles cross, and go on to do so until the bodies have moved by `margin`.
+  /// The triangles still cross, and will until the bodies have moved by `margin`.
   void still_crossing(std::size_t p, const ObjectPair& pair, double margin) {
     answers_[p] = {unknown, epochs(pair), true};
     kept_[p].deadline = 0, kept_[p].touched_again = true;
     kept_[p].next_rest = std::max(1, kept_[p].next_rest / 2);
     if (margin > steps_[pair.i] + steps_[pair.j]) extend_validity(p, pair, margin);
   }
-  /// The triangles no longer cross for certain: after so large a motion the next crossing is not
-  /// worth a test.
+  /// The triangles no longer cross for certain. In such motion, testing the next crossing first
+  /// does not pay.
   void lost_crossing(std::size_t p) {
     Kept& kept = kept_[p];
     kept.rest = kept.next_rest;
@@ -293,7 +293,7 @@ class WideMargins {
   /// Changes whenever one of the bodies moves.
   std::uint32_t epochs(const ObjectPair& pair) const { return epochs_[pair.i] + epochs_[pair.j]; }
 
-  /// The answer holds until the bodies have come nearer by `gap`.
+  /// Makes the answer valid until the bodies have come nearer by `gap`.
   void extend_validity(std::size_t p, const ObjectPair& pair, double gap) {
     Kept& kept = kept_[p];
     kept.clock.restart(bodies_[pair.i], bodies_[pair.j]);
@@ -301,8 +301,8 @@ class WideMargins {
     hold(p, pair, gap);
   }
 
-  /// The bodies are `gap` apart. Sums of displacements are rounded here and where they are
-  /// compared.
+  /// Sets the deadline: the bodies are `gap` apart. Covers the rounding of sums of displacements,
+  /// here and where they are compared.
   void hold(std::size_t p, const ObjectPair& pair, double gap) {
     const double displacement = displacements_[pair.i] + displacements_[pair.j];
     answers_[p].until = (displacement + gap) * (1 - 8 * unit_roundoff<double>);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Pairs of bodies over wide trees, queried frame by frame: all pairs of a scene, as AllPairs does,
-/// or pairs that come and go, as a World needs them. Early tests decide most pairs, a register of
-/// pairs at a time (early_culling.hpp); the rest is traversed, two pairs interleaved.
+/// or pairs that begin and end, as in a World. Early tests decide most pairs, a register of pairs
+/// at a time (early_culling.hpp); the rest are traversed, two pairs interleaved.
 ///
-/// What pairs keep from frame to frame is the Memory's: NoMemory or WideMargins. What one step of a
-/// traversal tests is the Kernel's (kernels.hpp).
+/// The Memory says what pairs keep from frame to frame: NoMemory or WideMargins. The Kernel says
+/// what one step of a traversal tests (kernels.hpp).
 #pragma once
 
 #include <array>
@@ -76,8 +76,8 @@ class WidePairs {
   }
   void drop(std::uint32_t slot) { memory_.forget(slot); }
 
-  /// Begins a frame in which `movers` have moved. `poses`, of all bodies, must stay valid until it
-  /// is over.
+  /// Begins a frame in which `movers` have moved. `poses`, of all bodies, must remain valid until
+  /// its end.
   template <class Query>
   void begin(std::span<const std::uint32_t> movers, std::span<const Pose> poses,
              const Vec3<double>&, Threads& threads) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A traversal of two bodies over wide trees, one step at a time, so that a caller can interleave
-/// several pairs of bodies: while a step's result is waited for, another pair's is computed.
+/// several pairs of bodies: while one pair waits for a result, another is computed.
 ///
 /// A kernel defines the step (siblings_kernel.hpp, mixed_kernel.hpp). Where two leaves are left,
 /// their triangles are tested in float, with a derived bound on all rounding. Pairs decided by this
 /// filter skip the exact test; the few others go to the query, in the world.
 ///
-/// Where one hit is enough or a distance is sought, the pair that is likeliest to end the search is
-/// taken first, of all that are open (see WorkQueue).
+/// Where one hit is enough or a distance is sought, the open pair that is likeliest to end the
+/// search is taken first (see WorkQueue).
 #pragma once
 
 #include <array>
@@ -30,10 +30,10 @@
 
 namespace bvlab {
 
-/// Buffers that one traversal leaves to the next.
+/// Buffers that are reused from one traversal to the next.
 struct WideWorkspace {
   WorkQueue nodes;      ///< pairs of nodes
-  WorkQueue triangles;  ///< pairs that have come to triangles on both sides
+  WorkQueue triangles;  ///< pairs whose triangles are to be tested
 };
 
 /// Measures no gaps. See wide_margins.hpp for a memory that needs them.
@@ -41,16 +41,16 @@ struct NotMeasuring {
   static constexpr bool measures = false;
 };
 
-/// The expected answer. The order of steps depends on it, no answer does.
+/// The expected answer. It affects the order of steps, but no answer.
 enum class Expect { touching, apart };
 
-/// Where a traversal starts, by what a memory has kept.
+/// Where a traversal starts, as its memory knows.
 struct TraversalStart {
   Expect expect = Expect::touching;
   std::optional<NodePair> touched = {};  ///< Measure::touched of the last frame, tested first
   /// Null, or a front: if it is complete the traversal starts from it, else it is written anew.
   WideFront* front = nullptr;
-  double rotation = 0;  ///< bound on what both bodies have rotated by since the first frame
+  double rotation = 0;  ///< bound on the rotation of both bodies since the first frame
 };
 
 template <BoundingVolume V, int F, class Query, class Counter, class Measure = NotMeasuring,
@@ -98,7 +98,7 @@ class WideTraversal {
     if constexpr (wants_bound<Query>()) {
       float order;
       const NodePair pair = nodes_.take_least(order);
-      // Where it is positive, `order` is at most the distance of the pair.
+      // Where it is positive, `order` is a lower bound on the distance of the pair.
       if (order > 0 && bits(query_->culls(order))) return !nodes_.empty() || finish();
       step(pair);
       while (!triangles_.empty()) {
@@ -124,8 +124,8 @@ class WideTraversal {
   }
 
  private:
-  /// A hit takes 5 to 13 steps. After more, the bodies are likely apart, and then order is worth
-  /// nothing: steps that do not wait for one another take half the time.
+  /// A hit takes 5 to 13 steps. After more, the bodies are likely apart, and then the order is
+  /// irrelevant: steps that do not wait for one another take half the time.
   static constexpr int most_in_order = 16;
   static constexpr std::size_t several = 4;
 
@@ -203,7 +203,7 @@ class WideTraversal {
               ordered && steps_ <= most_in_order ? Next::nearest_child : Next::any);
   }
 
-  /// Unrolled: a loop, even of one pass, keeps what it fills in memory.
+  /// Unrolled: a loop, even of one pass, would keep its results in memory.
   template <class Do>
   [[gnu::always_inline]] static void for_each_part(Do&& what) {
     [&]<std::size_t... part>(std::index_sequence<part...>) __attribute__((always_inline)) {

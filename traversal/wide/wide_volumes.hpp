@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// THE list of volumes that the program has in wide trees. Any of volumes.hpp may be added, and is
-/// then compiled under every query. A volume with a sibling test of its own has it in
+/// THE list of volumes that the bvlab program offers in wide trees. Any volume of volumes.hpp may
+/// be added, and is then compiled for every query. A volume's own sibling test is in
 /// hierarchies/wide/<volume>_sibling_test.hpp.
 #pragma once
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The pairs of nodes that a traversal has yet to open. The next one is the least in order of the
-/// last 32, not of all: that one is found in registers without a branch, and is nearly always the
-/// least of all.
+/// The queue of pairs of nodes that a traversal has yet to open. The next one is the least in order
+/// among the last 32, not among all: it is found in registers without a branch, and is nearly
+/// always the least of all.
 ///
 /// Where order does not matter the last pair is taken, as from a stack.
 #pragma once
@@ -98,7 +98,7 @@ template <class S, std::size_t parts>
 
 }  // namespace detail
 
-/// Which of the pairs that a step leaves is taken next: they are pushed accordingly.
+/// Which pair of a step is to be taken next; pairs are pushed accordingly.
 enum class Next { any, nearest_child };
 
 /// The nodes of one body in sixteen lanes.
@@ -210,7 +210,7 @@ class WorkQueue {
   void reserve() {
     if (size_ + 16 > id_[0].size()) grow(2 * id_[0].size());
   }
-  /// Before the first order lie 32 infinite ones, which are never the least.
+  /// The first order is preceded by 32 infinite ones, which are never the least.
   void grow(std::size_t capacity) {
     id_[0].resize(capacity), id_[1].resize(capacity);
     order_.resize(window + capacity + 16);
