@@ -125,14 +125,14 @@ void run(const Arguments& arguments) {
 
 void add_predict(CLI::App& app) {
   CLI::App* command = app.add_subcommand("predict",
-                                         "Predicts what each strategy would cost on a "
+                                         "Predicts the cost of each strategy on a "
                                          "trace, from windows of it");
   command->footer(
-      "Intervals are wide, and mostly hold: on 40 motions of 600 frames 312 of 320 held what a\n"
-      "strategy then took (of recursion's, the narrowest, 35 of 40). Half of one is 56 % of the\n"
-      "time it is about (median), so that 7.3 of eight strategies stayed candidates; the fastest\n"
-      "was one of them in all 40. To tell those apart, replay them.\n"
-      "experiments/replay/predict_coverage measures this anew.");
+      "Intervals are wide and mostly right: on 40 motions of 600 frames 312 of 320 contained what\n"
+      "a strategy took (of recursion's, the narrowest, 35 of 40). Half a width is 56 % of the\n"
+      "predicted time (median), so that 7.3 of eight strategies were candidates; the fastest was\n"
+      "one of them in all 40. To find which candidate is the fastest, replay them.\n"
+      "experiments/replay/predict_coverage repeats this measurement.");
   auto arguments = std::make_shared<Arguments>();
   command
       ->add_option("trace,--trace", arguments->trace, "poses: .npy, float64, (frames, objects, 7)")
@@ -149,11 +149,11 @@ void add_predict(CLI::App& app) {
   command
       ->add_option("--stride", arguments->stride,
                    "frames from the start of one window to the next (default: 96; a trace of fewer "
-                   "than 384 frames is played whole)")
+                   "than 384 frames is used whole)")
       ->check(whole_number(1, 1u << 16));
   command
       ->add_option("--window", arguments->window,
-                   "frames of a window; it starts from the front of a recursion (default: 48)")
+                   "frames of a window, which starts from a recursion's front (default: 48)")
       ->check(whole_number(2, 1u << 16));
   command->add_option("--csv", arguments->csv, "the table as CSV, one row for each strategy");
   command->add_option("--json", arguments->json,

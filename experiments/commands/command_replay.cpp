@@ -83,7 +83,7 @@ void check(const Arguments& arguments) {
   if (arguments.variant.fit == "tight" && !arguments.configuration)
     for (const auto* volume : volume_entries())
       if (volume->name == arguments.variant.volume && !volume->has_tight_fit)
-        throw Unusable("--fit tight", arguments.variant.volume + " has one fit alone: published");
+        throw Unusable("--fit tight", arguments.variant.volume + " has only one fit: published");
   if (!arguments.budget) return;
   for (const auto& [option, file] : {std::pair("--page", arguments.page), {"--x3d", arguments.x3d}})
     if (!file.empty()) throw Unusable(option, "shows whole answers; not with --budget");

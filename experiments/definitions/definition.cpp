@@ -86,7 +86,7 @@ void check_characters(std::string_view text, const std::string& name) {
       end = end_of_string(text, i);
     else if (static_cast<unsigned char>(text[i]) >= 128)
       throw Unusable(name, "line " + std::to_string(line) +
-                               ": a letter that is not ASCII outside of strings and comments");
+                               ": a character that is not ASCII outside of strings and comments");
     line += static_cast<std::size_t>(std::count(&text[i], text.data() + end, '\n'));
     i = end;
   }

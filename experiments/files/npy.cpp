@@ -11,7 +11,7 @@
 namespace bvlab {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "arrays are read as they stand");
+static_assert(std::endian::native == std::endian::little, "arrays are read as little-endian");
 
 template <class T>
 constexpr std::string_view descriptor = "";

@@ -207,7 +207,7 @@ void require_place(const std::string& option, const std::filesystem::path& path)
   const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   if (::stat(folder.c_str(), &status) != 0)
     refuse("folder " + folder.string() + ": " + std::strerror(errno));
-  if (!S_ISDIR(status.st_mode)) refuse("folder " + folder.string() + ": is no folder");
+  if (!S_ISDIR(status.st_mode)) refuse("folder " + folder.string() + ": is not a folder");
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
     refuse("folder " + folder.string() + ": " + std::strerror(errno));
 }

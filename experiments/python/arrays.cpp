@@ -25,7 +25,7 @@ auto asked(const std::string& name, const Call& call) {
     return call();
   } catch (py::error_already_set& error) {
     if (error.matches(PyExc_MemoryError) || error.matches(PyExc_KeyboardInterrupt)) throw;
-    throw Unusable(name, "is no array of numbers: " + std::string(py::str(error.value())));
+    throw Unusable(name, "is not an array of numbers: " + std::string(py::str(error.value())));
   }
 }
 
@@ -100,7 +100,7 @@ std::optional<py::list> listed(const py::handle& given, const std::string& name)
   py::list entries;
   for (const py::handle each : py::iter(given)) {
     if (static_cast<py::ssize_t>(entries.size()) == length)
-      throw Unusable(name, "goes on beyond its length, " + std::to_string(length));
+      throw Unusable(name, "has more entries than its length, " + std::to_string(length));
     entries.append(each);
     // It may never come back to Python.
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();

@@ -37,7 +37,7 @@ struct Axis {
 };
 
 /// The entries of what has a length; nothing of what has none, since it might never end. Throws
-/// Unusable, in one line that begins with the name, for what goes on beyond its length.
+/// Unusable, in one line that begins with the name, for more entries than its length.
 std::optional<py::list> listed(const py::handle& given, const std::string& name);
 
 /// The array in `given`: of numbers of that kind and of these axes, in C order. Nothing is copied
@@ -61,7 +61,7 @@ py::array_t<T> taken(std::vector<Element>&& values, std::vector<py::ssize_t> sha
   py::ssize_t bytes = sizeof(T);
   for (const py::ssize_t length : shape)
     if (__builtin_mul_overflow(bytes, std::max<py::ssize_t>(length, 1), &bytes))
-      throw Unusable("answers", "an array of such lengths cannot be had");
+      throw Unusable("answers", "an array of these lengths is too large");
   auto owned = std::make_unique<std::vector<Element>>(std::move(values));
   // NumPy wants an address, also of nothing.
   static T nothing{};

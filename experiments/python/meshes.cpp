@@ -185,7 +185,7 @@ are legal. ValueError: another shape or type, NaN, infinity, an index out of ran
                std::to_string(mesh.triangles->triangles.size()) + " triangles>";
       });
   module.def("_places_of", &places_of, py::arg("meshes"),
-             "Where the vertices of each mesh are read: addresses, for tests.");
+             "The address from which each mesh's vertices are read, for tests.");
   module.def("read", &read, py::arg("path"),
              R"(The mesh in a file that assimp reads (OFF, OBJ, PLY and STL to the last digit).
 
@@ -193,7 +193,7 @@ ValueError: missing, truncated, or no mesh; names the file, what is wrong, and w
   module.def("named_mesh", &named, py::arg("name"), py::arg("polygons") = 500,
              R"(A mesh by name, as definitions name them: "bunny", "torus", "bunny-hull".
 
-See bvlab.formula_meshes() for those made by formula. It has about so many `polygons`.)");
+See bvlab.formula_meshes() for those made by formula. It has about `polygons` triangles.)");
 }
 
 }  // namespace bvlab

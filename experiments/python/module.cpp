@@ -11,7 +11,7 @@
 PYBIND11_MODULE(_bvlab, module) {
   namespace py = pybind11;
   using namespace bvlab;
-  module.doc() = "What bvlab is made of; use `import bvlab`.";
+  module.doc() = "The compiled part of bvlab; use `import bvlab`.";
   // Python's own words for what the program exits with 2 for.
   py::register_local_exception_translator([](std::exception_ptr thrown) {
     try {
@@ -28,7 +28,7 @@ PYBIND11_MODULE(_bvlab, module) {
           all[py::str(name)] = description;
         return all;
       },
-      py::arg("kind"), "Each name of that kind with what it is, as `bvlab list KIND`.");
+      py::arg("kind"), "The names of a kind and their descriptions, as `bvlab list KIND`.");
   module.def("kinds", [] {
     std::vector<std::string> all;
     for (const Kind& kind : kinds()) all.emplace_back(kind.name);
@@ -43,7 +43,7 @@ PYBIND11_MODULE(_bvlab, module) {
         return array_of<double>(given, name, Numbers::real, wanted);
       },
       py::arg("given"), py::arg("name"), py::arg("axes"),
-      "float64, in C order; of each axis its name and length, any where negative.");
+      "The array as float64 in C order; axes: names and lengths, any length where negative.");
   add_meshes(module);
   add_replaying(module);
   add_world(module);

@@ -177,7 +177,7 @@ void add_result(py::module_& module) {
 None where answers=False.)")
       .def_readonly("totals", &Result::totals, "Times in s, counts, the variant; a dict as --json.")
       .def_readonly("series", &Result::series,
-                    R"(Of each frame, all pairs together: n_u, n_v, n_p, front, hits.
+                    R"(Per frame, summed over all pairs: n_u, n_v, n_p, front, hits.
 A structured array; None unless series=True. pandas.DataFrame(result.series) has them as columns.)")
       .def_readonly("frame_seconds", &Result::frame_seconds,
                     "(frames,) float64; None unless frame_seconds=True.");
@@ -191,7 +191,7 @@ A structured array; None unless series=True. pandas.DataFrame(result.series) has
       {"n_u", "Volumes posed; None unless count=True."},
       {"n_v", "Pairs of volumes tested; None unless count=True."},
       {"n_p", "Pairs of triangles tested; None unless count=True."},
-      {"front", "Mean entries of the front, for each pair and frame."}};
+      {"front", "Mean number of entries of the front, per pair and frame."}};
   for (const Field& field : fields)
     type.def_property_readonly(
         field.name, [name = field.name](const Result& result) { return total(result, name); },
@@ -237,35 +237,35 @@ void add_replaying(py::module_& module) {
       "configuration"_a = none, "build"_a = d.build, "leaf_size"_a = d.leaf_size, "fit"_a = d.fit,
       "precision"_a = d.precision, "relative_error"_a = d.relative_error, "count"_a = false,
       "threads"_a = 1, "answers"_a = true, "series"_a = false, "frame_seconds"_a = false,
-      R"(Plays a motion through one variant of the engine, as `bvlab replay`.
+      R"(Answers a query for all pairs of a motion by one variant of the engine, as `bvlab replay`.
 
 meshes   a Mesh, or a list of meshes (or of anything with .vertices and .faces); object i uses mesh
-         i mod their number
+         i modulo their number
 poses    (frames, objects, 7) real: x y z qw qx qy qz, object to world; see bvlab.poses
 query    result.answers is, for all pairs (0,1) (0,2) ... (1,2) ... of objects:
          "touching"  uint8 (frames, pairs): 1 where the two surfaces share a point
          "contacts"  uint32 (k, 5): frame, object i, object j, triangle of i, triangle of j; sorted
          "distance"  float64 (frames, pairs), in units of the meshes: 0 where they touch
-count    fills n_u, n_v, n_p of the totals (and times that); the recursive strategy is played once
-         more, to say what was skipped
+count    fills n_u, n_v, n_p of the totals (times include the counting); the recursive strategy runs
+         once more, to find which tests were skipped
 series   fills result.series, frame_seconds fills result.frame_seconds
 
-fan_out  children a node, at most: 2, 4, 8, 16 (default: 2); frame: "world" or "body", where volumes are
-         compared (default: "world"); kernel: see bvlab.kernels()
+fan_out  most children of a node: 2, 4, 8, 16 (default: 2); frame: "world" or "body", where volumes are
+         tested (default: "world"); kernel: see bvlab.kernels()
 
-configuration="recommended" chooses volume, tree, strategy, build, fit and leaf size. Which names
-there are: bvlab.volumes(), strategies(), queries(), frames(), kernels(), builds(), precisions(),
+configuration="recommended" chooses volume, tree, strategy, build, fit and leaf size. The names:
+bvlab.volumes(), strategies(), queries(), frames(), kernels(), builds(), precisions(),
 configurations().
-Ctrl-C ends it. ValueError: the line that the program would print.)");
+Ctrl-C ends it. ValueError: the line that `bvlab replay` would print.)");
   module.def("boxes", &boxes, "trace"_a, py::kw_only(), "method"_a = box.method,
              "coherent"_a = true, "precision"_a = box.precision, "threads"_a = box.threads,
              "answers"_a = true,
              R"(Finds the overlapping pairs of boxes, frame by frame, as `bvlab boxes`.
 
 trace    (frames, boxes, 6) real: lo x y z, hi x y z; touching counts as overlapping. float32 is
-         compared as float32, all else as float64. It is copied, so that it may be changed meanwhile.
+         compared as float32, all else as float64. It is copied, so it may be changed meanwhile.
 
-The result's answers: uint32 (k, 3): frame, i, j with i < j; every overlapping pair once, sorted.
+result.answers: uint32 (k, 3): frame, i, j with i < j; every overlapping pair once, sorted.
 bvlab.methods() has the names. ValueError: NaN, infinity, lo > hi, another shape.)");
   module.def(
       "predict",
@@ -284,15 +284,15 @@ bvlab.methods() has the names. ValueError: NaN, infinity, lo > hi, another shape
       "fan_out"_a = py::none(), "frame"_a = py::none(), "build"_a = d.build,
       "leaf_size"_a = d.leaf_size, "fit"_a = d.fit, "relative_error"_a = d.relative_error,
       "stride"_a = py::none(), "window"_a = py::none(),
-      R"(What each strategy would cost on a motion, from windows of it, as `bvlab predict`.
+      R"(Predicts the cost of each strategy on a motion, from windows of it, as `bvlab predict`.
 
-A dict: fastest, the strategy that takes the fewest seconds (None where intervals do not tell it from
-the next, or windows are too few); candidates, those that may be it, the likeliest first; survival, the
-part of the front that is there again a frame later (None where no pair was near another); strategies, of
+A dict: fastest, the strategy that takes the fewest seconds (None where its interval overlaps that of
+another, or windows are too few); candidates, those that may be it, the likeliest first; survival, the
+share of the front that persists for a frame (None where no bodies were near each other); strategies, of
 each by its name {"n_v": volume tests, "n_p": triangle tests, "seconds": s, "seconds_low", "seconds_high"}.
-Intervals are wide, and mostly hold: on 40 motions of 600 frames 312 of 320 held what a strategy then
-took (of recursion's, the narrowest, 35 of 40). Half of one is 56 % of its seconds (median), so that 7.3 of
-eight strategies stayed candidates, the fastest among them in all 40: to tell those apart, replay them.
+Intervals are wide and mostly right: on 40 motions of 600 frames 312 of 320 held what a strategy then
+took (of recursion's, the narrowest, 35 of 40). Half a width is 56 % of the seconds (median), so 7.3 of
+eight strategies were candidates, the fastest always among them: to find which it is, replay these.
 stride and window, in frames: None for all of a short trace. meshes, poses, fan_out and frame as in replay.)");
 }
 

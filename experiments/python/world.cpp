@@ -174,7 +174,7 @@ class PyWorld : public MadeByCalls {
     if (!whole) throw py::error_already_set();
     int beyond = 0;
     const long long number = PyLong_AsLongLongAndOverflow(whole.ptr(), &beyond);
-    if (beyond != 0) throw py::index_error("no body of such a number");
+    if (beyond != 0) throw py::index_error("the number of a body is out of range");
     return index(number);
   }
   std::uint32_t index(std::int64_t number) const {
@@ -304,8 +304,8 @@ World(meshes)            body i has meshes[i]; a Mesh given twice is built once
 World(meshes, objects=n) n bodies: body i has meshes[i mod len(meshes)]
 
 A body is in the scene from its first `move` on. Answers are those of the last `update`. Volume and
-strategy are chosen by name, as in replay; without a name, what is recommended for these meshes. Calls
-from several threads run one after the other.)")
+strategy are chosen by name, as in replay; by default, those recommended for these meshes. Calls from
+several threads run one after the other.)")
       .def(py::init([](const py::object& meshes, std::size_t objects,
                        const std::optional<std::string>& volume,
                        const std::optional<std::string>& strategy,
@@ -343,12 +343,12 @@ from several threads run one after the other.)")
           "move", &PyWorld::move, "object"_a, "pose"_a,
           R"(Sets the pose of a body, or of several, from the next update on: move(i, pose), move(indices, poses).
 
-pose     (7,) real: x y z qw qx qy qz, object to world; of k bodies (k, 7). All are moved or none.
+pose     (7,) real: x y z qw qx qy qz, object to world; for k bodies (k, 7). All are moved or none.
 ValueError: not finite, a zero quaternion. IndexError: no such body.)")
       .def("remove", &PyWorld::remove, "object"_a,
            "Takes a body out of the scene, until it is moved again.")
       .def("update", &PyWorld::update,
-           "Queries the pairs of which a body has moved. Bodies that have not moved cost nothing.")
+           "Queries the near pairs of which a body has moved. Bodies at rest cost nothing.")
       .def(
           "timed_steps", &PyWorld::timed_steps, "objects"_a, "poses"_a,
           R"(Moves and updates step by step in C++. Returns the time of each step: (steps,) float64, in s.
@@ -359,7 +359,7 @@ Python takes longer by its own overhead.)")
            "uint32 (k, 2): the pairs i < j whose surfaces share a point, sorted.")
       .def(
           "contacts", &PyWorld::contacts,
-          R"(uint32 (k, 4): body i, body j, triangle of i, triangle of j, of all triangles that share a point; sorted.
+          R"(uint32 (k, 4): body i, body j, triangle of i, triangle of j: all triangles that share a point; sorted.
 
 Each pair that touches is traversed from the roots.)")
       .def(

@@ -63,7 +63,7 @@ class LoopsFrom<Query, TypeList<Fronts...>> {
   template <class Front>
   Loop<Query, Front> from() const {
     static_assert((std::is_same_v<Front, Fronts> || ...),
-                  "a strategy names fronts of its own kind: using OwnFronts = TypeList<...>");
+                  "a strategy must list its own kinds of front: using OwnFronts = TypeList<...>");
     return std::get<Loop<Query, Front>>(loops_);
   }
 

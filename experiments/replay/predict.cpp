@@ -268,7 +268,7 @@ std::vector<Predicted> predict(std::span<const TriangleMesh> meshes, const Trace
   check(variant);
   if (variant.kernel != Variant{}.kernel)
     throw Unusable("--kernel " + variant.kernel,
-                   "predicted is " + Variant{}.kernel + " alone, which every strategy has");
+                   "only " + Variant{}.kernel + " is predicted, which every strategy has");
   std::vector<Predicted> all;
   const auto names = strategies_for(variant.query);
   if (trace.frames == 0) {

@@ -144,7 +144,7 @@ std::unique_ptr<WorldEngine> make_world(std::span<const TriangleMesh> meshes, st
                 .world(volume, volume.hierarchies(meshes, variant), objects, variant, threads);
   }
   if (!world)
-    throw Unusable("--query " + variant.query + ": whole scenes are asked yes or no alone");
+    throw Unusable("--query " + variant.query + ": a whole scene takes only yes-or-no queries");
   return world;
 }
 

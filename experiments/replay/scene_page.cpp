@@ -181,7 +181,7 @@ class Page {
     if (!levels.whole)
       left_out_.add("Of the hierarchy over " + name + " levels below " +
                     std::to_string(levels.levels - 1) +
-                    " are left out; the front is drawn by what is above it.");
+                    " are left out; the front is drawn by its nodes above these.");
     mesh.set("children", text_of(levels.children))
         .set("volumes", text_of(volume.drawn(hierarchies, m, levels.nodes)))
         .set("numbers", numbers);
@@ -271,8 +271,8 @@ class Page {
       ++written;
     }
     if (kept && written < trace_.pairs())
-      left_out_.add("Fronts are kept of " + std::to_string(written) + " pairs of " +
-                    std::to_string(trace_.pairs()) + ", those that touch in most frames.");
+      left_out_.add("Fronts are included for " + std::to_string(written) + " pairs of " +
+                    std::to_string(trace_.pairs()) + ": those that touch in most frames.");
     page.set("fronts", all);
   }
 

@@ -31,7 +31,7 @@ struct Planner {
   template <class Visit>
   void visit_options(Visit&& visit) {
     visit("objects", objects, "number of bodies, the robot included");
-    visit("frames", frames, "number of placements asked about");
+    visit("frames", frames, "number of configurations queried");
     visit("side", side, "side of the cube that the centres stay in");
     visit("step", step, "length of a step, at most");
     visit("degrees", degrees, "angle of a step, at most");

@@ -49,7 +49,7 @@ void say_if_nothing_is_culled(const TriangleMesh& mesh, const std::string& name)
   for (const auto& vertex : mesh.vertices) size = std::max(size, vertex.cwiseAbs().maxCoeff());
   if (mesh.triangles.size() < 2 || size == 0 || (0x1p-50 <= size && size <= 0x1p58)) return;
   std::fprintf(stderr,
-               "bvlab: %s: coordinates up to %.3g, outside of 1e-15 to 2e17: volumes tell nothing "
+               "bvlab: %s: coordinates up to %.3g, outside of 1e-15 to 2e17: no volumes are found "
                "apart, so every pair of triangles may be tested; answers are right\n",
                one_line(name).c_str(), size);
 }

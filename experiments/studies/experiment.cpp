@@ -184,7 +184,7 @@ class Experiment {
   void check_measured() const {
     for (const auto& row : rows_.rows())
       if (const bool has_time = !row[keys_ + 1].empty(); has_time != is_timed())
-        throw Unusable(record_.string(), has_time ? "holds times: not a record of counts alone"
+        throw Unusable(record_.string(), has_time ? "holds times: not a record of counts only"
                                                   : "holds counts alone: go on with --counts");
   }
 
@@ -640,7 +640,7 @@ void check_series_matches(const Definition& definition, const std::vector<Cell>&
   for (const Cell& cell : cells)
     if (wants_series(definition, cell) || !cell["configuration"].empty()) return;
   for (const auto& [name, value] : definition.series) check_some_cell_has(name, value, cells);
-  throw Unusable("series: no cell is all that it says");
+  throw Unusable("series: no cell matches all of it");
 }
 
 }  // namespace
@@ -662,10 +662,10 @@ void check(const Definition& definition) {
     }
     for (const auto& [name, asked] : peers_asked)
       if (!asked && peer(name))
-        throw Unusable("peer " + name + " is asked nothing it answers: it answers " +
+        throw Unusable("peer " + name + " answers none of these queries: it answers " +
                        std::string(peer(name)->queries));
     if (!any_asked)
-      throw Unusable("asks nobody but peers that were absent when bvlab was built, as " +
+      throw Unusable("all its peers were absent when bvlab was built, for example " +
                      peers_asked.begin()->first);
     check_series_matches(definition, cells);
     check_figures(definition.figures, drawn_columns(definition, cells), definition.file);
@@ -687,7 +687,7 @@ void check_extends(const Definition& held, const Definition& definition) {
     return names;
   };
   if (labels(cells.at(0)) != labels(before.at(0)))
-    throw Unusable("its axes of several parameters are others");
+    throw Unusable("its axes of several parameters differ");
   std::set<Row> there;
   for (const Cell& cell : cells) there.insert(key_row(cell));
   for (const Cell& cell : before)
@@ -699,7 +699,7 @@ void check_extends(const Definition& held, const Definition& definition) {
     }
   if (held.has_series && (!definition.has_series || held.series != definition.series ||
                           held.series_until != definition.series_until))
-    throw Unusable("its series are others");
+    throw Unusable("its series differ");
   for (const auto& measure : held.measures)
     if (!definition.measures.contains(measure)) throw Unusable("it measures " + measure);
 }

@@ -64,7 +64,7 @@ std::filesystem::path run_text(RunRequest request, const Progress& progress) {
     const bool is_new = request.record.empty() || !std::filesystem::exists(request.record);
     const auto folder = opened(request, [&](const std::string& held, const std::string&) {
       const auto before = study_from(held, "its definition");
-      if (!before) throw Unusable("it is none of a study");
+      if (!before) throw Unusable("it is not that of a study");
       check_extends(*before, *study);
     });
     try {

@@ -83,18 +83,18 @@ StudyParameters parameters() {
       numbers_parameter("displacements", {0.02}, {0, 1e6}, "a frame, in sizes of a box"),
       wholes_parameter("seed", {1}, seeds, "of the random numbers"),
       words_parameter("methods", methods, "see `bvlab list methods`", methods),
-      words_parameter("coherent", {"on"}, "whether methods remember frames, or are told who moved",
+      words_parameter("coherent", {"on"}, "whether methods use past frames, or are told who moved",
                       {"on", "off", "told"}),
-      words_parameter("changes", {"off"}, "whether they say what began and ended", {"on", "off"}),
+      words_parameter("changes", {"off"}, "whether begun and ended pairs are given", {"on", "off"}),
       words_parameter("sorts", {"radix"}, "how methods sort", {"radix", "comparison"}),
       wholes_parameter("threads", {1}, {1, 1024}, "of methods"),
       words_parameter("peers", {}, "other libraries", box_peer_names()),
-      words_parameter("peers_if_built", {}, "those that not every machine has"),
+      words_parameter("peers_if_built", {}, "peers that a build may not have"),
       word_parameter("reference", "", "method or peer that the others are compared with; the last"),
       whole_parameter("frames", 10, {1, 1e6}, "frames, the start included"),
       whole_parameter("steady_from", 1, {1, 1e6}, "frame from which times are taken"),
-      whole_parameter("plays", 1, {1, 1000}, "of which each frame's fastest counts"),
-      number_parameter("seconds_a_frame", 1, {0}, "after which a variant is given up")};
+      whole_parameter("plays", 1, {1, 1000}, "runs, of which each frame's fastest counts"),
+      number_parameter("seconds_a_frame", 1, {0}, "limit at which a variant is given up")};
   all[0].takes_files = true;
   return all;
 }

@@ -182,7 +182,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--side", heap.side, "side of the floor, in radii of the mesh")
       ->capture_default_str();
-  app.add_option("--seed", heap.seed, "of the random attitudes")->capture_default_str();
+  app.add_option("--seed", heap.seed, "of the random orientations")->capture_default_str();
   app.add_option("--out", heap.out, "the trace, `.npy`");
   try {
     app.parse(argc, argv);

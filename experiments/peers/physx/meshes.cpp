@@ -59,7 +59,7 @@ physx::PxTriangleMesh* cooked(const TriangleMesh& mesh) {
   description.triangles.data = mesh.triangles.data();
   physx::PxTriangleMesh* const made =
       PxCreateTriangleMesh(params, description, *PxGetStandaloneInsertionCallback());
-  if (!made) throw std::runtime_error("PhysX: a mesh that it does not take");
+  if (!made) throw std::runtime_error("PhysX: does not accept a mesh");
   return made;
 }
 

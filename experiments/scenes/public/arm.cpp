@@ -82,12 +82,12 @@ std::vector<Logged> frames_of(const std::string& bytes, const std::string& name,
   const std::string form = bytes.substr(names + 1, types - names - 1);
   constexpr std::size_t angles_at = 17;
   if (form.find_first_not_of("Iif") != form.npos || form.size() < angles_at + joints)
-    throw Unusable(name, "is no log of a body with " + std::to_string(joints) + " joints");
+    throw Unusable(name, "is not a log of a body with " + std::to_string(joints) + " joints");
   std::vector<Logged> frames;
   const std::size_t size = 4 * form.size() + 2;
   for (std::size_t at = types + 1; at + size <= bytes.size(); at += size) {
     if (bytes.compare(at, 2, "\xaa\xbb") != 0)
-      throw Unusable(name, "byte " + std::to_string(at) + ": no record begins here");
+      throw Unusable(name, "byte " + std::to_string(at) + ": not the start of a record");
     const auto number = [&](std::size_t column) {
       float value;
       std::memcpy(&value, bytes.data() + at + 2 + 4 * column, 4);

@@ -90,7 +90,7 @@ class Reader {
   }
   static std::string checked(std::string bytes, const PublicFile& file, const std::string& place) {
     if (sha256(bytes) != file.sha256)
-      throw Unusable(place, "is not the file that is meant: its SHA-256 is another");
+      throw Unusable(place, "is not the expected file: its SHA-256 is another");
     return bytes;
   }
   std::optional<std::string> blob(const std::string& clone, const PublicFile& file) const {
