@@ -11,10 +11,10 @@
 /// all rounding errors in the fifteen inequalities as they are computed below. e = 2^-24,
 /// |.| of a matrix is the 2-norm, second orders are left out and covered at the end.
 ///
-/// Points. A component of c' or a'_i is three products and their sum, of numbers of which
-/// those of Q and t are rounded: off by 4e of what is summed, which over three components is less
-/// than 10e (|c| + |t|) for c' and 7e for a'_i. So D = 10e (|c_a| + |t|) + 7e sum_i h_a,i + `error
-/// bound` (see RelativePose).
+/// Points. A component of c' or a'_i is a sum of three products of numbers, of which those of Q and
+/// t are rounded: off by 4e of its terms, which over three components is less than 10e (|c| + |t|)
+/// for c' and 7e for a'_i. So D = 10e (|c_a| + |t|) + 7e sum_i h_a,i + `error_bound` (see
+/// RelativePose).
 ///
 /// Axes. A stored box has |BB' - I| <= 4e (see obb.hpp). The rows a'_i are off by 7e each, 12.2e as
 /// a matrix, so |A'A'' - I| <= 4e + 2 * 12.2e < 29e. The cosines c_ij = a'_i.b_j as computed are
