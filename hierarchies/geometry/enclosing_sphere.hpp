@@ -49,8 +49,8 @@ Ball circumscribed(std::span<const Vec3<double>> points) {
 }  // namespace detail
 
 /// The smallest sphere around the points, up to rounding: a caller who needs enclosure takes the
-/// largest distance from its centre as the radius. Points may be repeated or dependent; no points
-/// give a negative squared radius.
+/// largest distance from its centre as the radius. Points may be repeated or dependent; without
+/// points the squared radius is negative.
 template <class = double>
 Ball enclosing_sphere(std::span<const Vec3<double>> points) {
   if (points.empty()) return {};

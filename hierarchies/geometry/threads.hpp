@@ -25,7 +25,7 @@ namespace detail {
 /// Calls call(with, worker) for each worker below `workers`, on the arena's threads.
 ///
 /// BVLAB_TBB_IN_A_UNIT: defined in a separate unit, compiled without thread sanitizer, which does
-/// not see inside TBB's library and reports races in its headers that are none.
+/// not see inside TBB's library and reports false races in its headers.
 #ifdef BVLAB_TBB_IN_A_UNIT
 void call_on_threads(tbb::task_arena& arena, std::size_t workers,
                      void (*call)(void* with, std::size_t worker), void* with);

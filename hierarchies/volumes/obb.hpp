@@ -118,8 +118,8 @@ Obb<S> merge(const Obb<S>& a, const Obb<S>& b) {
 }
 
 /// A point centre + sum s_i a_i goes to within slack + tilt sum |s_i| of the posed centre plus sum
-/// s_i a'_i (see Placement). This error is at most 1 + 73e longer in coordinates along the new
-/// axes, and five more roundings are made here.
+/// s_i a'_i (see Placement). In coordinates along the new axes this error is longer by at most 1 +
+/// 73e, and five more roundings are made here.
 template <class S>
 Obb<S> posed(const Obb<S>& box, const Placement<Element<S>>& placement) {
   Obb<S> result;

@@ -38,7 +38,7 @@ class SphereTest {
   static constexpr int rest = 8;            // runs
   static constexpr double tiny = 0x1p-900;  // smaller squares are inexact by underflow
 
-  /// The radius of a sphere about the frame's origin that encloses the mesh, but maybe not volumes.
+  /// The radius of a sphere about the frame's origin that encloses the mesh, if not all volumes.
   static double radius(const HierarchyExtent& extent) {
     return std::min(extent.reach, stable_norm(extent.centre) + extent.radius);
   }

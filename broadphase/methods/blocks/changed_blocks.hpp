@@ -198,7 +198,7 @@ class ChangedBlocks {
     const std::size_t few = std::min(parts, parts / 16 + 1);
     ask_all(0, few);
     const double done = static_cast<double>(std::min(few * some, all));
-    // Places that are known would be lost: they are worth twice the estimate from a part.
+    // A refusal would lose the known places, so with them a partial estimate may be twice as high.
     if (all > 0 && cost(done / static_cast<double>(all)) > (placed_ ? 2 : 1) * affordable)
       return refused(cost(done / static_cast<double>(all)));
     ask_all(few, parts);

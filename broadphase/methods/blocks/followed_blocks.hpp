@@ -62,7 +62,7 @@ class FollowedBlocks {
   }
   /// Whether boxes barely move: the shortest horizon is enough.
   bool at_ease() const { return !steady_ && !restless_ && age_ >= 2 * horizon_; }
-  /// Starts to find the next candidates, a part in each frame; does not where `horizon` is 0.
+  /// Starts to find the next candidates, a part in each frame; finds none where `horizon` is 0.
   void prepare(int horizon) {
     if (horizon == 0) {
       worn_ |= crowded_;
