@@ -18,7 +18,8 @@ class Auto {
   using Scalar = T;
   static constexpr std::string_view name = "auto";
   static constexpr std::string_view description =
-      "picks a method from number, overlap, sizes and motion, and says why";
+      "sweep for up to 64 boxes, else blocks, which chooses from overlap, sizes and motion; says "
+      "why";
 
   explicit Auto(const MethodSettings& settings)
       : settings_(settings), blocks_(settings), sweep_(settings) {}

@@ -157,7 +157,8 @@ class Blocks {
     }
     if (!changed_.update(boxes, moved, affordable())) return in_vain();
     wait_ = 0;
-    reason_ = "changed: few moved, only their pairs are asked for";
+    reason_ = changed_.sorted() ? "changed: few moved, only they were queried; sorted anew"
+                                : "changed: few moved, only they were queried";
     return true;
   }
 

@@ -314,5 +314,38 @@ TEST(Blocks, IsNotKeptByJumps) {
   }
 }
 
+/// Boxes that wander, a few in each frame, leave their neighbours in the tree: it is sorted anew
+/// once that pays, and not where the same boxes move to and fro.
+TEST(Blocks, SortsAnewWhereFewWander) {
+  for (const bool wander : {true, false}) {
+    BoxMaker<float> random(5);
+    Frame<float> boxes = random.boxes(2000, 0, 1, 0.01f, 0.03f);
+    Blocks<float, Closed> blocks(MethodSettings{});
+    std::size_t changed = 0, sorted_anew = 0;
+    for (int frame = 0; frame < 1500; ++frame) {
+      for (std::size_t n = 0; n < 40; ++n) {
+        const std::size_t k = wander ? (40 * static_cast<std::size_t>(frame) + n) % 2000 : 50 * n;
+        for (int axis = 0; axis < 3; ++axis) {
+          const float by = wander ? random.uniform(-0.01f, 0.01f) : frame % 2 ? 0.01f : -0.01f;
+          boxes[k].lo[axis] += by, boxes[k].hi[axis] += by;
+        }
+      }
+      const auto pairs = blocks.overlapping(boxes);
+      if (frame % 100 == 99) {
+        ASSERT_EQ(sorted(pairs), pairs_by_definition<Closed>(boxes)) << "frame " << frame;
+      }
+      changed += blocks.reason().starts_with("changed");
+      sorted_anew += blocks.reason().ends_with("sorted anew");
+    }
+    EXPECT_GT(changed, 1400u);
+    if (wander) {
+      EXPECT_GT(sorted_anew, 0u);
+      EXPECT_LT(20 * sorted_anew, changed);
+    } else {
+      EXPECT_EQ(sorted_anew, 0u);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bvlab

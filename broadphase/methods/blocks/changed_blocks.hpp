@@ -66,9 +66,13 @@ class ChangedBlocks {
     apply(boxes.size());
     settle();
     count_ = boxes.size();
-    if (worn()) sort(boxes);
+    sorted_ = worn();
+    if (sorted_) sort(boxes);
     return true;
   }
+
+  /// Whether the last update ended with a new spatial order.
+  bool sorted() const { return sorted_; }
 
   std::size_t bytes() const {
     return places_.bytes() + 4 * (slots_.capacity() + was_at_.capacity() + touched_.capacity()) +
@@ -203,8 +207,7 @@ class ChangedBlocks {
       return refused(cost(done / static_cast<double>(all)));
     ask_all(few, parts);
     if (cost(1) > affordable) return refused(cost(1));
-    looks_ =
-        static_cast<double>(looks) / static_cast<double>(std::max<std::size_t>(moved_count_, 1));
+    looks_ += looks, asked_for_ += moved_count_;
     return true;
   }
   bool refused(double cost) {
@@ -283,15 +286,19 @@ class ChangedBlocks {
 
   // ---- order --------------------------------------------------------------------------------
 
-  /// Whether many slots are empty. The second test, of the leaves that a query finds, never
-  /// applies: nothing increments `asked_for_`.
+  /// Whether many slots are empty, or queries have found so many more leaves than those right after
+  /// sorting that sorting anew would have cost no more.
   bool worn() {
     if (tree_.slots() > count_ + count_ / 8 + 64) return true;
-    if (asked_for_ < 512) return false;
-    const double looks = static_cast<double>(looks_) / static_cast<double>(asked_for_);
-    looks_ = asked_for_ = 0;
-    if (looks_when_sorted_ == 0) looks_when_sorted_ = looks;
-    return looks > 1.5 * looks_when_sorted_ + 4;
+    const double looks = static_cast<double>(looks_), asked = static_cast<double>(asked_for_);
+    if (looks_when_sorted_ == 0) {
+      if (4 * asked_for_ < count_ + 2048) return false;
+      looks_when_sorted_ = looks / asked;
+      looks_ = asked_for_ = 0;
+      return false;
+    }
+    return BlockCosts::leaf * (looks - looks_when_sorted_ * asked) >
+           BlockCosts::sort * static_cast<double>(count_);
   }
   /// Sorts the boxes anew; the list is unchanged.
   void sort(Boxes<T> boxes) {
@@ -304,7 +311,7 @@ class ChangedBlocks {
   BlockTree<T>& tree_;
   ReportedPairs& pairs_;
   PairPlaces places_;
-  bool active_ = false, placed_ = false;
+  bool active_ = false, placed_ = false, sorted_ = false;
   std::size_t count_ = 0;             ///< boxes of the last frame
   LargeVector<std::uint32_t> slots_;  ///< of each box
 
@@ -314,8 +321,8 @@ class ChangedBlocks {
   std::vector<std::uint32_t> touched_;  ///< leaves where boxes moved
   std::size_t moved_count_ = 0;
   std::vector<Asked> asked_;
-  std::size_t looks_ = 0, asked_for_ = 0;  ///< leaves found by queries, and queries
-  double looks_when_sorted_ = 0;           ///< leaves a query
+  std::size_t looks_ = 0, asked_for_ = 0;  ///< leaves found by queries since the tree was sorted
+  double looks_when_sorted_ = 0;           ///< leaves per query right after sorting; 0: unknown
   double expected_ = 0;
 
   std::vector<std::uint32_t> newcomers_, emptied_;
