@@ -28,6 +28,7 @@ def note_of(figure, points, made=""):
         clock = f"{attrs['clock']} time"
         if attrs["clock"] == "processor" and attrs["of_frames"]:
             clock += f" (wall time: {', '.join(attrs['of_frames'])})"
+        clock += f", each frame the fastest of {attrs['plays']} plays" if attrs["plays"] > 1 else ""
         beside = attrs["beside"]
         sentences.append(clock + (f", {beside} of {attrs['drawn']} rows measured beside other work" if beside else ""))
     if attrs["unfinished"]:

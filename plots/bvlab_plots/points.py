@@ -199,4 +199,5 @@ def said_of(rows, value):
         corrected = rows.attrs.get("clock") == "processor" and "wall_per_processor" in rows
         clock = "processor" if by_processor or corrected else "wall"
         of_frames = [] if by_processor else records.times_of_frames(" ".join(value.columns))
-    return dict(drawn=len(rows), timed=timed, beside=beside, of_frames=of_frames, clock=clock, unfinished=rows.attrs.get("unfinished"))
+    plays = rows.attrs.get("definition", {}).get("parameters", {}).get("plays", 1)
+    return dict(drawn=len(rows), timed=timed, beside=beside, of_frames=of_frames, clock=clock, plays=plays, unfinished=rows.attrs.get("unfinished"))

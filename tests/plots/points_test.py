@@ -203,6 +203,14 @@ leaf_size = 4
                 self.assertAlmostEqual(drawn / 10 if drawn > 1000 else drawn, middle)
                 self.assertIn(said, note_of(figure, points))
 
+    def test_the_fastest_of_several_plays_is_said(self):
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+            rows = records.read(own_record(folder), clock="wall")
+        figure = Figure("a", "degrees", y="time_ns / pairs", series="variant")
+        self.assertNotIn("plays", note_of(figure, points_of(rows, figure)))
+        rows.attrs["definition"]["parameters"] = {"plays": 5}
+        self.assertIn("the fastest of 5 plays", note_of(figure, points_of(rows, figure)))
+
     def test_frames_timed_by_the_processor_s_clock_are_no_wall_times(self):
         machine = {"clock": "processor"}
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
