@@ -38,6 +38,7 @@ def cost(record):
             "test_most": batched["shell"], "alone": Interval(cost["alone"] for cost in costs.values()),
             "triangle": triangle, "inner": Interval(share.quantile([0.05, 0.95])), "median": share.median(),
             "most": share.max(), "fitted": Interval(100 * error for error in fitted_errors(busy)),
+            "fitted_all": Interval(100 * error for error in fitted_errors(rows)),
             "left": Interval(left.median()), "quartiles": Interval([left.quantile(0.25).min(), left.quantile(0.75).max()])}
 
 

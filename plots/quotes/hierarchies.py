@@ -41,19 +41,26 @@ def best_of_ours(record):
     name = best["best variant"]
     much = (best.motion == "5 degrees") & (best["query"] != "distance") & (best.density != "sparse")
     little = (best.motion != "5 degrees") & (best["query"] == "touching")
-    claim(name[much].isin(["obb recursive-both", "rss recursive-both"]).mean() > 0.7, "boxes and rectangles, both descended, where "
-          "much moves")
+    claim(name[much].isin(["obb recursive-both", "rss recursive-both"]).all(), "boxes and rectangles, both descended, where much moves and "
+          "bodies are near each other")
+    alone = (best.motion == "5 degrees") & (best["query"] != "distance") & (best.density == "sparse")
+    claim(not name[alone].str.startswith(("obb", "rss")).any(), "neither boxes nor rectangles where most pairs are far apart and much moves")
+    claim("fcl-obb" not in set(middle[middle["query"] == "distance"].peer), "FCL has no tree of oriented boxes for distances")
     claim(name[best["query"] == "distance"].str.startswith("rss").mean() > 0.7, "rectangle swept spheres for distances")
     claim(name[(best["query"] == "touching") & (best.density == "sparse") & (best.motion == "5 degrees")].str.startswith("sphere").all(),
           "spheres where most pairs are far apart and much moves")
-    at = best["best: times faster"][best["query"] == "distance"].idxmax()
-    cell = (rows[["query", "polygons", "density", "motion"]] == best.loc[at, ["query", "polygons", "density", "motion"]]).all(axis=1)
-    with_first = (rows.time_ns / rows.pairs)[cell].groupby([rows.peer, rows.variant]).median()
+    with_first = (rows.time_ns / rows.pairs).groupby([rows[place] for place in hierarchies.PLACES] + [rows.peer, rows.variant]).median()
+    ours_first, theirs_first = (with_first[(with_first.index.get_level_values("peer") == "") == mine].groupby(level=hierarchies.PLACES).min()
+                                for mine in (True, False))
+    leads = best.set_index(hierarchies.PLACES)["best: times faster"]
+    leads = leads[leads >= 30].sort_values(ascending=False)
+    leads_first = (theirs_first / ours_first)[leads.index]
+    claim((leads_first < leads).all(), "the largest leads shrink with the first frames")
     sparse = rows[(rows["query"] != "distance") & (rows.density == "sparse") & (rows.variant == "sphere recursive")]
     contacts = rows[(rows["query"] == "contacts") & (rows.density == "sparse") & (rows.peer == "")]
     return {"variants": ours.variant.nunique(), "recursive": ours[ours.strategy == "recursive"].variant.nunique(),
-            "repetitions": rows.repetition.nunique(), "most": best["best: times faster"][at],
-            "most_with_first": with_first.drop("", level=0).min() / with_first[""].min(),
+            "repetitions": rows.repetition.nunique(), "leads": [f"{lead:.1f}" for lead in leads], "leads_first": [f"{lead:.1f}" for lead in leads_first],
+            "much": int(much.sum()), "distance_rss": int(name[best["query"] == "distance"].str.startswith("rss").sum()), "distances": int((best["query"] == "distance").sum()),
             "shortest": contacts.later_ns.min() / 1e3,
             "margins": name[little].str.endswith("margins").sum(), "asked": little.sum(),
             "shells": name.str.startswith("shell").sum(), "cells": len(name),
@@ -79,11 +86,14 @@ def tori(record):
           "oriented boxes, both descended, are fastest")
     time = touching.us.groupby([touching.index.str.split().str[0], touching.index.str.split().str[1]]).first().unstack()
     gain = time["separation-list"] / time[["recursive", "recursive-both"]].min(axis=1)
+    claim(touching.us.idxmin() == "obb recursive-both", "for touching oriented boxes are fastest of all")
+    roots = touching[touching.index.str.contains("recursive")].tests
+    claim(roots.idxmin() == "kdop26 recursive-both", "26-DOPs make the fewest tests of what starts from the roots")
     claim(all(part.us[part.index.str.contains("recursive")].min() < TIE * part.us.min() for part in (contacts, distance)),
           "no front is fastest for contacts and distances")
     theirs = middle.drop("", level="peer")
-    return {"frames": rows.frames.iloc[0], "touching": touching.us.min(),
-            "least": touching.tests[["kdop26 recursive", "kdop26 recursive-both"]].min(),
+    return {"frames": rows.frames.iloc[0], "touching": touching.us.min(), "touching_tests": touching.tests[touching.us.idxmin()],
+            "kdop26_tests": touching.tests["kdop26 recursive-both"], "kdop26_us": touching.us["kdop26 recursive-both"],
             "fcl": theirs.loc["touching"].us.min(), "fcl_tests": theirs.loc["touching"].tests.loc["fcl-obb"].iloc[0],
             "contacts": contacts.us.min(), "contacts_tests": contacts.tests["obb recursive-both"],
             "contacts_recursive": contacts.tests["obb recursive"], "fcl_contacts": theirs.loc["contacts"].us.min(),
@@ -132,13 +142,19 @@ def posing(record):
     asked = middle.drop("roots", level="query")
     time = (asked.time_ns.corners / asked.time_ns.realigned).dropna()
     sparse = time.index.get_level_values("side") == time.index.get_level_values("side").max()
-    claim(time[~sparse].median() > 0.95 > time[sparse].median(), "corners are faster where bodies are sparse, and only there")
+    k = time.index.get_level_values("k")
+    far, near = time[sparse & (k > 6)], time[~(sparse & (k > 6))]
+    claim((far < 0.85).all() and (near > 0.9).all(), "corners are much faster where bodies are sparse and have more than six sides, and only there")
+    cost = asked.pose_ns.corners / asked.pose_ns.realigned
+    eighteen = cost.index.get_level_values("k") == 18
+    claim(cost[eighteen].min() > cost[~eighteen].max(), "corners cost most over realignment with 18-DOPs")
     dense = middle.share.loc["roots"].xs(4, level="side")
     price = middle.pose_ns.loc["roots"]
     return {"saved": Interval(100 * (1 - (asked.n_v.corners / asked.n_v.realigned)).clip(lower=0)),
             "corners": Interval(asked.pose_ns.corners), "realigned": Interval(asked.pose_ns.realigned),
             "hull": Interval(dense["hull"]), "other": Interval(dense[["realigned", "corners"]].stack()),
-            "price": Interval(price["hull"] / price["realigned"])}
+            "price": Interval(price["hull"] / price["realigned"]), "price_corners": Interval(price["hull"] / price["corners"]),
+            "cost": Interval(cost[~eighteen]), "cost_eighteen": Interval(cost[eighteen]), "far": Interval(far), "near": Interval(near)}
 
 
 @quotes("closest-features")
@@ -149,7 +165,8 @@ def closest_features(record):
     rows = rows.assign(us=rows.later_ns / rows.later_pairs / 1e3)
     middle = rows.groupby(["variant", "mesh", "degrees"]).us.median()
     fcl = rows[rows.variant == "fcl-gjk"]
-    ours = rows[rows.peer == ""].groupby(["variant", "mesh", "degrees"]).us.median().groupby(["mesh", "degrees"]).min()
+    claim(set(rows[rows.peer == ""].variant) == {"recursive", "separation-list"}, "recursion and the separation list are ours")
+    claim(all(middle["gjk-coherent"].max() < middle[name].min() for name in ("recursive", "separation-list", "fcl-obbrss")), "GJK beats all hierarchies")
     return {"gjk": Interval(middle["gjk-coherent"]), "v_clip": Interval(middle["v-clip"]), "libccd": Interval(middle["libccd-gjk"]),
             "fcl": Interval(middle["fcl-gjk"]), "off": 100 * fcl.differing.sum() / fcl.pairs.sum(),
-            "off_most": 100 * (fcl.groupby("mesh").differing.sum() / fcl.groupby("mesh").pairs.sum()).max(), "hierarchies": Interval(ours)}
+            "off_most": 100 * (fcl.groupby("mesh").differing.sum() / fcl.groupby("mesh").pairs.sum()).max(), "recursive": Interval(middle["recursive"]), "list": Interval(middle["separation-list"]), "obbrss": Interval(middle["fcl-obbrss"])}

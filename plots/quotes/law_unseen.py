@@ -81,6 +81,8 @@ def wide_law(record):
     claim(all(off(LAW, f, 0.95) < off(name, f, 0.95) for f in fan_outs for name in (LAST, LATER, ALONE, law_fan_outs.SAME)),
           "the law's worst cells are the least bad")
     claim(all(off(law_fan_outs.BINARY, f) > 2 * off(LAW, f) for f in fan_outs[1:]), "binary trees and F alone are worse")
+    claim(abs(off(LAST, 2) - off(LAW, 2)) < 0.1 and all(off(LAST, f) < off(LAW, f) for f in fan_outs[1:]),
+          "in the median the speedup of the first frames predicts as well on binary trees and better on wider ones")
     lose = law_fan_outs.thresholds(runs)
     held = [number for number, holds, _ in law_fan_outs.hypotheses(runs, said, fit.kappa) if holds]
     own = law_fan_outs.own_kappas(runs)

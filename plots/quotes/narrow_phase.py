@@ -48,11 +48,14 @@ def narrow_phase_headline(record):
     over = fresh.ours_ns / roots.ours_ns
     slow = fresh.index.get_level_values("work").isin(["planner", "slow"])
     claim((over[slow] < 0.5).all() and (over[~slow] > 0.75).all(), "keeping answers pays where little moves")
+    claim(set(rows[rows.method == "recommended"].volume) == {"slab-box"}, "recommended is one configuration of slab-boxes in narrow-phase")
+    beside = (rows.alone == "no").sum()
+    claim(beside > 0.9 * len(rows), "nearly all rows of narrow-phase were timed beside other work")
     wrong = rows[(rows.peer != "") & (rows.differing > 0)]
     claim(set(wrong.method) == {"OPCODE"} and wrong.work.str.startswith("contacts").all(), "only OPCODE's contacts differ")
     claim((rows[rows.peer == ""].differing == 0).all(), "ours agree with the reference in every frame")
     fcl = tournament.tournament(rows, "recommended", ["FCL, obb"]).set_index(tournament.PLACES).ratio
-    return {"us": Interval(fresh[~contacts].ours_ns / 1e3), "fresh": Interval(fresh[~contacts].ratio),
+    return {"beside": int(beside), "rows": len(rows), "us": Interval(fresh[~contacts].ours_ns / 1e3), "fresh": Interval(fresh[~contacts].ratio),
             "coherent": Interval(coherent.ratio), "contacts": Interval(fresh[contacts].ratio),
             "contacts_fcl": Interval(fcl[contacts]), "over_most": over[~slow].max(), "over_slow": Interval(over[slow]),
             "wrong_cells": (fresh[contacts].differing > 0).sum(), "cells": contacts.sum(), "roots": Interval(roots[~contacts].ratio),

@@ -46,8 +46,8 @@ def real_motions_table(record):
                      for motion, line in found.iterrows()]}
 
 
-@quotes("recommended-rule")
-def recommended_rule(record):
+@quotes(["recommended-rule", "real-motions"])
+def recommended_rule(record, later):
     rows = records.read(record)
     claim((rows.differing == 0).all(), "answers of ours agree")
     rows = rows.assign(us=(rows.time_ns - rows.first_ns) / (rows.pairs * (1 - 1 / rows.frames)) / 1e3)
@@ -57,7 +57,19 @@ def recommended_rule(record):
     fixed = us["slab-boxes"] / us.min(axis=1)
     out = over.index.str.contains("left out")
     claim(out.sum() == 6, "six motions were left out of the fit")
+    spread = rows.groupby(["motion", "method"]).us.agg(lambda each: each.max() / each.min())
+    claim(spread.max() > 1.5 and (spread > 1.1).mean() > 0.2, "times of one cell differ by much between repetitions")
+    claim((rows.wall_per_processor < 0.9).mean() > 0.9, "wall_per_processor is less than one, which one thread cannot have")
+    parts = ["volume", "fan_out", "kernel", "build", "fit", "leaf_size", "strategy"]
+    settings = rows.groupby(["motion", "method"])[parts].first()
+    twins = [us.loc[motion, "recommended"] / us.loc[motion, method] for motion, method in settings.index
+             if method != "recommended" and settings.loc[(motion, method)].equals(settings.loc[(motion, "recommended")])]
+    claim(len(twins) == len(us), "every motion has a cell that is the recommended one under another name")
+    beside = (rows.alone == "no").sum()
+    kuka = us.recommended[us.index.str.startswith("kuka")].iloc[0]
     return {"motions": len(over), "cells": us.shape[1] - 1, "near": int((over <= NEAR).sum()), "worst": over.max(), "worst_at": over.idxmax(),
+            "spread": 100 * (spread > 1.1).mean(), "spread_most": spread.max(), "twins": Interval(twins), "beside": int(beside), "rows": len(rows),
+            "wall": rows.wall_per_processor.median(), "kuka": kuka, "kuka_later": motions(later)[1].us["kuka (unseen)"], "over": int((over > NEAR).sum()),
             "among": int((among <= NEAR).sum()), "most_among": among.max(), "out": Interval(over[out]), "fixed": fixed.max(),
             "roots": int((us["oriented boxes, from the roots"] < 0.9 * us["recommended"]).sum())}
 

@@ -17,13 +17,23 @@ def all_records(folder):
         raise Refused(f"{folder}: there are no records")
     machines = [json.loads((folder / name / "machine.json").read_text()) for name in names]
     alone = timed = 0
+    longest = 0
     for name in names:
-        rows = pd.read_csv(folder / name / f"{name}.csv", usecols=lambda column: column == "alone")
+        rows = pd.read_csv(folder / name / f"{name}.csv", usecols=lambda column: column in ("alone", "wall_per_processor"))
+        if "wall_per_processor" in rows:
+            longest = max(longest, pd.to_numeric(rows.wall_per_processor, errors="coerce").max())
         if "alone" in rows:
             timed, alone = timed + rows.alone.notna().sum(), alone + (rows.alone == "yes").sum()
     processors = pd.Series([machine["processor"].replace("(R)", "").removesuffix(" Processor") for machine in machines]).value_counts()
     claim({str(machine["cores"]) for machine in machines} == {"2"}, "machines of two cores")
     made = [provenance.made(machine) for machine in machines]
     claim(all(by.commit and not by.changes for by in made), "every record names its commit, without changes")
+    claim(longest <= 1.1, "no run lost more than a tenth to other work")
+    claim(not any(machine.get("clock", "wall") != "wall" for machine in machines), "times are by the wall clock")
+    undated = [name for name, by in zip(names, made) if not by.date]
+    claim(set(undated) == {"closest-features", "fits", "hierarchies-slow-peers", "peers-cgal", "posing", "tightness", "tori", "triangles-error"},
+          "the records that are older than dates in machine.json")
     claim(len({machine["compiler"] for machine in machines}) == 1, "one compiler")
+    changing = pd.read_csv(folder / "boxes-changes" / "boxes-changes.csv", usecols=["method"]).method
+    claim({"jolt", "physx-abp", "physx-pabp", "physx-sap"} <= set(changing), "PhysX and Jolt are in the record of changing boxes")
     return {"count": len(names), "processors": [f"{name} ({count})" for name, count in processors.items()], "timed": timed, "alone": 100 * alone / timed}

@@ -32,6 +32,8 @@ def relation(record):
         error = off_by(lists, predicted)
         return [100 * error[~unseen].median(), 100 * error[unseen].median()]
     half = lists.survival >= 0.5
+    claim(lists[~unseen].motion.nunique() == 7 and lists[~unseen].mesh.nunique() == lists[~unseen].motion_model.nunique() == 2,
+          "the fit sees two shapes, two motion models and seven of the nine motions")
     still = lists.assign(growth=0.0, stillness=1.0)
     claim(rows.mesh.nunique() == 6 and rows.motion.nunique() == 9 and rows.motion_model.nunique() == 3, "six shapes, nine motions, "
           "three motion models")

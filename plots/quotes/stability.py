@@ -21,11 +21,16 @@ def stability(record):
     claim({"slab-box", "raise", "recommended"} <= {*mine.volume, *mine.strategy, *mine.configuration}, "slab-box, raise and recommended are in the map")
     claim({*mine.fan_out.astype(int)} == {2, 4, 8, 16} and mine.frame.nunique() == 2 and mine.kernel.nunique() == 3, "every fan-out, frame and kernel is in the map")
     others = fcl.drop(["fcl-kios", "fcl-obb", "fcl-obbrss"])
+    claim(peers.wrong["coal-obb"] == peers.wrong["coal-obbrss"], "Coal's trees err alike")
+    claim(set(peers.index) == {"fcl-aabb", "fcl-kdop16", "fcl-kdop18", "fcl-kdop24", "fcl-kios", "fcl-obb", "fcl-obbrss", "fcl-rss", "bullet", "cgal",
+                               "coal-obb", "coal-obbrss", "embree", "ode", "opcode", "opcode-coherent", "physx"}, "every peer of the map is named")
+    claim(peers.wrong.idxmax() == "bullet", "Bullet errs most")
     return {"levels": len(rows[["stressor", "level"]].drop_duplicates()), "frames": rows.answers.iloc[0],
             "volumes": mine.volume.nunique(), "strategies": mine.strategy.nunique(), "variants": int((mine.precision == "exact").sum() / len(rows[["stressor", "level"]].drop_duplicates())), "exact": ours.answers["exact"], "float64": ours.false_positives["float64"],
             "float32": ours.false_positives["float32"], "answers": peers.answers.iloc[0], "obb": fcl["fcl-obb"],
             "missed": peers.false_negatives["fcl-obb"], "kios": fcl["fcl-kios"], "others": Interval(others),
-            **{name: peers.wrong[name] for name in ("cgal", "ode", "bullet", "embree")}}
+            "coal": peers.wrong["coal-obb"], "opcode": Interval(peers.wrong[["opcode-coherent", "opcode"]]),
+            **{name: peers.wrong[name] for name in ("cgal", "ode", "bullet", "embree", "physx")}}
 
 
 @quotes("triangles-error")
@@ -34,13 +39,17 @@ def triangles(record):
     rows = rows.assign(wrong=1000 * (rows.false_positives + rows.false_negatives) / rows.pairs)
     middle = rows.groupby(["test", "source", "set"])[["wrong", "ns_per_call"]].median()
     wrong = middle.wrong.groupby("test").max()
-    claim(rows.set.nunique() == 9, "nine sets")
+    size = rows.groupby("set").pairs.max()
+    claim((size == 50000).sum() == 8 and len(size) == 9, "eight sets of 50 000 pairs and another")
+    claim(size.idxmin() == "integer grid, rotated", "the other is the integer grid")
+    claim(wrong.idxmax() == "float32" and wrong.nlargest(2).index[1] == "float64", "our own cheaper precisions are the worst")
     claim(wrong["exact"] == wrong["cgal"] == 0, "exact and CGAL are right on all")
     others = (middle.wrong > 0).drop(["exact", "cgal"], level="test")
     exact = middle.ns_per_call["exact", "batched"]
-    return {"pairs": rows.pairs.iloc[0], "random": exact["random"], "mesh": exact["mesh neighbours"],
+    return {"pairs": size.max(), "grid_pairs": size.min(), "random": exact["random"], "mesh": exact["mesh neighbours"],
             "far": Interval(exact[["far from the origin", "far and touching"]]), "grid": exact["integer grid, rotated"],
             "close": Interval(exact[["coplanar", "coplanar, rotated", "touching", "slivers"]]),
             "alone": Interval(middle.ns_per_call["exact", "one by one"]), "cgal": Interval(middle.ns_per_call["cgal"]),
             "fewest": others.groupby(["test", "source"]).sum().min(),
-            "fcl": wrong["fcl"], "guigue": wrong["guigue-devillers"], "moller": wrong["moller"]}
+            "fcl": wrong["fcl"], "guigue": wrong["guigue-devillers"], "moller": wrong["moller"],
+            "ode": wrong["ode"], "bullet": wrong["bullet"], "float64": wrong["float64"], "float32": wrong["float32"]}

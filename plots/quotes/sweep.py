@@ -38,6 +38,7 @@ def sweep_table(record):
 def sweep_adaptive(record):
     best = fastest(record)
     wins = (best.strategy == "adaptive").groupby([best[name] for name in MOTION]).mean()
+    claim(best.seed.nunique() == 2 and len(best) == len(best[["seed", *MOTION, "mesh", "polygons", "side", "freedoms"]].drop_duplicates()), "a setting has all volumes, and one seed")
     boxes = (best.volume == "obb").groupby(best.mesh).mean()
     claim((boxes > 0.5).all(), "oriented boxes win most settings of every mesh")
     claim(all(group.strategy.value_counts().idxmax() == "adaptive" for _, group in best.groupby(MOTION)),

@@ -29,6 +29,7 @@ def cells(record):
         "one": beside(called(OURS, ONE), fresh), "roots": beside(called("wide, from the roots", SOURCE), fresh),
         "roots, one": beside(called("wide, from the roots", ONE), fresh),
         "coherent": beside(called(OURS, SOURCE), [called("OPCODE, coherent", SOURCE)]),
+        "one, coherent": beside(called(OURS, ONE), [called("OPCODE, coherent", SOURCE)]),
         "fcl": beside(called("FCL, obb", SOURCE), [called("FCL, obb", SHIPPED)]),
         "cold": beside(called(OURS, SOURCE), fresh, "cold_ns"), "tail": beside(called(OURS, SOURCE), fresh, "tail_ns")}
 
@@ -59,7 +60,10 @@ def tournament_headline(record):
     claim((found["roots, one"].ratio < 1).all(), "with one lane OPCODE or FCL is faster from the roots")
     faster = set(found["one"].index[found["one"].ratio > 1].get_level_values("work"))
     claim(faster == {"planner", "slow"}, "with one lane recommended is faster where motion is coherent")
-    return {"sixteen": Interval(found["sixteen"].ratio), "eight": Interval(found["eight"].ratio), "one": Interval(found["one"].ratio),
+    claim((found["one, coherent"].ratio < 1).all() and len(found["one, coherent"]) == 8, "with one lane OPCODE's coherence is faster in every cell of touching")
+    claim((rows.alone == "no").all(), "all of the tournament was timed beside other work")
+    claim(set(rows[rows.method.str.startswith(f"{OURS}, ")].volume) == {"slab-box"}, "recommended is one configuration of slab-boxes in the tournament")
+    return {"rows": len(rows), "one_coherent": Interval(found["one, coherent"].ratio), "sixteen": Interval(found["sixteen"].ratio), "eight": Interval(found["eight"].ratio), "one": Interval(found["one"].ratio),
             "roots": Interval(found["roots"].ratio), "roots_one": Interval(found["roots, one"].ratio),
             "width": Interval(found["one"].ours_ns / found["sixteen"].ours_ns), "fcl": Interval(1 / found["fcl"].ratio)}
 
@@ -96,8 +100,14 @@ def scenes(record):
         last = place[0]
     claim((beside.low > 1).all(), "recommended is faster than every peer in every scene")
     tails = middle.tail_ns.unstack("method")
-    claim((tails[called(OURS, SOURCE)] < tails[peers].min(axis=1)).all(), "recommended has the least 99th percentile")
-    return {"rows": lines, "lead": Interval(beside.ratio), "seeds": rows.seed.nunique(), "repetitions": rows.repetition.nunique()}
+    ours, roots = called(OURS, SOURCE), called("wide, from the roots", SOURCE)
+    claim((tails[ours] < tails[peers].min(axis=1)).all(), "recommended has a lower 99th percentile than every library")
+    contacts = rows.work.str.startswith("contacts")
+    claim(rows[contacts].frames.max() < 100 < rows[~contacts].frames.min(), "runs for contacts alone have less than a hundred frames")
+    mean = middle.ns.unstack("method")
+    return {"rows": lines, "lead": Interval(beside.ratio), "seeds": rows.seed.nunique(), "repetitions": rows.repetition.nunique(),
+            "cells": len(beside), "roots_faster": int((mean[roots] < mean[ours]).sum()), "roots_tails": int((tails[roots] < tails[ours]).sum()),
+            "contact_frames": rows[contacts].frames.max()}
 
 
 def short_us(us):
@@ -107,19 +117,28 @@ def short_us(us):
 
 @quotes("tournament-peers")
 def tournament_peers(record):
-    """Every library from source in one program: microseconds a pair, later frames, median of seeds and repetitions."""
+    """Every library from source in one program: microseconds a pair, later frames, medians of repetitions, means of seeds."""
     rows = records.read(record)
     claim((rows.alone != "no").all(), "the rows were timed alone")
     claim((rows[rows.peer == ""].differing == 0).all(), "answers of ours agree")
     rows = rows.assign(us=rows.later_ns / rows.later_pairs / 1e3)
     places = rows[["work", "polygons"]].drop_duplicates().itertuples(index=False, name=None)
-    us = rows.groupby(["work", "polygons", "method"]).us.median().unstack().loc[list(places), list(rows.method.unique())]
+    us = rows.groupby(["work", "polygons", "method", "seed"]).us.median().groupby(["work", "polygons", "method"]).mean().unstack()
+    us = us.loc[list(places), list(rows.method.unique())]
     libraries = [method for method in us if not method.startswith(("recommended", "wide"))]
     times = us[libraries].min(axis=1) / us.recommended
     touching = times[~times.index.get_level_values("work").str.startswith("contacts")]
     roots = (us[libraries].min(axis=1) / us["wide, from the roots"])[touching.index]
     contacts = times.drop(touching.index)
     claim(set(us[libraries].idxmin(axis=1)) <= {"PhysX", "OPCODE, coherent"}, "PhysX or OPCODE's coherent mode is the fastest library")
+    best = us[libraries].idxmin(axis=1)
+    physx = best.index[best == "PhysX"]
+    claim(set(physx.get_level_values("work")) == {"5 degrees", "near", "contacts, near"} and len(physx) == 6, "PhysX is fastest but in planner and slow")
+    rule = rows[rows.method == "recommended"].groupby(["work", "polygons", "seed"])[["volume", "fan_out"]].first()
+    other = rule[rule.volume != "slab-box"]
+    claim({*other.volume} == {"obb"} and {*other.fan_out} == {4} and {*rule.drop(other.index).fan_out} == {16}, "recommended takes slab-boxes or oriented boxes")
+    claim(set(other.index.droplevel("seed")) == {("slow", 500), ("5 degrees", 8000)}, "it takes oriented boxes in slow motion and in 5 degrees")
+    lead = times.groupby("work")
     wrong = rows[rows.differing > 0].groupby("method").differing.max()
     claim(set(rows[rows.differing > 0].work) == {"contacts, near"} and set(wrong.index) == {"Coal, obb", "Coal, obbrss", "OPCODE"}, "Coal and OPCODE differ, in contacts alone")
     lines, last = [], None
@@ -128,5 +147,7 @@ def tournament_peers(record):
         lines.append(["" if work == last else work, str(polygons), *cells, f"{times[work, polygons]:.1f}"])
         last = work
     return {"rows": lines, "touching": Interval(touching), "five": int((touching >= 5).sum()), "cells": len(touching), "roots": Interval(roots),
-            "contacts": Interval(contacts), "coal": int(wrong["Coal, obb"]), "opcode": int(wrong["OPCODE"]), "seeds": rows.seed.nunique(),
+            "contacts": Interval(contacts), "physx": len(physx), "places": len(us), "slab": len(rule) - len(other), "chosen": len(rule), "oriented": len(other),
+            **{f"lead_{short}": Interval(lead.get_group(work)) for short, work in (("five", "5 degrees"), ("near", "near"), ("contacts", "contacts, near"))},
+            "roots_faster": int((us["wide, from the roots"] < us.recommended).sum()), "coal": int(wrong["Coal, obb"]), "opcode": int(wrong["OPCODE"]), "seeds": rows.seed.nunique(),
             "repetitions": rows.repetition.nunique()}

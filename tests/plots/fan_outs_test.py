@@ -38,6 +38,13 @@ class FanOuts(unittest.TestCase):
         self.assertEqual(found, {1: True, 2: False, 3: True, 4: True, 5: False, 6: True, 7: False})
         self.assertFalse(next(fan_outs.judged(cells(500)))[1])
 
+    def test_within_a_third_is_within_a_third(self):
+        for gain, holds in ((0.65, False), (0.7, True), (1.3, True), (1.4, False)):
+            table = cells(1000)
+            here = (table.index.get_level_values("strategy") == "margins") & (table.index.get_level_values("fan_out") == 16)
+            table.loc[here, "n_v"] /= gain
+            self.assertEqual({number: found for number, found, _ in fan_outs.judged(table)}[4], holds, gain)
+
     def test_what_is_no_record_of_its_own(self):
         with tempfile.TemporaryDirectory() as folder:
             for record in (Path(folder) / "none", Path(folder)):

@@ -43,7 +43,7 @@ class Pages(unittest.TestCase):
 
     def test_links_lead_somewhere(self):
         for page in quoting.pages():
-            for address in re.findall(r"\]\((?!https?:|#)([^)#]+)", page.template):
+            for address in re.findall(r"\]\((?!https?:|#)([^)#]+)", page.written()):
                 with self.subTest(f"{page.name}: {address}"):
                     self.assertTrue(((ROOT / page.name).parent / address).exists())
 
