@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "hierarchies/geometry/written_out.hpp"
+#include "hierarchies/geometry/small_matrices.hpp"
 #include "traversal/body.hpp"
 #include "traversal/no_front.hpp"
 #include "traversal/queries/touching.hpp"

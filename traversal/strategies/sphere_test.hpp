@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "hierarchies/geometry/written_out.hpp"
+#include "hierarchies/geometry/small_matrices.hpp"
 #include "hierarchies/hierarchy_extent.hpp"
 
 namespace bvlab {
