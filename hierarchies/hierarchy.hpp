@@ -17,9 +17,9 @@
 #include "hierarchies/bounding_volume.hpp"
 #include "hierarchies/build/topology.hpp"
 #include "hierarchies/fitting.hpp"
+#include "hierarchies/geometry/small_matrices.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
-#include "hierarchies/geometry/written_out.hpp"
 #include "hierarchies/hierarchy_extent.hpp"
 #include "hierarchies/wide/collapse.hpp"
 

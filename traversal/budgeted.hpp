@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "hierarchies/geometry/written_out.hpp"
+#include "hierarchies/geometry/small_matrices.hpp"
 #include "traversal/body.hpp"
 #include "traversal/no_front.hpp"
 #include "traversal/queries/touching.hpp"
@@ -56,10 +56,10 @@ class PatchSizes {
   std::vector<float> sizes_;
 };
 
-enum class Known : std::uint8_t { apart, touching, not_yet };
+enum class BudgetVerdict : std::uint8_t { apart, touching, not_yet };
 
 struct BudgetedAnswer {
-  Known known = Known::not_yet;
+  BudgetVerdict verdict = BudgetVerdict::not_yet;
   double deepest = 0;       ///< bound on the penetration, in units of the mesh; 0 unless not_yet
   std::uint64_t tests = 0;  ///< volume tests made
 };
@@ -148,9 +148,9 @@ class Budgeted {
     BudgetedAnswer answer;
     answer.tests = statistics.volumes;
     if (query.touching())
-      answer.known = Known::touching;
+      answer.verdict = BudgetVerdict::touching;
     else if (queue_.empty())
-      answer.known = Known::apart;
+      answer.verdict = BudgetVerdict::apart;
     else
       answer.deepest = deepest(a, b);
     return answer;

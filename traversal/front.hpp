@@ -42,8 +42,8 @@ class Front : public FrontDefaults {
   template <class Traversal>
   bool sweep(Traversal& traversal) {
     const std::size_t entries = size(), first = witnessed();  // added entries are not retested
-    if (first > 0 && (traversal.look_at_alone(0) || traversal.fill_batches())) return true;
-    return traversal.look_at(entries - first, [first](std::size_t i) { return first + i; });
+    if (first > 0 && (traversal.test_entry(0) || traversal.fill_batches())) return true;
+    return traversal.test_entries(entries - first, [first](std::size_t i) { return first + i; });
   }
 
   /// The entry in `slot` is about to be replaced by its descendants: at least two calls of `add`
@@ -51,7 +51,7 @@ class Front : public FrontDefaults {
   void open(std::size_t slot) { holes_.push_back(static_cast<std::uint32_t>(slot)); }
 
   /// Adds an entry and returns its slot.
-  std::size_t add(const NodePair& pair, Seen = Seen::not_yet, double = 0) {
+  std::size_t add(const NodePair& pair, EntryState = EntryState::not_yet, double = 0) {
     if (holes_.empty()) {
       entries_.push_back(pair);
       return entries_.size() - 1;

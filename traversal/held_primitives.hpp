@@ -60,7 +60,7 @@ class HeldPrimitives {
   bool flush() {
     if (!satisfied_) return test();
     for (const Candidate& candidate : pending_)
-      if (candidate.slot != Outcome::none) front_.keep(candidate.slot, Seen::not_yet, 0);
+      if (candidate.slot != Outcome::none) front_.keep(candidate.slot, EntryState::not_yet, 0);
     pending_.clear();
     return true;
   }
@@ -94,7 +94,7 @@ class HeldPrimitives {
         if (own.pending_.size() == portion) satisfied = own.test();
       }
     satisfied = satisfied || own.test();
-    if (satisfied && slot != Outcome::none) front.keep(slot, Seen::not_yet, 0);
+    if (satisfied && slot != Outcome::none) front.keep(slot, EntryState::not_yet, 0);
     return {satisfied, own.triangles_, own.witness_};
   }
 

@@ -27,7 +27,7 @@ class NoFront : public FrontDefaults {
   // There are no entries.
   NodePair operator[](std::size_t) const { return {}; }
   static void open(std::size_t) {}
-  static std::size_t add(const NodePair&, Seen, double) { return Outcome::none; }
+  static std::size_t add(const NodePair&, EntryState, double) { return Outcome::none; }
 
  private:
   Start start_;

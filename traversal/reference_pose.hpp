@@ -35,7 +35,7 @@
 #include <limits>
 
 #include "hierarchies/geometry/pose.hpp"
-#include "hierarchies/geometry/written_out.hpp"
+#include "hierarchies/geometry/small_matrices.hpp"
 #include "hierarchies/hierarchy_extent.hpp"
 
 namespace bvlab {

@@ -22,8 +22,8 @@
 
 #include "broadphase/box.hpp"
 #include "hierarchies/geometry/pose.hpp"
+#include "hierarchies/geometry/small_matrices.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
-#include "hierarchies/geometry/written_out.hpp"
 
 namespace bvlab {
 

@@ -30,7 +30,7 @@ struct TraversalStatistics {
 };
 
 /// What a run has found about an entry.
-enum class Seen {
+enum class EntryState {
   culled,  ///< the query culls it; its gap is known where gaps are measured
   near,    ///< not culled, both are leaves; primitives are tested unless a hit ends the run
   not_yet  ///< not tested, or not completely: the run ended before
@@ -38,13 +38,13 @@ enum class Seen {
 
 /// The members. FrontDefaults has those that a simple front need not define. A slot is the number
 /// under which the front knows an entry.
-///   sweep(traversal)         tests entries, by Traversal::look_at; returns whether the query is
-///                            satisfied
+///   sweep(traversal)         tests entries, by Traversal::test_entries; returns whether the query
+///                            is satisfied
 ///   front[slot]              the pair
-///   keep(slot, seen, gap)    a tested entry is kept; `seen` is the result of its test
+///   keep(slot, state, gap)   a tested entry is kept; `state` is the result of its test
 ///   open(slot)               a tested entry is replaced: the next pair that is added, of at least
 ///                            two, takes its slot
-///   add(pair, seen, gap)     adds the pair as an entry; returns its slot
+///   add(pair, state, gap)    adds the pair as an entry; returns its slot
 ///   finish(witness, satisfied)
 ///                            the run is over, ended by the query or not; `witness` is the slot
 ///                            of the entry to test first in the next run, or Outcome::none
@@ -59,29 +59,29 @@ enum class Seen {
 ///                            volumes of culled pairs, in units of the meshes; else 0
 ///   held_at_least            so many candidates may wait for a test, to fill a batch
 template <class F, class Traversal>
-concept TrackedFront =
-    requires(F front, Traversal& traversal, typename Traversal::Query& query,
-             const typename Traversal::Node& node, const NodePair& pair, std::size_t slot,
-             double gap, Seen seen, std::span<const Candidate> pending, Workspace& workspace) {
-      { front.sweep(traversal) } -> std::same_as<bool>;
-      { front[slot] } -> std::convertible_to<NodePair>;
-      front.keep(slot, seen, gap);
-      front.open(slot);
-      { front.add(pair, seen, gap) } -> std::same_as<std::size_t>;
-      front.finish(slot, true);
-      { front.witnessed() } -> std::same_as<bool>;
-      { front.opens(query, node, node, gap) } -> std::same_as<bool>;
-      { front.descent(node, node) } -> std::same_as<Descent>;
-      { front.primitives(query, pending, workspace) } -> std::same_as<Outcome>;
-      { F::measures_gaps } -> std::convertible_to<bool>;
-      { F::held_at_least } -> std::convertible_to<std::size_t>;
-    };
+concept TrackedFront = requires(F front, Traversal& traversal, typename Traversal::Query& query,
+                                const typename Traversal::Node& node, const NodePair& pair,
+                                std::size_t slot, double gap, EntryState state,
+                                std::span<const Candidate> pending, Workspace& workspace) {
+  { front.sweep(traversal) } -> std::same_as<bool>;
+  { front[slot] } -> std::convertible_to<NodePair>;
+  front.keep(slot, state, gap);
+  front.open(slot);
+  { front.add(pair, state, gap) } -> std::same_as<std::size_t>;
+  front.finish(slot, true);
+  { front.witnessed() } -> std::same_as<bool>;
+  { front.opens(query, node, node, gap) } -> std::same_as<bool>;
+  { front.descent(node, node) } -> std::same_as<Descent>;
+  { front.primitives(query, pending, workspace) } -> std::same_as<Outcome>;
+  { F::measures_gaps } -> std::convertible_to<bool>;
+  { F::held_at_least } -> std::convertible_to<std::size_t>;
+};
 
 struct FrontDefaults {
   static constexpr bool measures_gaps = false;
   static constexpr std::size_t held_at_least = 0;
 
-  static void keep(std::size_t, Seen, double) {}
+  static void keep(std::size_t, EntryState, double) {}
   static void finish(std::size_t, bool) {}
   static constexpr bool witnessed() { return false; }
   template <class Query, class Node>

@@ -34,9 +34,9 @@ class Traversal : public TraversalSteps<B, V, Query, Counter, Front> {
   TraversalStatistics run() {
     bool satisfied = wants_bound<Query>() && !front_.witnessed() && find_first_bound(*this);
     satisfied = satisfied || front_.sweep(*this);
-    while (!open_.empty() && !satisfied) satisfied = look_at_open();
+    while (!open_.empty() && !satisfied) satisfied = test_open_pairs();
     satisfied = satisfied || flush();
-    while (!open_.empty()) front_.add(open_.pop(), Seen::not_yet, 0);
+    while (!open_.empty()) front_.add(open_.pop(), EntryState::not_yet, 0);
     front_.finish(held_.witness(), satisfied);
     return {!satisfied, tests_, held_.tested()};
   }
@@ -44,22 +44,22 @@ class Traversal : public TraversalSteps<B, V, Query, Counter, Front> {
   /// Tests the entries in slots slot(0), slot(1), ..., and descends below them as far as that fills
   /// whole batches.
   template <class Slot>
-  bool look_at(std::size_t count, Slot&& slot) {
+  bool test_entries(std::size_t count, Slot&& slot) {
     bool satisfied = false;
     for (std::size_t next = 0, some; next < count && !satisfied; next += some) {
       some = std::min(W, count - next);
-      satisfied = look_at_entries(some, [&](std::size_t i) { return slot(next + i); });
+      satisfied = test_batch_of_entries(some, [&](std::size_t i) { return slot(next + i); });
       satisfied = satisfied || fill_batches();
     }
     return satisfied;
   }
   /// Tests one entry and its primitives at once: a witness mostly decides the query.
-  bool look_at_alone(std::size_t slot) {
-    return look_at_entries(1, [slot](std::size_t) { return slot; }) || flush();
+  bool test_entry(std::size_t slot) {
+    return test_batch_of_entries(1, [slot](std::size_t) { return slot; }) || flush();
   }
   bool fill_batches() {
     bool satisfied = false;
-    while (open_.size() >= W && !satisfied) satisfied = look_at_open();
+    while (open_.size() >= W && !satisfied) satisfied = test_open_pairs();
     return satisfied;
   }
 
@@ -72,33 +72,34 @@ class Traversal : public TraversalSteps<B, V, Query, Counter, Front> {
 
  private:
   template <class Slot>
-  bool look_at_entries(std::size_t count, Slot&& slot) {
+  bool test_batch_of_entries(std::size_t count, Slot&& slot) {
     const std::uint64_t mask = culled(count, [&](std::size_t i) { return front_[slot(i)]; });
-    return look(
+    return keep_or_open(
         count, mask,
-        [&](std::size_t i, Seen seen, double gap) {
-          front_.keep(slot(i), seen, gap);
+        [&](std::size_t i, EntryState state, double gap) {
+          front_.keep(slot(i), state, gap);
           return static_cast<std::size_t>(slot(i));
         },
         [&](std::size_t i) { front_.open(slot(i)); });
   }
 
-  bool look_at_open() {
+  bool test_open_pairs() {
     const std::size_t count = std::min(W, open_.size());
     for (std::size_t i = 0; i < count; ++i) batch_.put(i, open_.pop());
-    return look(count, this->test(count), added(), [](std::size_t) {});
+    return keep_or_open(count, this->test(count), added(), [](std::size_t) {});
   }
 
   auto added() {
-    return
-        [this](std::size_t i, Seen seen, double gap) { return front_.add(batch_[i], seen, gap); };
+    return [this](std::size_t i, EntryState state, double gap) {
+      return front_.add(batch_[i], state, gap);
+    };
   }
 
   /// `keep` makes the pair in a lane an entry, or leaves it one, and returns its slot; `replace` is
   /// called if the pair is replaced by its children.
   template <class Keep, class Replace>
-  [[gnu::always_inline]] bool look(std::size_t count, std::uint64_t culled, Keep&& keep,
-                                   Replace&& replace) {
+  [[gnu::always_inline]] bool keep_or_open(std::size_t count, std::uint64_t culled, Keep&& keep,
+                                           Replace&& replace) {
     open_.reserve(4 * W);
     for (std::uint64_t rest = culled; rest; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
@@ -106,7 +107,7 @@ class Traversal : public TraversalSteps<B, V, Query, Counter, Front> {
       if (front_.opens(query_, a().node(pair.a), b().node(pair.b), batch_.gap(i)))
         culled &= ~(std::uint64_t{1} << i);
       else
-        keep(i, Seen::culled, batch_.gap(i));
+        keep(i, EntryState::culled, batch_.gap(i));
     }
     batch_.template for_each_near<Query>(~culled & batch_.all(count),
                                          [&](std::size_t i) { open_up(i, keep, replace); });
@@ -119,7 +120,7 @@ class Traversal : public TraversalSteps<B, V, Query, Counter, Front> {
     const NodePair pair = batch_[i];
     const Node &a = this->a().node(pair.a), &b = this->b().node(pair.b);
     if (a.count && b.count) {
-      held_.hold(a, b, keep(i, Seen::near, 0));
+      held_.hold(a, b, keep(i, EntryState::near, 0));
     } else {
       replace(i);
       this->descend(pair, a, b);
@@ -152,8 +153,9 @@ TraversalStatistics traverse(Body<V>& a, Body<V>& b, Query& query, Counter& coun
                              Workspace& workspace, Front&& front) {
   using Run = Traversal<B, V, Query, Counter, std::remove_reference_t<Front>>;
   static_assert(TrackedFront<std::remove_cvref_t<Front>, Run>);
-  static_assert(!requires { front.stays(std::size_t(), Seen::culled, 0.0); },
-                "TrackedFront::stays is named keep: as it is, nothing would call it");
+  static_assert(
+      !requires { front.stays(std::size_t(), EntryState::culled, 0.0); },
+      "TrackedFront::stays is named keep: as it is, nothing would call it");
   return Run(a, b, detail::placement_in_b(a, b, workspace), query, counter, workspace, front).run();
 }
 

@@ -70,7 +70,7 @@ class WorldOf {
       pairs_.run(near_.due(), 0, counter, make, take);
     else
       run_on_threads<Query>(counter, make, take);
-    asked_ = near_.due().size();
+    queried_ = near_.due().size();
     near_.settle();
   }
 
@@ -78,7 +78,7 @@ class WorldOf {
   /// The number of pairs whose boxes overlap.
   std::size_t near() const { return near_.size(); }
   /// The number of pairs that the last update queried.
-  std::size_t asked() const { return asked_; }
+  std::size_t queried() const { return queried_; }
   /// The number of entries of all fronts. O(slots).
   std::size_t front_size() const {
     std::size_t sum = 0;
@@ -105,7 +105,7 @@ class WorldOf {
   Pairs pairs_;
   NearPairs<Method> near_;
   AnswersInOrder answers_;
-  std::size_t asked_ = 0;
+  std::size_t queried_ = 0;
 };
 
 /// The touching pairs, as a list that changes only where answers change.

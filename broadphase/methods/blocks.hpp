@@ -86,7 +86,7 @@ class Blocks {
   /// `told`: the indices of the boxes that moved, or null where that is unknown.
   std::span<const Pair> next_frame(Boxes<T> boxes, const Moved* told) {
     pairs_.begin_frame();
-    saved_up_ = std::min(saved_up_ + 1, 2 * frames_a_beginning);
+    frame_credit_ = std::min(frame_credit_ + 1, 2 * frames_a_beginning);
     if (settings_.coherence == Coherence::off || !advance(boxes, told)) from_scratch(boxes);
     count_ = boxes.size();
     return pairs_.all.view();
@@ -115,7 +115,7 @@ class Blocks {
     }
     // Here the tree holds the boxes of the last frame.
     const Motion motion = sample(boxes);
-    if (many_jumped(motion)) return in_vain();
+    if (many_jumped(motion)) return start_over_and_wait();
     if (BlockCosts::few_times * motion.moved > motion.seen)
       return boxes.size() == count_ && follow_anew(boxes, motion);
     return begin_to_change(boxes, motion);
@@ -127,7 +127,8 @@ class Blocks {
   bool begin_to_change(Boxes<T> boxes, const Motion& motion) {
     const double moved = static_cast<double>(motion.moved * boxes.size()) /
                          static_cast<double>(std::max<std::size_t>(motion.seen, 1));
-    if (changed_.expected() * moved > affordable()) return changed_.doubt(), in_vain();
+    if (changed_.expected_cost() * moved > affordable())
+      return changed_.decay_expected_cost(), start_over_and_wait();
     changed_.begin(count_);
     return change(boxes, nullptr);
   }
@@ -155,7 +156,7 @@ class Blocks {
       changed_.stop(), last_frame_.forget();
       return boxes.size() == count_ && follow_anew(boxes, sample(boxes));
     }
-    if (!changed_.update(boxes, moved, affordable())) return in_vain();
+    if (!changed_.update(boxes, moved, affordable())) return start_over_and_wait();
     wait_ = 0;
     reason_ = changed_.sorted() ? "changed: few moved, only they were queried; sorted anew"
                                 : "changed: few moved, only they were queried";
@@ -175,9 +176,9 @@ class Blocks {
   // ---- most move ----------------------------------------------------------------------------
 
   bool follow(Boxes<T> boxes) {
-    if (boxes.size() != count_ || followed_.goes_on()) {
+    if (boxes.size() != count_ || followed_.candidates_valid()) {
       if (boxes.size() == count_ && followed_.time_to_prepare())
-        followed_.prepare(followed_.at_ease()
+        followed_.prepare(followed_.nearly_still()
                               ? followed_.shortest
                               : best_horizon(sample(boxes), followed_.time_to_find()));
       if (!followed_.follow(boxes)) return false;
@@ -190,14 +191,14 @@ class Blocks {
       return true;
     }
     const Motion motion = sample(boxes);
-    return many_jumped(motion) ? in_vain() : follow_anew(boxes, motion);
+    return many_jumped(motion) ? start_over_and_wait() : follow_anew(boxes, motion);
   }
   bool follow_anew(Boxes<T> boxes, const Motion& motion) {
-    if (many_jumped(motion)) return in_vain();
-    if (saved_up_ < frames_a_beginning) return in_vain();
+    if (many_jumped(motion)) return start_over_and_wait();
+    if (frame_credit_ < frames_a_beginning) return start_over_and_wait();
     const int horizon = best_horizon(motion);
-    if (horizon == 0) return in_vain();
-    saved_up_ -= frames_a_beginning;
+    if (horizon == 0) return start_over_and_wait();
+    frame_credit_ -= frames_a_beginning;
     wait_ = 0;
     if (followed_.active()) {
       if (!followed_.begin_again(boxes, horizon)) return false;
@@ -209,7 +210,7 @@ class Blocks {
   }
   /// Sampling the motion costs time, too: each time it leads to nothing, the number of frames until
   /// the next sample grows, up to seven.
-  bool in_vain() {
+  bool start_over_and_wait() {
     waiting_ = wait_ = std::min(7, 2 * wait_ + 1);
     return false;
   }
@@ -263,13 +264,13 @@ class Blocks {
         if (motion.extent[axis] > 0)
           growth *= 1 + (frames + ahead + 0.5) * motion.step[axis] / motion.extent[axis];
       const double candidates = growth * k;
-      const double follow = Cost::look * n + Cost::test(candidates) * candidates,
+      const double follow = Cost::read * n + Cost::test(candidates) * candidates,
                    begin =
                        Cost::fat_box * n + (1 + growth) / 2 * join + Cost::candidate * candidates,
                    cost = follow + begin / frames;
       if (ahead > 0 && follow + begin / ahead > cost_of_starting_over()) continue;
       // With the shortest margins there is no time to prepare the next candidates.
-      const bool rather = followed_.restless() && horizon == shortest;
+      const bool rather = followed_.margins_exceeded() && horizon == shortest;
       if (cost < (rather ? most : best)) best = cost, horizon = frames;
     }
     return horizon;
@@ -287,7 +288,7 @@ class Blocks {
   int wait_ = 0, waiting_ = 0;  ///< frames to start over without sampling
   /// One beginning is allowed per so many frames.
   static constexpr int frames_a_beginning = 256;
-  int saved_up_ = 2 * frames_a_beginning;  ///< frames not yet used up by beginnings
+  int frame_credit_ = 2 * frames_a_beginning;  ///< frames not yet used up by beginnings
 };
 
 }  // namespace bvlab

@@ -43,7 +43,7 @@ class DynamicTree {
       leaf_.push_back(node);
       put_in(node);
     }
-    for (std::uint32_t k = 0; k < boxes.size(); ++k) ask(boxes, k);
+    for (std::uint32_t k = 0; k < boxes.size(); ++k) query(boxes, k);
     return pairs_.view();
   }
 
@@ -139,7 +139,7 @@ class DynamicTree {
     }
   }
 
-  void ask(Boxes<T> boxes, std::uint32_t k) {
+  void query(Boxes<T> boxes, std::uint32_t k) {
     stack_.assign(1, root_);
     while (!stack_.empty()) {
       const std::uint32_t at = stack_.back();

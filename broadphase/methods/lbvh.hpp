@@ -29,7 +29,7 @@ class Lbvh {
     fit(boxes);
     if (keep && spread() > 1.5 * spread_) sort(boxes), fit(boxes);
     if (!kept_spread_) spread_ = spread(), kept_spread_ = true;
-    for (std::uint32_t k = 0; k < ids_.size(); ++k) ask(k);
+    for (std::uint32_t k = 0; k < ids_.size(); ++k) query(k);
     return pairs_.view();
   }
 
@@ -59,7 +59,7 @@ class Lbvh {
   }
   /// Reports the leaves after leaf p that overlap it, by descending into each later subtree whose
   /// bounds do.
-  void ask(std::uint32_t p) {
+  void query(std::uint32_t p) {
     const Box<T>& box = nodes_[leaves_ + p];
     std::uint32_t node = leaves_ + p;
     for (;;) {  // the next subtree in order: up while a right child, then across

@@ -26,10 +26,10 @@ class Sap {
     if (!keep || !repaired(boxes)) start_over(boxes);
     count_ = boxes.size();
     if constexpr (std::is_same_v<Contact, Closed>) return pairs_.view();
-    asked_.clear();
+    filtered_.clear();
     for (const Pair& pair : pairs_.view())
-      if (overlap<Contact>(boxes[pair.i], boxes[pair.j])) asked_.push(pair);
-    return asked_.view();
+      if (overlap<Contact>(boxes[pair.i], boxes[pair.j])) filtered_.push(pair);
+    return filtered_.view();
   }
 
  private:
@@ -105,7 +105,7 @@ class Sap {
   std::size_t count_ = 0;
   std::vector<End> ends_[3];
   PairSlots slots_;
-  PairList pairs_, asked_;
+  PairList pairs_, filtered_;
 };
 
 }  // namespace bvlab

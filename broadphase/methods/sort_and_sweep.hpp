@@ -90,8 +90,8 @@ class SortAndSweep {
         found |= static_cast<LaneMask>(bits(mask)) << part;
       }
       if (found)
-        pairs_.end_at(
-            write_pairs(pairs_.room_for(block_width), ids_[k], ids_.data() + first, found));
+        pairs_.set_end(
+            write_pairs(pairs_.reserve(block_width), ids_[k], ids_.data() + first, found));
       if (first + 2 * block_width > lo_[0].size()) break;
     }
   }

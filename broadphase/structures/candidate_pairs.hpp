@@ -43,8 +43,8 @@ class CandidatePairs {
     const std::size_t count = candidates_.size();
     list.clear();
     hits_.resize(count);
-    Pair* const to = list.room_for(count + 1);
-    list.end_at(to + compare_keeping(ids, 0, count, to, began, ended));
+    Pair* const to = list.reserve(count + 1);
+    list.set_end(to + compare_keeping(ids, 0, count, to, began, ended));
     hits_known_ = true;
   }
 
@@ -70,25 +70,25 @@ class CandidatePairs {
       began.append(found.began.view()), ended.append(found.ended.view());
     }
     list.clear();
-    Pair* const pairs = list.room_to_share(sum);
+    Pair* const pairs = list.reserve_shared(sum);
     threads.share(found_.size(), [&](std::size_t k, std::size_t) {
       std::copy_n(found_pairs_.data() + k * stretch, found_[k].count, pairs + found_[k].first);
     });
-    list.end_at(pairs + sum);
+    list.set_end(pairs + sum);
     hits_known_ = true;
   }
 
   /// Compares the candidates from `first` to `last` only and appends to the list; keeps no record.
   void compare_range(const std::uint32_t* ids, PairList& list, std::size_t first,
                      std::size_t last) const {
-    Pair* out = list.room_for(last - first + 1);
+    Pair* out = list.reserve(last - first + 1);
     const Row<T>* rows = rows_.data();
     for (const Pair *c = candidates_.view().data() + first, *end = c + (last - first); c != end;
          ++c) {
       *out = {ids[c->i], ids[c->j]};
       out += overlap<Contact>(rows[c->i], rows[c->j]);
     }
-    list.end_at(out);
+    list.set_end(out);
   }
 
   std::size_t bytes() const {

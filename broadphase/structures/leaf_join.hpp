@@ -61,7 +61,7 @@ class LeafJoin {
   }
 
   void compare(std::size_t rows, std::uint32_t done) {
-    Pair* out = list_.room_for((rows + 1) * block_width, done, tree_.leaves());
+    Pair* out = list_.reserve((rows + 1) * block_width, done, tree_.leaves());
     for (std::size_t k = 0; k < rows; ++k) {
       const std::uint32_t slot = slots_[k], other = others_[k];
       const std::uint32_t leaf = slot / block_width, lane = slot % block_width;
@@ -71,7 +71,7 @@ class LeafJoin {
       const LaneMask behind = leaf == other ? all_lanes & (all_lanes << (lane + 1)) : all_lanes;
       out = write_(out, slot, other, found & behind);
     }
-    list_.end_at(out);
+    list_.set_end(out);
   }
 
   const BlockTree<T>& tree_;

@@ -42,7 +42,7 @@ class PairList {
   std::span<const Pair> view() const { return {pairs_, size_}; }
 
   /// Reserves room for `more` pairs, and returns where the next one goes.
-  Pair* room_for(std::size_t more) {
+  Pair* reserve(std::size_t more) {
     if (size_ + more > ready_) [[unlikely]] {
       if (size_ + more > capacity_) grow(std::max(size_ + more, capacity_ + capacity_ / 2));
       make_ready(size_ + more);
@@ -50,7 +50,7 @@ class PairList {
     return pairs_ + size_;
   }
   /// The same, where `done` of `all` parts of the work are finished.
-  Pair* room_for(std::size_t more, std::size_t done, std::size_t all) {
+  Pair* reserve(std::size_t more, std::size_t done, std::size_t all) {
     if (size_ + more > ready_) [[unlikely]] {
       if (size_ + more > capacity_)
         grow_by_share(size_ + more, static_cast<double>(done) / static_cast<double>(all));
@@ -59,20 +59,20 @@ class PairList {
     return pairs_ + size_;
   }
   /// The same, to be written by several threads: each touches its own pages first.
-  Pair* room_to_share(std::size_t more) {
+  Pair* reserve_shared(std::size_t more) {
     if (size_ + more > capacity_) grow(std::max(size_ + more, capacity_ + capacity_ / 2));
     return pairs_ + size_;
   }
   /// Ends the list at `end`, which lies in the room last reserved.
-  void end_at(const Pair* end) { size_ = static_cast<std::size_t>(end - pairs_); }
+  void set_end(const Pair* end) { size_ = static_cast<std::size_t>(end - pairs_); }
   void resize_down(std::size_t size) { size_ = size; }
 
   void push(Pair pair) {
-    *room_for(1) = pair;
+    *reserve(1) = pair;
     ++size_;
   }
   void append(std::span<const Pair> pairs) {
-    if (!pairs.empty()) std::memcpy(room_for(pairs.size()), pairs.data(), pairs.size_bytes());
+    if (!pairs.empty()) std::memcpy(reserve(pairs.size()), pairs.data(), pairs.size_bytes());
     size_ += pairs.size();
   }
 

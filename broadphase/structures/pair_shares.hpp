@@ -42,14 +42,14 @@ class PairShares {
     std::size_t sum = 0;
     for (std::size_t share = in_place; share < shares; ++share)
       pieces_[share].to = sum, sum += pieces_[share].size;
-    Pair* const out = list.room_to_share(sum);
+    Pair* const out = list.reserve_shared(sum);
     threads_.share(shares - in_place, [&](std::size_t k, std::size_t) {
       const Piece& piece = pieces_[in_place + k];
       if (piece.size > 0)
         std::memcpy(out + piece.to, own_[piece.worker].pairs.view().data() + piece.first,
                     piece.size * sizeof(Pair));
     });
-    list.end_at(out + sum);
+    list.set_end(out + sum);
   }
 
   std::size_t bytes() const {

@@ -82,10 +82,10 @@ class PrioritySearchTrees {
     node[at] = none;
   }
 
-  /// Calls visit(seat) for every inserted interval that overlaps `asked`, both closed.
+  /// Calls visit(seat) for every inserted interval that overlaps `query`, both closed.
   template <class Visit>
-  void find(std::uint32_t tree, Interval<T> asked, Visit&& visit) const {
-    if (starts_[tree] != starts_[tree + 1]) find_below(tree, 1, 0, leaves(tree), asked, visit);
+  void find(std::uint32_t tree, Interval<T> query, Visit&& visit) const {
+    if (starts_[tree] != starts_[tree + 1]) find_below(tree, 1, 0, leaves(tree), query, visit);
   }
 
  private:
@@ -97,16 +97,16 @@ class PrioritySearchTrees {
   }
   template <class Visit>
   void find_below(std::uint32_t tree, std::uint32_t at, std::uint32_t first, std::uint32_t size,
-                  Interval<T> asked, Visit& visit) const {
+                  Interval<T> query, Visit& visit) const {
     const std::uint32_t seat = held_[roots_[tree] + at];
-    if (seat == none || intervals_[seat].hi < asked.lo) return;  // none below ends later
-    if (intervals_[seat].lo <= asked.hi) visit(seat);
+    if (seat == none || intervals_[seat].hi < query.lo) return;  // none below ends later
+    if (intervals_[seat].lo <= query.hi) visit(seat);
     if (size == 1) return;
     size /= 2;
-    find_below(tree, 2 * at, first, size, asked, visit);
+    find_below(tree, 2 * at, first, size, query, visit);
     const std::uint32_t middle = starts_[tree] + first + size;
-    if (middle < starts_[tree + 1] && intervals_[order_[middle]].lo <= asked.hi)
-      find_below(tree, 2 * at + 1, first + size, size, asked, visit);
+    if (middle < starts_[tree + 1] && intervals_[order_[middle]].lo <= query.hi)
+      find_below(tree, 2 * at + 1, first + size, size, query, visit);
   }
 
   std::vector<Interval<T>> intervals_;       // per seat

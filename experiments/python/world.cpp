@@ -126,8 +126,8 @@ class PyWorld : public MadeByCalls {
   std::size_t near() {
     return alone([&] { return engine_->near(); });
   }
-  std::size_t asked() {
-    return alone([&] { return engine_->asked(); });
+  std::size_t queried() {
+    return alone([&] { return engine_->queried(); });
   }
 
  private:
@@ -369,7 +369,7 @@ Each pair that touches is traversed from the roots.)")
 In units of the meshes; 0 where they touch. Each pair is traversed from the roots.)")
       .def_property_readonly("near", &PyWorld::near,
                              "The number of pairs whose boxes overlapped in the last update.")
-      .def_property_readonly("asked", &PyWorld::asked,
+      .def_property_readonly("queried", &PyWorld::queried,
                              "The number of pairs that the last update queried.")
       .def("__len__", &PyWorld::objects);
 }

@@ -60,7 +60,7 @@ class TouchingWorld final : public WorldEngine {
 
   std::span<const ObjectPair> touching() override { return touching_.pairs(); }
   std::size_t near() const override { return world_.near(); }
-  std::size_t asked() const override { return world_.asked(); }
+  std::size_t queried() const override { return world_.queried(); }
 
  private:
   Hierarchies hierarchies_;

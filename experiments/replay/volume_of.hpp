@@ -18,12 +18,12 @@ namespace bvlab {
 namespace detail {
 
 inline void note(BudgetedResult& result, const BudgetedAnswer& answer) {
-  ++(answer.known == Known::touching ? result.touching
-     : answer.known == Known::apart  ? result.apart
-                                     : result.unknown);
+  ++(answer.verdict == BudgetVerdict::touching ? result.touching
+     : answer.verdict == BudgetVerdict::apart  ? result.apart
+                                               : result.unknown);
   result.deepest = std::max(result.deepest, answer.deepest);
   result.mean_deepest += answer.deepest;
-  result.known.push_back(static_cast<std::uint8_t>(answer.known));
+  result.known.push_back(static_cast<std::uint8_t>(answer.verdict));
   result.bounds.push_back(answer.deepest);
 }
 

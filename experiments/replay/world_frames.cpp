@@ -49,7 +49,7 @@ WorldRun play_frames(WorldEngine& world, const Trace& trace, Answers answers) {
       continue;
     }
     run.seconds += seconds;
-    run.near += world.near(), run.asked += world.asked();
+    run.near += world.near(), run.queried += world.queried();
     run.touching += touching.size(), run.moved += moves.size();
   }
   return run;

@@ -23,9 +23,9 @@ class WorldEngine {
   /// After `update`: the pairs that touch, i < j, in any order.
   virtual std::span<const ObjectPair> touching() = 0;
 
-  /// After `update`, where it is known: pairs whose boxes meet, pairs asked.
+  /// After `update`, where it is known: pairs whose boxes meet, pairs queried.
   virtual std::size_t near() const { return 0; }
-  virtual std::size_t asked() const { return 0; }
+  virtual std::size_t queried() const { return 0; }
 
   /// Takes a body out of the scene until it is moved again; ours alone can.
   virtual void take_out(std::uint32_t) {}
@@ -34,7 +34,7 @@ class WorldEngine {
 struct WorldRun {
   double build_seconds = 0, first_seconds = 0;
   double seconds = 0;                                          ///< all frames but the first
-  std::uint64_t near = 0, asked = 0, touching = 0, moved = 0;  ///< sums over the same frames
+  std::uint64_t near = 0, queried = 0, touching = 0, moved = 0;  ///< sums over the same frames
   std::vector<std::vector<ObjectPair>> answers;  ///< of each frame, sorted; where they are kept
 };
 

@@ -208,7 +208,7 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
               std::to_string(who.threads), std::to_string(repetition), nanoseconds(timed.seconds),
               nanoseconds(timed.first_seconds), nanoseconds(timed.build_seconds),
               std::to_string(timed.moved), ours ? std::to_string(timed.near) : "",
-              ours ? std::to_string(timed.asked) : "", std::to_string(timed.touching),
+              ours ? std::to_string(timed.queried) : "", std::to_string(timed.touching),
               std::to_string(differences[k])})
           row.push_back(field);
         record.add(std::move(row));

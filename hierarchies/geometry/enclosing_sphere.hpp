@@ -16,7 +16,7 @@
 
 namespace bvlab {
 
-struct Ball {
+struct EnclosingSphere {
   Vec3<double> centre = Vec3<double>::Zero();
   double squared_radius = -1;  ///< negative where there are no points
 };
@@ -27,7 +27,7 @@ namespace detail {
 /// are affinely dependent; the caller notices, since that sphere misses a point.
 // Templates, so that only those who call them compile them.
 template <class = double>
-Ball circumscribed(std::span<const Vec3<double>> points) {
+EnclosingSphere circumscribed(std::span<const Vec3<double>> points) {
   if (points.empty()) return {};
   const auto edge = [&](std::size_t i) -> Vec3<double> { return points[i] - points[0]; };
   Vec3<double> offset = Vec3<double>::Zero();
@@ -52,21 +52,22 @@ Ball circumscribed(std::span<const Vec3<double>> points) {
 /// largest distance from its centre as the radius. Points may be repeated or dependent; without
 /// points the squared radius is negative.
 template <class = double>
-Ball enclosing_sphere(std::span<const Vec3<double>> points) {
+EnclosingSphere enclosing_sphere(std::span<const Vec3<double>> points) {
   if (points.empty()) return {};
   std::array<Vec3<double>, 5> support;  // the last one is the entering point
   std::size_t supports = 1;
   support[0] = points[0];
-  Ball ball{points[0], 0};
+  EnclosingSphere sphere{points[0], 0};
   for (int pass = 0; pass < 100; ++pass) {
     const Vec3<double>* farthest = nullptr;
-    double largest = ball.squared_radius * (1 + 1e-14);
+    double largest = sphere.squared_radius * (1 + 1e-14);
     for (const auto& p : points)
-      if (const double d = (p - ball.centre).squaredNorm(); d > largest) largest = d, farthest = &p;
+      if (const double d = (p - sphere.centre).squaredNorm(); d > largest)
+        largest = d, farthest = &p;
     if (!farthest) break;
     support[supports] = *farthest;
     // The smallest sphere through the entering point and some of the support that contains all.
-    Ball best;
+    EnclosingSphere best;
     unsigned chosen = 0;
     for (unsigned subset = 0; subset < 1u << supports; ++subset) {
       if (std::popcount(subset) > 3) continue;
@@ -75,7 +76,7 @@ Ball enclosing_sphere(std::span<const Vec3<double>> points) {
       on[count++] = *farthest;
       for (std::size_t i = 0; i < supports; ++i)
         if (subset >> i & 1) on[count++] = support[i];
-      const Ball candidate = detail::circumscribed(std::span(on).first(count));
+      const EnclosingSphere candidate = detail::circumscribed(std::span(on).first(count));
       if (candidate.squared_radius < 0) continue;
       if (best.squared_radius >= 0 && candidate.squared_radius >= best.squared_radius) continue;
       const bool holds_all = std::all_of(
@@ -85,15 +86,15 @@ Ball enclosing_sphere(std::span<const Vec3<double>> points) {
       if (holds_all) best = candidate, chosen = subset;
     }
     // Rounding may leave no larger sphere: then this one is as good as possible.
-    if (!(best.squared_radius > ball.squared_radius)) break;
+    if (!(best.squared_radius > sphere.squared_radius)) break;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < supports; ++i)
       if (chosen >> i & 1) support[kept++] = support[i];
     support[kept++] = *farthest;
     supports = kept;
-    ball = best;
+    sphere = best;
   }
-  return ball;
+  return sphere;
 }
 
 }  // namespace bvlab

@@ -33,7 +33,7 @@
 
 #include "hierarchies/geometry/pose.hpp"
 #include "hierarchies/geometry/scalar.hpp"
-#include "hierarchies/geometry/written_out.hpp"
+#include "hierarchies/geometry/small_matrices.hpp"
 
 namespace bvlab {
 
@@ -56,17 +56,17 @@ struct Placement {
     const double defect = defect_of(pose.rotation);
     const bool sound = defect <= sound_defect;
     const Mat3<double> nearest = sound ? pose.rotation : orthonormal(pose.rotation, defect);
-    const double turned = sound ? 0 : (pose.rotation - nearest).norm() + 8 * u;
+    const double rotation_error = sound ? 0 : (pose.rotation - nearest).norm() + 8 * u;
     rotation = nearest.cast<T>();
     translation = rounded<T>(offset);
     // `grown` rounds twice, and the defect itself is computed with an error below 16u.
     const double room = 1 + 4 * e;
     stretch = rounded_up<T>(std::sqrt(1 + defect + 16 * u) * room);
-    tilt = rounded_up<T>((turned + 8 * e) * room);
+    tilt = rounded_up<T>((rotation_error + 8 * e) * room);
     const double tiny = std::ldexp(1.0, std::numeric_limits<T>::min_exponent / 2 + 2);
     slack = rounded_up<T>((8 * u * (reach + pose.translation.norm()) +
-                           10 * e * (reach + offset.norm()) + (turned > 0 ? turned * reach : 0) +
-                           tiny) *
+                           10 * e * (reach + offset.norm()) +
+                           (rotation_error > 0 ? rotation_error * reach : 0) + tiny) *
                           room);
     if (!sound && !(defect <= 0.01 && defect_of(nearest) <= sound_defect))
       slack = std::numeric_limits<T>::infinity();

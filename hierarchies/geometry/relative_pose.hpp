@@ -28,7 +28,7 @@
 #include <limits>
 
 #include "hierarchies/geometry/pose.hpp"
-#include "hierarchies/geometry/written_out.hpp"
+#include "hierarchies/geometry/small_matrices.hpp"
 
 namespace bvlab {
 

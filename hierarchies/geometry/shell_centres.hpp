@@ -44,46 +44,47 @@ double distance_below(const Vec3<double>& o, const Triangle& triangle) {
 
 /// The centre c that minimises sum (|p - c|^2 - r^2)^2 over c and r: linear in c and r^2 - |c|^2.
 template <class = double>
-std::optional<Vec3<double>> fitted_sphere(const Vec3<double>& middle, double radius,
+std::optional<Vec3<double>> fitted_sphere(const Vec3<double>& centre, double radius,
                                           std::span<const Vec3<double>> points) {
   if (points.size() < 4) return std::nullopt;
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
   Eigen::Vector4d right = Eigen::Vector4d::Zero();
   for (const auto& p : points) {
-    const Vec3<double> x = (p - middle) / radius;
+    const Vec3<double> x = (p - centre) / radius;
     const Eigen::Vector4d row(2 * x[0], 2 * x[1], 2 * x[2], 1);
     normal += row * row.transpose();
     right += row * x.squaredNorm();
   }
   const Eigen::Vector4d solution = normal.ldlt().solve(right);
   if (!solution.allFinite()) return std::nullopt;
-  return Vec3<double>(middle + radius * solution.head<3>());
+  return Vec3<double>(centre + radius * solution.head<3>());
 }
 
 template <class = double>
-Vec3<double> thin_direction(const Vec3<double>& middle, double radius,
+Vec3<double> thin_direction(const Vec3<double>& centre, double radius,
                             std::span<const Vec3<double>> points) {
   std::vector<Vec3<double>> scaled;
   scaled.reserve(points.size());
-  for (const auto& p : points) scaled.push_back((p - middle) / radius);
+  for (const auto& p : points) scaled.push_back((p - centre) / radius);
   return principal_axes(scaled).row(2).transpose();
 }
 
 }  // namespace detail
 
 /// Candidate centres: that of the best-fitting sphere, if near, and points on both sides of the
-/// surface, 1.5 to 12 enclosing radii away. None where the ball is a point or not finite.
+/// surface, 1.5 to 12 enclosing radii away. None where the sphere is a point or not finite.
 template <class = double>
-std::vector<Vec3<double>> shell_centres(const Ball& ball, std::span<const Vec3<double>> points) {
+std::vector<Vec3<double>> shell_centres(const EnclosingSphere& sphere,
+                                        std::span<const Vec3<double>> points) {
   std::vector<Vec3<double>> centres;
-  const double radius = std::sqrt(std::max(0.0, ball.squared_radius));
+  const double radius = std::sqrt(std::max(0.0, sphere.squared_radius));
   if (!(radius > 0) || !std::isfinite(radius)) return centres;
-  const auto sphere = detail::fitted_sphere(ball.centre, radius, points);
-  if (sphere && (*sphere - ball.centre).norm() < 16 * radius) centres.push_back(*sphere);
-  const Vec3<double> normal = detail::thin_direction(ball.centre, radius, points);
+  const auto fitted = detail::fitted_sphere(sphere.centre, radius, points);
+  if (fitted && (*fitted - sphere.centre).norm() < 16 * radius) centres.push_back(*fitted);
+  const Vec3<double> normal = detail::thin_direction(sphere.centre, radius, points);
   for (const double distance : {1.5, 3.0, 6.0, 12.0})
     for (const double side : {-1.0, 1.0})
-      if (const Vec3<double> centre = ball.centre + side * distance * radius * normal;
+      if (const Vec3<double> centre = sphere.centre + side * distance * radius * normal;
           centre.allFinite())
         centres.push_back(centre);
   return centres;
@@ -101,14 +102,14 @@ Vec3<double> narrowest_axis(const Vec3<double>& centre, std::span<const Vec3<dou
 }
 
 /// Improves `centre` by pattern search: `better(other)` tries the shell about another centre. Steps
-/// go around the ball's centre, towards it and away, and halve where none helps. At most 120 are
+/// go around the sphere's centre, towards it and away, and halve where none helps. At most 120 are
 /// tried.
 template <class Better>
-void improve_centre(Vec3<double>& centre, const Ball& ball, Better&& better) {
-  const double radius = std::sqrt(std::max(0.0, ball.squared_radius));
+void improve_centre(Vec3<double>& centre, const EnclosingSphere& sphere, Better&& better) {
+  const double radius = std::sqrt(std::max(0.0, sphere.squared_radius));
   pattern_search([&](double step) {
     bool gained = false;
-    const Vec3<double> offset = centre - ball.centre;
+    const Vec3<double> offset = centre - sphere.centre;
     const double length = step * std::max(offset.norm(), radius);
     const Vec3<double> out = offset.norm() > 0 ? Vec3<double>(offset.stableNormalized())
                                                : Vec3<double>(Vec3<double>::UnitX()),
@@ -116,7 +117,7 @@ void improve_centre(Vec3<double>& centre, const Ball& ball, Better&& better) {
     for (const Vec3<double>& way : {across, Vec3<double>(out.cross(across)), out})
       for (const double by : {length, -length}) {
         const Vec3<double> other = centre + by * way;
-        if (!((other - ball.centre).norm() < 16 * radius) || !better(other)) continue;
+        if (!((other - sphere.centre).norm() < 16 * radius) || !better(other)) continue;
         centre = other, gained = true;
         break;
       }

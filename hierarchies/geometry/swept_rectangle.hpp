@@ -22,12 +22,12 @@ namespace bvlab {
 struct SweptRectangle {
   Mat3<double> axes;     ///< rows, orthonormal: along the sides, then the normal
   Vec3<double> origin;   ///< of the coordinates along the axes
-  double middle;         ///< the rectangle's coordinate along the normal
+  double plane_offset;   ///< the rectangle's coordinate along the normal
   Eigen::Matrix2d ends;  ///< column k: where side k begins and ends
   double radius;         ///< bounds the distance of all points, up to rounding
 
   Vec3<double> centre() const {
-    Vec3<double> centre = origin + middle * axes.row(2).transpose();
+    Vec3<double> centre = origin + plane_offset * axes.row(2).transpose();
     for (int k = 0; k < 2; ++k) centre += ends.col(k).sum() / 2 * axes.row(k).transpose();
     return centre;
   }
@@ -60,7 +60,7 @@ void push_corners(SweptRectangle& rectangle, std::span<const Vec3<double>> along
       out[k] = corner[k] ? x[k] - ends(1, k) : ends(0, k) - x[k];
     }
     if (!(out[0] > 0 && out[1] > 0)) continue;
-    const double reach = beside(rectangle.radius, x[2] - rectangle.middle),
+    const double reach = beside(rectangle.radius, x[2] - rectangle.plane_offset),
                  across = (out[0] - out[1]) * (out[0] - out[1]) / 2,
                  within = reach * reach - across;
     const double push = (out[0] + out[1]) / 2 - std::sqrt(std::max(0.0, within) / 2);
@@ -72,10 +72,11 @@ void push_corners(SweptRectangle& rectangle, std::span<const Vec3<double>> along
 }  // namespace detail
 
 /// The rectangle in the plane of the first two axes, halfway through the points. Its radius is the
-/// one needed there plus `wider`, which lets the rectangle shrink. Sides first, then corners.
+/// one needed there plus `extra_radius`, which lets the rectangle shrink. Sides first, then
+/// corners.
 template <class = double>
 SweptRectangle swept_rectangle(const Mat3<double>& axes, std::span<const Vec3<double>> points,
-                               double wider = 0) {
+                               double extra_radius = 0) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   SweptRectangle rectangle;
   rectangle.axes = axes, rectangle.origin = points[0];
@@ -86,10 +87,10 @@ SweptRectangle swept_rectangle(const Mat3<double>& axes, std::span<const Vec3<do
     along.emplace_back(axes * (p - points[0]));
     low = std::min(low, along.back()[2]), high = std::max(high, along.back()[2]);
   }
-  rectangle.middle = (low + high) / 2, rectangle.radius = (high - low) / 2 + wider;
+  rectangle.plane_offset = (low + high) / 2, rectangle.radius = (high - low) / 2 + extra_radius;
   double lows[2] = {infinity, infinity}, highs[2] = {-infinity, -infinity};
   for (const auto& x : along) {
-    const double reach = detail::beside(rectangle.radius, x[2] - rectangle.middle);
+    const double reach = detail::beside(rectangle.radius, x[2] - rectangle.plane_offset);
     for (int k = 0; k < 2; ++k)
       lows[k] = std::min(lows[k], x[k] + reach), highs[k] = std::max(highs[k], x[k] - reach);
   }
@@ -110,11 +111,11 @@ SweptRectangle tight_swept_rectangle(const Mat3<double>& start,
                                      std::span<const Vec3<double>> points) {
   SweptRectangle best = swept_rectangle(start, points);
   const double size = best.half(0) + best.half(1) + best.radius;
-  double surface = best.surface(), wider = 0;
+  double surface = best.surface(), extra_radius = 0;
   const auto better = [&](const Mat3<double>& axes, double more) {
     const SweptRectangle other = swept_rectangle(axes, points, more);
     if (!(other.surface() < surface)) return false;
-    best = other, surface = other.surface(), wider = more;
+    best = other, surface = other.surface(), extra_radius = more;
     return true;
   };
   for (int k = 0; k < 2; ++k) {
@@ -122,7 +123,7 @@ SweptRectangle tight_swept_rectangle(const Mat3<double>& start,
     for (int i = 0; i < 3; ++i) axes.row(i) = start.row((k + 1 + i) % 3);
     better(axes, 0);
   }
-  const auto turned = [&](int k, double angle) {
+  const auto rotated = [&](int k, double angle) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
     Mat3<double> axes = best.axes;
     axes.row(i) = (best.axes.row(i) + angle * best.axes.row(j)).normalized();
@@ -132,9 +133,10 @@ SweptRectangle tight_swept_rectangle(const Mat3<double>& start,
   pattern_search([&](double step) {
     bool gained = false;
     for (int k = 0; k < 3; ++k)
-      gained |= better(turned(k, step), wider) || better(turned(k, -step), wider);
+      gained |= better(rotated(k, step), extra_radius) || better(rotated(k, -step), extra_radius);
     const double more = step / 4 * size;
-    gained |= better(best.axes, wider + more) || better(best.axes, std::max(0.0, wider - more));
+    gained |= better(best.axes, extra_radius + more) ||
+              better(best.axes, std::max(0.0, extra_radius - more));
     return gained;
   });
   return best;

@@ -63,8 +63,8 @@ Vec3<double> sides_along(const Mat3<double>& axes, std::span<const Vec3<double>>
 
 /// Rotates the axes about the k-th; nothing where no hull edge gives a direction.
 template <class = double>
-std::optional<Mat3<double>> turned_about(int k, const Mat3<double>& axes, double height,
-                                         std::span<const Vec3<double>> points) {
+std::optional<Mat3<double>> rotated_about(int k, const Mat3<double>& axes, double height,
+                                          std::span<const Vec3<double>> points) {
   const int i = (k + 1) % 3, j = (k + 2) % 3;
   std::vector<Eigen::Vector2d> flat;
   flat.reserve(points.size());
@@ -87,10 +87,10 @@ std::optional<Mat3<double>> turned_about(int k, const Mat3<double>& axes, double
     if (const double surface = half_surface({height, sides.x(), sides.y()}); surface < least)
       least = surface, best = along;
   }
-  Mat3<double> turned = axes;
-  turned.row(i) = best.x() * axes.row(i) + best.y() * axes.row(j);
-  turned.row(j) = axes.row(k).cross(turned.row(i));
-  return orthonormalised(turned);
+  Mat3<double> rotated = axes;
+  rotated.row(i) = best.x() * axes.row(i) + best.y() * axes.row(j);
+  rotated.row(j) = axes.row(k).cross(rotated.row(i));
+  return orthonormalised(rotated);
 }
 
 }  // namespace detail
@@ -111,11 +111,11 @@ Mat3<double> tight_axes(const Mat3<double>& start, std::span<const Vec3<double>>
   for (double before = std::numeric_limits<double>::infinity(); surface < 0.99 * before;) {
     before = surface;
     for (int k = 0; k < 3; ++k) {
-      const auto turned =
-          detail::turned_about(k, axes, detail::sides_along(axes, scaled)[k], scaled);
-      if (!turned) continue;
-      const double reached = detail::half_surface(detail::sides_along(*turned, scaled));
-      if (reached < surface) axes = *turned, surface = reached;
+      const auto rotated =
+          detail::rotated_about(k, axes, detail::sides_along(axes, scaled)[k], scaled);
+      if (!rotated) continue;
+      const double reached = detail::half_surface(detail::sides_along(*rotated, scaled));
+      if (reached < surface) axes = *rotated, surface = reached;
     }
   }
   const Vec3<double> sides = detail::sides_along(axes, scaled);

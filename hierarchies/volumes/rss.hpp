@@ -107,8 +107,8 @@ Rss<S> merge(const Rss<S>& a, const Rss<S>& b) {
                                     double(rss.half[0]) + double(rss.half[1]));
   }
   Rss<S> both = Rss<S>::enclosing(corners);
-  const double wider = std::max(a.radius, b.radius);
-  both.radius = rounded_up<S>((both.radius + wider) * (1 + 4 * u) + 16 * u * largest);
+  const double larger_radius = std::max(a.radius, b.radius);
+  both.radius = rounded_up<S>((both.radius + larger_radius) * (1 + 4 * u) + 16 * u * largest);
   return both;
 }
 

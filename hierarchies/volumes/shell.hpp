@@ -73,12 +73,12 @@ struct Shell {
       best = shell, least = other;
       return true;
     };
-    const Ball ball = enclosing_sphere(points);
-    auto centres = shell_centres(ball, points);
+    const EnclosingSphere sphere = enclosing_sphere(points);
+    auto centres = shell_centres(sphere, points);
     centres.push_back(at);
     for (const auto& centre : centres)
       if (better(centre)) at = centre;
-    improve_centre(at, ball, better);
+    improve_centre(at, sphere, better);
     return best;
   }
 
@@ -95,14 +95,14 @@ struct Shell {
   /// about `shell_centres` with their axes towards it.
   template <class Inner>
   static Shell thinnest(std::span<const Vec3<double>> points, const Inner& inner) {
-    const Ball ball = enclosing_sphere(points);
-    const auto towards_ball = [&](const Vec3<double>& near) {
+    const EnclosingSphere sphere = enclosing_sphere(points);
+    const auto towards_centre = [&](const Vec3<double>& near) {
       const Vec3<S> centre = rounded<S>(near);
-      return about(centre, ball.centre - centre.template cast<double>(), points, inner);
+      return about(centre, sphere.centre - centre.template cast<double>(), points, inner);
     };
-    Shell best = towards_ball(ball.centre);
-    for (const auto& centre : shell_centres(ball, points)) {
-      const Shell shell = towards_ball(centre);
+    Shell best = towards_centre(sphere.centre);
+    for (const auto& centre : shell_centres(sphere, points)) {
+      const Shell shell = towards_centre(centre);
       if (volume(shell) < volume(best)) best = shell;
     }
     return best;

@@ -11,8 +11,8 @@
 #include "hierarchies/fitting.hpp"
 #include "hierarchies/geometry/enclosing_sphere.hpp"
 #include "hierarchies/geometry/large_vector.hpp"
+#include "hierarchies/geometry/small_matrices.hpp"
 #include "hierarchies/geometry/threads.hpp"
-#include "hierarchies/geometry/written_out.hpp"
 #include "hierarchies/wide/collapse.hpp"
 
 namespace bvlab {

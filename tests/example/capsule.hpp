@@ -41,10 +41,10 @@ struct Capsule {
     capsule.centre = rounded<S>(points[0] + (low + high) / 2 * along);
     capsule.axis = rounded<S>(along);
     // Not the whole length: the ends are round.
-    Vec3<double> middle = points[0] + (low + high) / 2 * along;
+    Vec3<double> centre = points[0] + (low + high) / 2 * along;
     double across = 0;
     for (const auto& p : points) {
-      const Vec3<double> x = p - middle;
+      const Vec3<double> x = p - centre;
       across = std::max(across, (x - along.dot(x) * along).norm());
     }
     capsule.half = rounded_up<S>(std::max(0.0, (high - low) / 2 - across / 2));
@@ -85,8 +85,8 @@ Capsule<S> merge(const Capsule<S>& a, const Capsule<S>& b) {
                                     double(capsule.half));
   }
   Capsule<S> both = Capsule<S>::enclosing(ends);
-  const double wider = std::max(a.radius, b.radius);
-  both.radius = rounded_up<S>((both.radius + wider) * (1 + 4 * u) + 16 * u * largest);
+  const double larger_radius = std::max(a.radius, b.radius);
+  both.radius = rounded_up<S>((both.radius + larger_radius) * (1 + 4 * u) + 16 * u * largest);
   return both;
 }
 

@@ -29,15 +29,17 @@ class PatientFront : public Front {
     for (std::size_t slot = 0; slot < size(); ++slot)
       if (!(rests_until_[slot] > displacement_ + traversal.query().limit())) due.push_back(slot);
     rested_ += size() - due.size();
-    return traversal.look_at(due.size(), [&](std::size_t i) { return due[i]; });
+    return traversal.test_entries(due.size(), [&](std::size_t i) { return due[i]; });
   }
 
-  void keep(std::size_t slot, Seen seen, double gap) { rests_until_[slot] = until(seen, gap); }
+  void keep(std::size_t slot, EntryState state, double gap) {
+    rests_until_[slot] = until(state, gap);
+  }
 
-  std::size_t add(const NodePair& pair, Seen seen, double gap) {
+  std::size_t add(const NodePair& pair, EntryState state, double gap) {
     const std::size_t slot = Front::add(pair);
     rests_until_.resize(size());
-    keep(slot, seen, gap);
+    keep(slot, state, gap);
     return slot;
   }
 
@@ -56,8 +58,8 @@ class PatientFront : public Front {
   static constexpr double never = -std::numeric_limits<double>::infinity();
 
   /// Rounded here and where displacements are added up.
-  double until(Seen seen, double gap) const {
-    if (seen != Seen::culled) return never;
+  double until(EntryState state, double gap) const {
+    if (state != EntryState::culled) return never;
     return (displacement_ + gap) * (1 - 8 * unit_roundoff<double>);
   }
 

@@ -159,7 +159,7 @@ TEST(LargeLeavesWithinABudget, HoldNoMore) {
     bodies.b.move(Pose{Mat3<double>::Identity(), {x, 0, 0}}, Vec3<double>::Zero());
     most_at_once = tested = 0;
     const auto answer = budgeted(bodies.a, sizes, bodies.b, sizes, 1000, counted_test, counter);
-    EXPECT_EQ(answer.known, touches ? Known::touching : Known::apart) << x;
+    EXPECT_EQ(answer.verdict, touches ? BudgetVerdict::touching : BudgetVerdict::apart) << x;
     EXPECT_LE(most_at_once, 5000u);
     if (touches) {
       EXPECT_LT(tested, 45000u);

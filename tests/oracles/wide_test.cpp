@@ -206,8 +206,8 @@ TEST(Wide, FrontsPromiseNoMoreThanThereIs) {
     const float gap = next_down(static_cast<float>(apart));
     WideFront front;
     front.add({{}, 0, 0, 0});
-    front.is_apart(front.add({{}, 0, 0, 0}), gap, reference_sphere_of(around, side, between()),
-                   turn());
+    front.set_gap(front.add({{}, 0, 0, 0}), gap, reference_sphere_of(around, side, between()),
+                  turn());
     const double speed = std::exp2(-4 + 4 * number(random));
     for (int frame = 0; frame < 6; ++frame) {
       const Vec3<double> nearest = ball[0].to(ball[1]);
@@ -225,12 +225,12 @@ TEST(Wide, FrontsPromiseNoMoreThanThereIs) {
         body[k].place(pose[k]), ball[k].place(pose[k]);
         body[k].rotation_bound();
       }
-      const auto left = front.left(0, between()[0], turn());
-      EXPECT_FALSE(left[0] > 0);  // never measured
+      const auto remaining = front.remaining_gaps(0, between()[0], turn());
+      EXPECT_FALSE(remaining[0] > 0);  // never measured
       const double distance = stable_norm(ball[0].to(ball[1]));
-      EXPECT_FALSE(static_cast<double>(left[1]) > distance)
-          << round << " frame " << frame << ": " << left[1] << " of " << distance;
-      asked += far == scale && scale > 1e-25 && distance > 0.9 * apart, useful += left[1] > 0;
+      EXPECT_FALSE(static_cast<double>(remaining[1]) > distance)
+          << round << " frame " << frame << ": " << remaining[1] << " of " << distance;
+      asked += far == scale && scale > 1e-25 && distance > 0.9 * apart, useful += remaining[1] > 0;
     }
   }
   EXPECT_GT(3 * useful, asked);

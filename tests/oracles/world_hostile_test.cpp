@@ -174,7 +174,7 @@ TEST(WorldThatComesAndGoes, TouchesWhereBruteForceDoes) {
 struct Found {
   std::vector<std::array<std::uint32_t, 5>> contacts;
   Counting counter;
-  std::size_t asked = 0;
+  std::size_t queried = 0;
 };
 
 /// Contacts of pairs that are not asked again are those they had.
@@ -193,7 +193,7 @@ Found contacts_of(World& world, const Script& script) {
         },
         [&](std::uint32_t slot, const ObjectPair& pair, const Contacts&) { pair_of[slot] = pair; },
         [&](std::uint32_t slot) { pair_of[slot].reset(), of_slot[slot].clear(); });
-    found.asked += world.asked();
+    found.queried += world.queried();
     for (std::size_t slot = 0; slot < of_slot.size(); ++slot)
       for (const auto& [a, b] : of_slot[slot])
         if (const auto& pair = pair_of[slot])
@@ -218,7 +218,7 @@ void expect_the_same_of_any_number_of_threads(const MakeWorld& make_world) {
     EXPECT_EQ(found.contacts, truth) << threads;
     EXPECT_GT(found.counter.n_v, 0u);
     if (!alone) alone = found;
-    EXPECT_EQ(found.asked, alone->asked);
+    EXPECT_EQ(found.queried, alone->queried);
     EXPECT_EQ(found.counter.n_u, alone->counter.n_u);
     EXPECT_EQ(found.counter.n_v, alone->counter.n_v);
     EXPECT_EQ(found.counter.n_p, alone->counter.n_p);

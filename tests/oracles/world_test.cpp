@@ -102,7 +102,7 @@ TEST(World, WhatStandsIsNotAskedAgain) {
   const auto world = make_world(scene.meshes, scene.trace.objects, {});
   const WorldRun run = play_frames(*world, scene.trace, Answers::counted);
   EXPECT_GT(run.near, 0u);
-  EXPECT_EQ(run.asked, 0u);
+  EXPECT_EQ(run.queried, 0u);
 }
 
 TEST(World, FarFromTheOriginAndWithoutBodies) {

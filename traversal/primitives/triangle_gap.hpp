@@ -21,8 +21,8 @@ namespace filter {
 /// The gap between the projections on n, in units of length; 0 where n gives no bound.
 /// `from_first`: the differences of the six corners to a's first.
 template <Batched S>
-[[gnu::always_inline]] inline S beyond(const Vector<S>& n,
-                                       const std::array<Vector<S>, 6>& from_first) {
+[[gnu::always_inline]] inline S gap_along(const Vector<S>& n,
+                                          const std::array<Vector<S>, 6>& from_first) {
   using T = Element<S>;
   S low[2], high[2];
   for (std::size_t side = 0; side < 2; ++side)
@@ -60,8 +60,8 @@ template <Batched S>
   }
   const Vector<S> normal_a = cross<S>(from_first[1], from_first[2]);
   const Vector<S> normal_b = cross<S>(b[1] - b[0], b[2] - b[0]);
-  const S apart = max(max(beyond<S>(normal_a, from_first), beyond<S>(normal_b, from_first)),
-                      beyond<S>(between, from_first));
+  const S apart = max(max(gap_along<S>(normal_a, from_first), gap_along<S>(normal_b, from_first)),
+                      gap_along<S>(between, from_first));
   const S gap = apart * S(1 - 8 * u) - (S(10 * u) * longest + S(8) * off + S(T(0x1p-90)));
   // Written so that NaN gives 0.
   return pick<S>(gap > S(0), gap, S(0));

@@ -54,7 +54,7 @@ class Distance {
       const std::size_t count = std::min(at_once, pending.size() - first);
       std::array<double, at_once> lower{};
       if (limit_ < std::numeric_limits<double>::infinity()) lower = bounds(&pending[first], count);
-      look_at(pending, first, std::span(lower).first(count), outcome);
+      measure(pending, first, std::span(lower).first(count), outcome);
     }
     return outcome;
   }
@@ -72,7 +72,7 @@ class Distance {
                    }
                    std::array<double, verdicts_at_once> lower{};
                    for (std::size_t i = 0; i < count; ++i) lower[i] = verdicts[first + i].margin;
-                   look_at(pending, first, std::span(lower).first(count), outcome);
+                   measure(pending, first, std::span(lower).first(count), outcome);
                    return outcome.satisfied;
                  });
     return outcome;
@@ -98,7 +98,7 @@ class Distance {
 
   /// Measures candidates in the order of their lower bounds, until the least bound cannot improve
   /// the answer.
-  void look_at(std::span<const Candidate> pending, std::size_t first, std::span<double> lower,
+  void measure(std::span<const Candidate> pending, std::size_t first, std::span<double> lower,
                Outcome& outcome) {
     while (!outcome.satisfied) {
       const std::size_t i =

@@ -55,7 +55,7 @@ class Adaptive : public AdaptivePrices {
   void roots_are_apart() {
     answer_.forget();
     ++unseen_;
-    owed_ -= broad.run + broad.volumes;
+    cost_before_retry_ -= broad.run + broad.volumes;
     if (spheres_.batch_is_over()) in_batches_ = false;
   }
   template <class Pair>
@@ -88,8 +88,8 @@ class Adaptive : public AdaptivePrices {
   template <class Pair>
   void follow(const Pair& pair) {
     MovingBody &a = pair.a(), &b = pair.b();
-    constexpr std::uint32_t cycle = 16, looks = 4;  // in moves of both bodies, which begin at 2
-    if (!watched_ && (a.epoch() + b.epoch() - 2) % cycle >= looks && leaf_ > 0) {
+    constexpr std::uint32_t cycle = 16, measured = 4;  // in moves of both bodies, which begin at 2
+    if (!watched_ && (a.epoch() + b.epoch() - 2) % cycle >= measured && leaf_ > 0) {
       ++unseen_;
       return;
     }
@@ -108,15 +108,15 @@ class Adaptive : public AdaptivePrices {
   }
   bool jumped() const { return step_ > jump * leaf_; }
 
-  bool is_due() const { return owed_ <= 0 || step_ < failed_at_ / 2; }
+  bool is_due() const { return cost_before_retry_ <= 0 || step_ < failed_at_ / 2; }
   bool list_is_due() const { return is_due() && !jumped(); }
-  void failed(double lost) { owed_ = patience * lost, failed_at_ = step_; }
+  void failed(double lost) { cost_before_retry_ = patience * lost, failed_at_ = step_; }
 
   template <class Pair>
   void run_roots(const Pair& pair, Start start) {
     const TraversalStatistics statistics = pair.template from_roots<NoFrontBoth>(start);
     answer_.remember(pair, statistics);
-    owed_ -= price(statistics, broad);
+    cost_before_retry_ -= price(statistics, broad);
   }
 
   template <class Pair>
@@ -124,15 +124,15 @@ class Adaptive : public AdaptivePrices {
     if (use_ == Use::roots) {
       use_ = Use::list;
       in_batches_ = false;
-      worn_out_ = true;
-      balance_ = spent_ = runs_ = owed_ = failed_at_ = 0;
+      rebuild_due_ = true;
+      balance_ = spent_ = runs_ = cost_before_retry_ = failed_at_ = 0;
     } else if (everything_) {
       if (margins_are_due()) return try_margins(pair);
     } else if (witness_lasts(pair)) {
       return;
     }
     if (watched_) forget_margins();
-    const bool rebuild = worn_out_;
+    const bool rebuild = rebuild_due_;
     if (rebuild) list_.restart();
     const TraversalStatistics statistics = pair.from_front(list_);
     answer_.remember(pair, statistics);
@@ -143,7 +143,7 @@ class Adaptive : public AdaptivePrices {
                 : statistics.everything ? price({true, list_.size(), statistics.triangles}, plain)
                                         : price({false, 1, 1}, plain);
     account_list(price(statistics, plain), rebuild);
-    worn_out_ = worn_out_ || list_.size() > longest_list(pair);
+    rebuild_due_ = rebuild_due_ || list_.size() > longest_list(pair);
   }
 
   /// Whether the witness still hits: by a margin of its own, unless the bodies are fast.
@@ -152,7 +152,7 @@ class Adaptive : public AdaptivePrices {
     if constexpr (YesOrNo<typename Pair::Query>) {
       TraversalStatistics statistics;
       if (watched_) {
-        statistics = margins_.look_as_it_is(pair);
+        statistics = margins_.test_without_rebuild(pair);
       } else {
         watched_ = true;
         margins_.start_from(list_, 1, pair.a(), pair.b(), step_);
@@ -184,11 +184,11 @@ class Adaptive : public AdaptivePrices {
     }
     spend(cost);
     swept_ += everything_;
-    worn_out_ = runs_ > 1 && (cost * runs_ > spent_ || swept_ >= patience);
+    rebuild_due_ = runs_ > 1 && (cost * runs_ > spent_ || swept_ >= patience);
   }
 
   void spend(double cost) {
-    owed_ -= cost;
+    cost_before_retry_ -= cost;
     spent_ += cost;
     ++runs_;
   }
@@ -197,14 +197,14 @@ class Adaptive : public AdaptivePrices {
   void part() {
     use_ = Use::roots;
     forget_margins();
-    spheres_.look_now();
+    spheres_.test_now();
   }
 
   void fail_list() {
     list_.clear();
     forget_margins();
     use_ = Use::roots;
-    spheres_.look_now();
+    spheres_.test_now();
     answer_.forget();
     failed(recursions_to_lose * rebuild_);
   }
@@ -230,9 +230,9 @@ class Adaptive : public AdaptivePrices {
     }
     use_ = Use::margins;
     watched_ = true;
-    entry_ = (next_run_ - plain.run) / static_cast<double>(list_.size());
+    list_cost_per_entry_ = (next_run_ - plain.run) / static_cast<double>(list_.size());
     balance_ = 0;
-    may_lose_ = cost;
+    loss_limit_ = cost;
     list_.clear();
   }
 
@@ -242,33 +242,33 @@ class Adaptive : public AdaptivePrices {
     follow(pair);
     if (use_ != Use::margins) return run(pair);
     const std::uint32_t rebuilds = margins_.rebuilds();
-    const TraversalStatistics statistics = margins_.look(pair);
+    const TraversalStatistics statistics = margins_.test_due(pair);
     const double cost = price(statistics, careful);
     const auto entries = static_cast<double>(margins_.front_size());
     // The cost of a return to margins is the most that they may lose, or hold as credit.
     if (margins_.rebuilds() != rebuilds) {
       if (statistics.everything)
-        entry_ = (price(statistics, plain) - plain.run) / (2 * entries - 1);
-      may_lose_ = cost;
+        list_cost_per_entry_ = (price(statistics, plain) - plain.run) / (2 * entries - 1);
+      loss_limit_ = cost;
     }
     if (statistics.volumes + statistics.triangles > 0) {
-      next_run_ =
-          statistics.everything ? plain.run + entry_ * entries : price({false, 1, 1}, plain);
-      may_lose_ = std::max(may_lose_, cost);
+      next_run_ = statistics.everything ? plain.run + list_cost_per_entry_ * entries
+                                        : price({false, 1, 1}, plain);
+      loss_limit_ = std::max(loss_limit_, cost);
     }
     balance_ =
-        std::max(balance_ + cost + quiet * careful.run - (1 + quiet) * next_run_, -may_lose_);
-    if (balance_ > looks_to_lose * may_lose_) give_back();
+        std::max(balance_ + cost + quiet * careful.run - (1 + quiet) * next_run_, -loss_limit_);
+    if (balance_ > tests_to_lose * loss_limit_) give_back();
   }
 
   /// Continues with a list of the margins' entries, as if it had just been rebuilt.
   void give_back() {
     list_.restart_from(margins_.front());
     forget_margins();
-    failed(2 * may_lose_);
+    failed(2 * loss_limit_);
     use_ = Use::list;
     answer_.forget();
-    worn_out_ = false, everything_ = true;
+    rebuild_due_ = false, everything_ = true;
     spent_ = 2 * next_run_, runs_ = 1;
     swept_ = 0, balance_ = 0;
   }
@@ -277,19 +277,19 @@ class Adaptive : public AdaptivePrices {
   Use use_ = Use::roots;
   bool in_batches_ = false;
   bool watched_ = false;                // there are margins, of all entries or of the witness
-  bool worn_out_ = false;               // the list is due for a rebuild
+  bool rebuild_due_ = false;            // the list is due for a rebuild
   bool everything_ = true;              // the list's last run was complete
   int unseen_ = 0;                      // runs since the bodies were followed
   int swept_ = 0;                       // complete runs of the list since its rebuild
-  double owed_ = 0, failed_at_ = 0;     // to spend before the next trial; step at failure
+  double cost_before_retry_ = 0, failed_at_ = 0;  // to spend before the next trial; step at failure
   double displacement_ = 0, step_ = 0;  // bound of both bodies; motion in the last run
   SphereTest spheres_;
   double leaf_ = 0;                             // size of a leaf, mean of both bodies
   double rebuild_ = 0;                          // cost of the list's last rebuild
   double balance_ = 0;                          // cost of this way minus that of the other
   double spent_ = 0, runs_ = 0, next_run_ = 0;  // of the list, since its rebuild; next cost
-  double entry_ = 0;                            // a list's cost per entry of the margins
-  double may_lose_ = 0;                         // the most that margins may lose, or hold as credit
+  double list_cost_per_entry_ = 0;              // a list's cost per entry of the margins
+  double loss_limit_ = 0;                       // the most that margins may lose, or hold as credit
   LastAnswer answer_;
   Front list_;
   Margins margins_;

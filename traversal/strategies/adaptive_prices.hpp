@@ -13,12 +13,12 @@ namespace bvlab {
 class AdaptivePrices {
  public:
   /// Prices in nanoseconds: of a run, of a volume test (with its posing) and of a triangle test,
-  /// from least squares over replays of all volumes; of a first look with margins and of a first
+  /// from least squares over replays of all volumes; of a first test with margins and of a first
   /// batch of triangles, from single pairs of bodies. Spheres cost two thirds of this, rectangle
   /// swept spheres half as much again, in each of the three ways. Only the ratios between the ways
   /// matter here.
   struct Prices {
-    double run, volumes, triangles, look, batch;
+    double run, volumes, triangles, first_test, batch;
   };
   static constexpr Prices broad{25, 14, 20, 0, 0}, plain{25, 18, 30, 0, 120},
       careful{25, 28, 120, 75, 0};
@@ -42,7 +42,7 @@ class AdaptivePrices {
   static constexpr double recursions_to_lose = 3;
   /// In tests of all entries of a front with margins: that of a rebuild, which is no loss if it
   /// lasts, and one more. Chosen, too.
-  static constexpr double looks_to_lose = 2;
+  static constexpr double tests_to_lose = 2;
   /// A failed trial, and the rebuild of a list that remains long because bodies part, may cost at
   /// most one part in this many.
   static constexpr double patience = 32;
@@ -55,7 +55,7 @@ class AdaptivePrices {
   static double price(const TraversalStatistics& statistics, const Prices& prices) {
     return prices.run + prices.volumes * static_cast<double>(statistics.volumes) +
            prices.triangles * static_cast<double>(statistics.triangles) +
-           (statistics.volumes + statistics.triangles > 0 ? prices.look : 0) +
+           (statistics.volumes + statistics.triangles > 0 ? prices.first_test : 0) +
            (statistics.triangles > 0 ? prices.batch : 0);
   }
 };

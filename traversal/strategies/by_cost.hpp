@@ -23,7 +23,7 @@ class ByCost {
 
   template <class Pair>
   TraversalStatistics run(const Pair& pair) {
-    if (front_.empty() || worn_out_ || front_.size() > longest_list(pair)) {
+    if (front_.empty() || rebuild_due_ || front_.size() > longest_list(pair)) {
       front_.restart();
       cost_ = runs_ = 0;
     }
@@ -31,7 +31,7 @@ class ByCost {
     const auto tests = static_cast<double>(statistics.volumes);
     cost_ += tests;
     runs_ += 1;
-    worn_out_ = tests * runs_ > cost_;
+    rebuild_due_ = tests * runs_ > cost_;
     return statistics;
   }
 
@@ -44,7 +44,7 @@ class ByCost {
  private:
   Front front_;
   double cost_ = 0, runs_ = 0;  // since the last rebuild, including it
-  bool worn_out_ = false;
+  bool rebuild_due_ = false;
 };
 
 }  // namespace bvlab

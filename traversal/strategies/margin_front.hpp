@@ -152,9 +152,9 @@ class MarginFront {
   std::uint32_t witness() const { return witness_; }
 
   /// Sets whether the witness's margin is expected to be used up soon. If so, its next tests, up to
-  /// `most_brief_looks`, only find whether it still hits, and measure no margin.
-  void expect(bool soon) { brief_looks_ = soon ? most_brief_looks : 0; }
-  bool take_brief_look() { return brief_looks_ > 0 && brief_looks_-- > 0; }
+  /// `most_brief_tests`, only find whether it still hits, and measure no margin.
+  void expect(bool soon) { brief_tests_ = soon ? most_brief_tests : 0; }
+  bool take_brief_test() { return brief_tests_ > 0 && brief_tests_-- > 0; }
 
   std::vector<KnownHit>& hits() { return hits_; }
   const std::vector<KnownHit>& hits() const { return hits_; }
@@ -168,8 +168,8 @@ class MarginFront {
   std::vector<KnownHit> hits_;
   float earliest_ = passed;
   std::uint32_t witness_ = nowhere;
-  static constexpr int most_brief_looks = 32;
-  int brief_looks_ = 0;
+  static constexpr int most_brief_tests = 32;
+  int brief_tests_ = 0;
   std::vector<std::uint32_t> holes_;  // empty between runs
 };
 

@@ -37,23 +37,24 @@ class MarginSweep : public FrontDefaults {
     const std::uint32_t witness = front_.witness();
     const bool first =
         front_.witnessed() && (wants_bound<Query>() || !(front_.deadline(witness) > now));
-    if (first && look_at_witness(traversal, witness)) return true;
+    if (first && test_witness(traversal, witness)) return true;
     auto& due = traversal.workspace().template scratch<std::vector<std::uint32_t>>();
     front_.collect(now + traversal.query().limit(), due);
     // The witness has a new deadline; if that has passed already, the front must still report it as
     // due.
     const bool still_due = first && std::erase(due, witness) > 0;
-    const bool satisfied = traversal.look_at(due.size(), [&](std::size_t i) { return due[i]; });
+    const bool satisfied =
+        traversal.test_entries(due.size(), [&](std::size_t i) { return due[i]; });
     if (still_due) front_.leave_rest();
     return satisfied;
   }
 
-  void keep(std::size_t slot, Seen seen, double gap) {
-    front_.expire_at(slot, deadline_of(seen, gap));
+  void keep(std::size_t slot, EntryState state, double gap) {
+    front_.expire_at(slot, deadline_of(state, gap));
   }
   void open(std::size_t slot) { front_.open(slot); }
-  std::size_t add(const NodePair& pair, Seen seen, double gap) {
-    return front_.add(pair, deadline_of(seen, gap));
+  std::size_t add(const NodePair& pair, EntryState state, double gap) {
+    return front_.add(pair, deadline_of(state, gap));
   }
 
   void finish(std::size_t witness, bool satisfied) {
@@ -107,16 +108,17 @@ class MarginSweep : public FrontDefaults {
   static constexpr double lasting = 8;     // runs for which measuring a witness's margin pays
   static constexpr std::size_t few = 512;  // pairs of triangles that are quickly tested
 
-  double deadline_of(Seen seen, double gap) const {
-    if (seen == Seen::culled) return clock_.deadline(gap);
-    return seen == Seen::near ? std::numeric_limits<double>::infinity() : MarginFront::passed;
+  double deadline_of(EntryState state, double gap) const {
+    if (state == EntryState::culled) return clock_.deadline(gap);
+    return state == EntryState::near ? std::numeric_limits<double>::infinity()
+                                     : MarginFront::passed;
   }
 
   template <class Traversal>
-  bool look_at_witness(Traversal& traversal, std::uint32_t witness) {
+  bool test_witness(Traversal& traversal, std::uint32_t witness) {
     const NodePair pair = front_[witness];
-    if (front_.take_brief_look() && hits_still(traversal, pair, witness)) return true;
-    keep(witness, Seen::near, 0);
+    if (front_.take_brief_test() && hits_still(traversal, pair, witness)) return true;
+    keep(witness, EntryState::near, 0);
     traversal.hold(pair, witness);
     return traversal.flush();
   }

@@ -39,7 +39,7 @@ class Margins {
   template <class Pair>
   TraversalStatistics run(const Pair& pair) {
     if (quiet(pair)) return {};
-    return look(pair);
+    return test_due(pair);
   }
 
   /// The first half of a run: returns whether nothing is due. If so, the run is over.
@@ -49,11 +49,11 @@ class Margins {
   }
   /// The second half of a run: tests the due entries.
   template <class Pair>
-  TraversalStatistics look(const Pair& pair) {
+  TraversalStatistics test_due(const Pair& pair) {
     MovingBody &a = pair.a(), &b = pair.b();
     auto& query = pair.query();
     using Query = typename Pair::Query;
-    if (front_.empty() || worn_out_) rebuild(a, b);
+    if (front_.empty() || rebuild_due_) rebuild(a, b);
     // Verdicts found by one query do not serve another: one may stop at the first hit of an
     // entry.
     if (last_query_ != &Query::name) front_.expire();
@@ -91,9 +91,9 @@ class Margins {
   /// The second half without a rebuild. The front may be incomplete: where no hit is found, the
   /// query is not answered yet.
   template <class Pair>
-  TraversalStatistics look_as_it_is(const Pair& pair) {
-    worn_out_ = false;
-    return look(pair);
+  TraversalStatistics test_without_rebuild(const Pair& pair) {
+    rebuild_due_ = false;
+    return test_due(pair);
   }
 
   /// The share of the last run's entries that is due in a run, if each run brings the bodies nearer
@@ -191,7 +191,7 @@ class Margins {
     shown_ = clock_.now();
     upkeep_ = cost_ = 0;
     runs_ = 0;
-    worn_out_ = false;
+    rebuild_due_ = false;
     ++rebuilds_;
   }
 
@@ -201,7 +201,7 @@ class Margins {
     cost_ += cost;
     if (++runs_ == 1) return;
     upkeep_ = 0.75 * upkeep_ + 0.25 * cost;
-    worn_out_ = upkeep_ * runs_ > cost_;
+    rebuild_due_ = upkeep_ * runs_ > cost_;
   }
 
   template <class Query>
@@ -223,7 +223,7 @@ class Margins {
   double distance_ = 0;
   double upkeep_ = 0, cost_ = 0, runs_ = 0;  // smoothed cost of a run; totals since the rebuild
   std::uint32_t rebuilds_ = 0;
-  bool worn_out_ = false;
+  bool rebuild_due_ = false;
   const std::string_view* last_query_ = nullptr;  // the query of the last run
 };
 

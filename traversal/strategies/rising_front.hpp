@@ -125,7 +125,7 @@ class RisingFront : public Front {
     Front::open(slot);
   }
 
-  std::size_t add(const NodePair& pair, Seen = Seen::not_yet, double = 0) {
+  std::size_t add(const NodePair& pair, EntryState = EntryState::not_yet, double = 0) {
     const std::size_t slot = Front::add(pair);
     failures_.resize(size());
     failures_[slot] = 0;
@@ -149,9 +149,10 @@ class RisingFront : public Front {
   /// entries. What was raised has been tested.
   template <class Traversal>
   bool sweep(Traversal& traversal) {
-    if (witnessed() && traversal.look_at_alone(0)) return true;
+    if (witnessed() && traversal.test_entry(0)) return true;
     const std::size_t raised = rise(traversal), first = witnessed();
-    return traversal.look_at(size() - raised - first, [first](std::size_t i) { return first + i; });
+    return traversal.test_entries(size() - raised - first,
+                                  [first](std::size_t i) { return first + i; });
   }
 
   /// Proposes the siblings that are due. Called once in each run whose witness did not decide the

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "hierarchies/geometry/written_out.hpp"
+#include "hierarchies/geometry/small_matrices.hpp"
 #include "hierarchies/hierarchy_extent.hpp"
 
 namespace bvlab {
@@ -32,7 +32,7 @@ class SphereTest {
 
   /// Counts a run in which the roots were tested instead; returns whether the pause is over.
   bool batch_is_over() { return --until_test_ <= 0; }
-  void look_now() { until_test_ = 0; }
+  void test_now() { until_test_ = 0; }
 
  private:
   static constexpr int rest = 8;            // runs

@@ -41,12 +41,12 @@ class PairSieve {
   /// Decides the pairs for which `decides(pair)` is true, one at a time.
   template <class Decides>
   void sift(Decides&& decides) {
-    sift_slowly([&](std::size_t p) { put(static_cast<std::int32_t>(p), !decides(p)); });
+    sift_deferred([&](std::size_t p) { put(static_cast<std::int32_t>(p), !decides(p)); });
   }
   /// Calls `take(pair)` for each undecided pair. `take` may delay pairs before it calls `put` for
   /// them, in any order; they are written behind the pair that is read.
   template <class Take>
-  void sift_slowly(Take&& take) {
+  void sift_deferred(Take&& take) {
     const std::size_t count = std::exchange(undecided_count_, 0);
     for (std::size_t k = 0; k < count; ++k) take(at(k));
   }

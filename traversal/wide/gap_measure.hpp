@@ -30,7 +30,7 @@ class GapMeasure {
     front_ = front, rotation_ = rotation;
     sweeps_ = front && front->is_complete(), swept_ = false, due_ = 0;
     if (front && !sweeps_) front->clear();
-    least_ = S(infinity), least_left_ = WideFront::S(infinity);
+    least_ = S(infinity), least_remaining_ = WideFront::S(infinity);
     touched_.reset(), crossing_.reset();
   }
 
@@ -45,10 +45,10 @@ class GapMeasure {
   /// closed their gaps.
   [[gnu::always_inline]] std::uint64_t due(std::size_t first, std::size_t entries,
                                            const CornerTransform& corners) {
-    const WideFront::S left = front_->left(first, corners, rotation_);
+    const WideFront::S remaining = front_->remaining_gaps(first, corners, rotation_);
     const std::size_t lanes = std::min<std::size_t>(entries, WideFront::width);
-    const auto apart = left > WideFront::S(0.0f);
-    stdx::where(apart, least_left_) = stdx::min(least_left_, left);
+    const auto apart = remaining > WideFront::S(0.0f);
+    stdx::where(apart, least_remaining_) = stdx::min(least_remaining_, remaining);
     const std::uint64_t due = ~bits(apart) & ((std::uint64_t{1} << lanes) - 1);
     due_ += static_cast<std::size_t>(std::popcount(due));
     return due;
@@ -61,12 +61,12 @@ class GapMeasure {
     stdx::where(apart, least) = stdx::min(least, separation);
     return bits(apart);
   }
-  /// Records a step: the lanes left, and the gap `least` of the others, measured at `sphere_of()`.
-  /// Returns the lanes left that were not opened before.
+  /// Records a step: the lanes that are not apart, and the gap `least` of the others, measured at
+  /// `sphere_of()`. Returns those lanes that were not opened before.
   template <class SphereOf>
-  [[gnu::always_inline]] std::uint64_t left(const NodePair& pair, std::uint64_t lanes,
-                                            std::size_t entry, const S& least,
-                                            SphereOf&& sphere_of) {
+  [[gnu::always_inline]] std::uint64_t record_step(const NodePair& pair, std::uint64_t lanes,
+                                                   std::size_t entry, const S& least,
+                                                   SphereOf&& sphere_of) {
     least_ = stdx::min(least_, least);
     if (!front_) return lanes;
     std::uint64_t fresh = lanes;
@@ -77,7 +77,7 @@ class GapMeasure {
       fresh = lanes & ~std::uint64_t{opened};
       opened = static_cast<std::uint16_t>(opened | fresh);
     }
-    front_->is_apart(entry, stdx::hmin(least), sphere_of(), rotation_);
+    front_->set_gap(entry, stdx::hmin(least), sphere_of(), rotation_);
     return fresh;
   }
   /// Records a test of triangles; `touching`: some may touch. Returns whether to measure their gap.
@@ -96,9 +96,9 @@ class GapMeasure {
   }
   void crossing(const Crossing& found) { crossing_ = found; }
   const std::optional<Crossing>& crossing() const { return crossing_; }
-  void triangles_are(float gap, std::size_t entry, const ReferenceSphere& reference) {
+  void set_triangle_gap(float gap, std::size_t entry, const ReferenceSphere& reference) {
     least_ = stdx::min(least_, S(gap));
-    front_->is_apart(entry, gap, reference, rotation_);
+    front_->set_gap(entry, gap, reference, rotation_);
     if (!(gap > 0)) (*front_)[entry].rest = 8;
   }
 
@@ -107,7 +107,7 @@ class GapMeasure {
   /// A lower bound on the distance of the bodies; 0 where none is known. It covers the rounding of
   /// separations (see slab_box_sibling_test.hpp, gaps).
   double gap() const {
-    const double least = std::min(stdx::hmin(least_), stdx::hmin(least_left_));
+    const double least = std::min(stdx::hmin(least_), stdx::hmin(least_remaining_));
     return least > 0 ? least * (1 - 32 * unit_roundoff<float>) : 0;
   }
 
@@ -115,7 +115,7 @@ class GapMeasure {
   static constexpr float infinity = std::numeric_limits<float>::infinity();
 
   S least_;
-  WideFront::S least_left_;
+  WideFront::S least_remaining_;
   std::optional<NodePair> touched_;
   std::optional<Crossing> crossing_;
   WideFront* front_ = nullptr;

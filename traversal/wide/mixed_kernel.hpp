@@ -109,9 +109,10 @@ struct MixedKernel {
         return SiblingTest::template gaps<S>(posed(part), pair_frame.frame_change_[1],
                                              others(part));
       }
-      [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles, std::uint64_t left,
-                                       const std::array<S, parts>& order, Next next) const {
-        push_nodes(nodes, triangles, left, each_of_four(row_a.name.data()),
+      [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles,
+                                       std::uint64_t remaining, const std::array<S, parts>& order,
+                                       NextPair next) const {
+        push_nodes(nodes, triangles, remaining, each_of_four(row_a.name.data()),
                    four_repeated(row_b.name.data()), order, next);
       }
       ReferenceSphere reference_sphere() const { return pair_frame.reference_sphere(node); }
@@ -144,10 +145,12 @@ struct MixedKernel {
       [[gnu::always_inline]] S gaps(std::size_t part) const {
         return SiblingTest::template gaps<S>(posed, pair_frame.frame_change_[side], others(part));
       }
-      [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles, std::uint64_t left,
-                                       const std::array<S, parts>& order, Next next) const {
+      [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles,
+                                       std::uint64_t remaining, const std::array<S, parts>& order,
+                                       NextPair next) const {
         const NodesOfLanes many = of_sixteen(block.name.data()), same = NodesOfLanes{} + name;
-        push_nodes(nodes, triangles, left, side ? same : many, side ? many : same, order, next);
+        push_nodes(nodes, triangles, remaining, side ? same : many, side ? many : same, order,
+                   next);
       }
       ReferenceSphere reference_sphere() const {
         return reference_sphere_of(pair_frame.trees_[1 - side]->node_sphere(single), 1 - side,
@@ -155,15 +158,15 @@ struct MixedKernel {
       }
     };
 
-    template <class Counter, class Look>
-    [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Look&& look) const {
+    template <class Counter, class Test>
+    [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Test&& test) const {
       const std::uint32_t i = Tree::number_of(pair.a), j = Tree::number_of(pair.b);
       const Node &a = trees_[0]->node(i), &b = trees_[1]->node(j);
       const bool inner = !((pair.a | pair.b) & Tree::leaf_flag);
       const bool leaves = pair.a & pair.b & Tree::leaf_flag;  // both roots are leaves
       if ((inner && a.size <= alike * b.size && b.size <= alike * a.size) || leaves) {
         counter.posed(static_cast<std::uint64_t>(std::popcount(a.children)));
-        look(FourByFour{*this,
+        test(FourByFour{*this,
                         leaves ? trees_[0]->root_alone() : trees_[0]->row(a.first),
                         leaves ? trees_[1]->root_alone() : trees_[1]->row(b.first),
                         {i, j},
@@ -172,10 +175,10 @@ struct MixedKernel {
       }
       counter.posed(1);
       if (!a.leaf && (b.leaf || a.size > b.size))
-        look(OneBySixteen{*this, 0, trees_[0]->block(a.first), j, pair.b, a.grandchildren,
+        test(OneBySixteen{*this, 0, trees_[0]->block(a.first), j, pair.b, a.grandchildren,
                           SiblingTest::posed_node(b.volume, b.size, frame_change_[0])});
       else
-        look(OneBySixteen{*this, 1, trees_[1]->block(b.first), i, pair.a, b.grandchildren,
+        test(OneBySixteen{*this, 1, trees_[1]->block(b.first), i, pair.a, b.grandchildren,
                           SiblingTest::posed_node(a.volume, a.size, frame_change_[1])});
     }
 
@@ -268,14 +271,15 @@ struct MixedKernel {
 
     /// Pairs of two leaves go to the queue of triangles.
     [[gnu::always_inline]] static void push_nodes(WorkQueue& nodes, WorkQueue& triangles,
-                                                  std::uint64_t left, const NodesOfLanes& a,
+                                                  std::uint64_t remaining, const NodesOfLanes& a,
                                                   const NodesOfLanes& b,
-                                                  const std::array<S, parts>& order, Next next) {
-      const std::uint64_t leaves = left & highest_bits(a & b);
-      if (next == Next::nearest_child)
-        nodes.push_sixteen_least_last(left & ~leaves, a, b, order);
+                                                  const std::array<S, parts>& order,
+                                                  NextPair next) {
+      const std::uint64_t leaves = remaining & highest_bits(a & b);
+      if (next == NextPair::nearest_child)
+        nodes.push_sixteen_least_last(remaining & ~leaves, a, b, order);
       else
-        nodes.push_sixteen(left & ~leaves, a, b, order);
+        nodes.push_sixteen(remaining & ~leaves, a, b, order);
       if (leaves) triangles.push_sixteen(leaves, a, b, order);
     }
 

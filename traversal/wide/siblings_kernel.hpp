@@ -10,7 +10,7 @@
 ///     begin(a, b), a_to_b()
 ///     roots()                          the pair to start with
 ///     retry(touched, nodes, triangles) queues the pair that touched in the last frame first
-///     step(pair, counter, look)        calls look(step) with the volumes to test at once:
+///     step(pair, counter, test)        calls test(step) with the volumes to test at once:
 ///       lanes()                          the lanes in use, of `parts` registers S
 ///       overlap(part), separation(part), gaps(part)
 ///       push(nodes, triangles, lanes, order, next)
@@ -88,10 +88,11 @@ struct SiblingsKernel {
       [[gnu::always_inline]] S gaps(std::size_t) const {
         return pair_frame.frame_.gaps(side, node[side], posed);
       }
-      [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles, std::uint64_t left,
-                                       const std::array<S, 1>& order, Next) const {
+      [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles,
+                                       std::uint64_t remaining, const std::array<S, 1>& order,
+                                       NextPair) const {
         WorkQueue& to = leaves ? triangles : nodes;
-        to.template push_lanes<F>(static_cast<int>(side), left, many.first, node[1 - side],
+        to.template push_lanes<F>(static_cast<int>(side), remaining, many.first, node[1 - side],
                                   order[0]);
       }
       ReferenceSphere reference_sphere() const {
@@ -99,8 +100,8 @@ struct SiblingsKernel {
       }
     };
 
-    template <class Counter, class Look>
-    [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Look&& look) const {
+    template <class Counter, class Test>
+    [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Test&& test) const {
       const auto& a = hierarchies_[0]->node(pair.a);
       const auto& b = hierarchies_[1]->node(pair.b);
       const unsigned leaves = a.leaf & b.leaf;
@@ -108,7 +109,7 @@ struct SiblingsKernel {
           (a.leaf & ~b.leaf & 1u) | (((a.leaf | b.leaf) == 0) & (b.size > a.size));
       const std::array<const Node*, 2> nodes{&a, &b};
       const std::array<std::uint32_t, 2> node{pair.a, pair.b};
-      look(Step<Counter>{*this, counter, side, node, leaves != 0, *nodes[side],
+      test(Step<Counter>{*this, counter, side, node, leaves != 0, *nodes[side],
                          frame_.posed_node(1 - side, node[1 - side], counter)});
     }
 

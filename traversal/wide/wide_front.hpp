@@ -67,7 +67,7 @@ class WideFront {
   }
   /// Sets the gap of an entry, the sphere at which it was measured, and the rotation of both bodies
   /// since the first frame.
-  void is_apart(std::size_t i, float gap, const ReferenceSphere& reference, double rotation) {
+  void set_gap(std::size_t i, float gap, const ReferenceSphere& reference, double rotation) {
     Measured& to = measured_[i / width];
     const std::size_t lane = i % width;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -81,8 +81,8 @@ class WideFront {
 
   /// Lower bounds on what is left of the gaps of entries `first` and up, `first` a multiple of
   /// `width`; not positive where no gap is known.
-  [[gnu::always_inline]] S left(std::size_t first, const CornerTransform& a_to_b,
-                                double rotation) const {
+  [[gnu::always_inline]] S remaining_gaps(std::size_t first, const CornerTransform& a_to_b,
+                                          double rotation) const {
     using stdx::min, stdx::sqrt;
     constexpr float e = unit_roundoff<float>;
     const Measured& from = measured_[first / width];
@@ -116,16 +116,16 @@ class WideFront {
 class FrontPause {
  public:
   /// Counts one traversal.
-  bool over() { return left_ == 0 || (--left_, false); }
+  bool over() { return remaining_ == 0 || (--remaining_, false); }
   /// Called when a front was retested: one that wore out starts a pause, longer each time.
   void begin(bool worn) {
-    if (worn) left_ = next_;
+    if (worn) remaining_ = next_;
     next_ = worn ? std::min(4 * next_, longest) : shortest;
   }
 
  private:
   static constexpr int shortest = 16, longest = 256;
-  int left_ = 0, next_ = shortest;
+  int remaining_ = 0, next_ = shortest;
 };
 
 }  // namespace bvlab

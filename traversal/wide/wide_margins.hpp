@@ -61,7 +61,7 @@ class WideMargins {
   void forget(std::size_t p) {
     answers_[p] = {};
     Kept& kept = kept_[p];
-    kept.deadline = 0, kept.was_apart = kept.touched_again = false;
+    kept.deadline = 0, kept.was_apart = kept.touched_twice = false;
     kept.crossing.reset(), kept.rest = 0, kept.next_rest = 1;
     clear_front(p), kept.pause = {};
   }
@@ -119,14 +119,14 @@ class WideMargins {
   }
   /// Pairs with a front, or that touched twice in a row, are not tested by directions.
   bool skips_directions(std::size_t p) const {
-    return kept_[p].front.is_complete() || kept_[p].touched_again;
+    return kept_[p].front.is_complete() || kept_[p].touched_twice;
   }
   /// The bodies are `gap` apart at their present poses.
   void apart(std::size_t p, const ObjectPair& pair, double gap) {
     Kept& kept = kept_[p];
     answers_[p] = {unknown, epochs(pair), false};
     kept.crossing.reset(), clear_front(p);
-    kept.was_apart = true, kept.touched_again = false;
+    kept.was_apart = true, kept.touched_twice = false;
     extend_validity(p, pair, gap);
   }
 
@@ -171,7 +171,7 @@ class WideMargins {
     if constexpr (keeps_answer<Query>) answer.touching = query.touching();
     kept.deadline = 0;
     kept.crossing.reset();
-    kept.touched_again = answer.touching && !kept.was_apart;
+    kept.touched_twice = answer.touching && !kept.was_apart;
     kept.was_apart = !answer.touching;
     if (answer.touching) {
       kept.touched = *found.touched();
@@ -222,7 +222,7 @@ class WideMargins {
     FrontPause pause;
     std::optional<Crossing> crossing;
     int rest = 0, next_rest = 1;  // number of traversals whose crossing is not kept
-    bool was_apart = false, touched_again = false;
+    bool was_apart = false, touched_twice = false;
   };
 
   static constexpr double unknown = -1;
@@ -234,9 +234,9 @@ class WideMargins {
     Kept& kept = kept_[p];
     if (!(kept.deadline > 0)) return false;
     kept.clock.advance(bodies_[pair.i], bodies_[pair.j]);
-    const double left = kept.deadline - kept.clock.now();
-    if (!(left > 0)) return false;
-    hold(p, pair, left * (1 - 4 * unit_roundoff<double>));
+    const double remaining_gap = kept.deadline - kept.clock.now();
+    if (!(remaining_gap > 0)) return false;
+    hold(p, pair, remaining_gap * (1 - 4 * unit_roundoff<double>));
     return true;
   }
 
@@ -254,7 +254,7 @@ class WideMargins {
     const auto test = [&] {
       batch.test(counter, [&](std::size_t p, double margin) { decide(p, margin > 0, margin); });
     };
-    sieve.sift_slowly([&](std::size_t p) {
+    sieve.sift_deferred([&](std::size_t p) {
       const auto& crossing = kept_[p].crossing;
       if (!crossing) return sieve.put(static_cast<std::int32_t>(p), true);
       const auto triangle = [&](std::uint32_t body, std::uint32_t index) {
@@ -276,7 +276,7 @@ class WideMargins {
   /// The triangles still cross, and will until the bodies have moved by `margin`.
   void still_crossing(std::size_t p, const ObjectPair& pair, double margin) {
     answers_[p] = {unknown, epochs(pair), true};
-    kept_[p].deadline = 0, kept_[p].touched_again = true;
+    kept_[p].deadline = 0, kept_[p].touched_twice = true;
     kept_[p].next_rest = std::max(1, kept_[p].next_rest / 2);
     if (margin > steps_[pair.i] + steps_[pair.j]) extend_validity(p, pair, margin);
   }

@@ -167,11 +167,11 @@ class WideTraversal {
   [[gnu::always_inline]] void step(const NodePair& pair, std::size_t entry = WideFront::none) {
     pair_frame_.step(
         pair, *counter_, [&](const auto& step) __attribute__((always_inline)) {
-          look(step, pair, entry);
+          test(step, pair, entry);
         });
   }
   template <class Step>
-  [[gnu::always_inline]] void look(const Step& step, [[maybe_unused]] const NodePair& pair,
+  [[gnu::always_inline]] void test(const Step& step, [[maybe_unused]] const NodePair& pair,
                                    [[maybe_unused]] std::size_t entry) {
     const std::uint64_t lanes = step.lanes();
     counter_->tested(static_cast<std::uint64_t>(std::popcount(lanes)));
@@ -194,13 +194,14 @@ class WideTraversal {
       }
       apart |= found << (part * width);
     });
-    std::uint64_t left = lanes & ~apart;
+    std::uint64_t remaining = lanes & ~apart;
     if constexpr (Measure::measures)
-      left = measure_.left(pair, left, entry, least, [&] { return step.reference_sphere(); });
+      remaining = measure_.record_step(pair, remaining, entry, least,
+                                       [&] { return step.reference_sphere(); });
     constexpr bool ordered =
         Kernel::nearest_child_first && Query::one_hit_is_enough && !wants_bound<Query>();
-    step.push(nodes_, triangles_, left, order,
-              ordered && steps_ <= most_in_order ? Next::nearest_child : Next::any);
+    step.push(nodes_, triangles_, remaining, order,
+              ordered && steps_ <= most_in_order ? NextPair::nearest_child : NextPair::any);
   }
 
   /// Unrolled: a loop, even of one pass, would keep its results in memory.
@@ -236,7 +237,7 @@ class WideTraversal {
     std::uint64_t open = lanes & ~apart & ~met;
     if constexpr (Measure::measures)
       if (measure_.triangles(pair, open != 0, entry))
-        measure_.triangles_are(triangles.gap(*counter_), entry, triangles.reference_sphere());
+        measure_.set_triangle_gap(triangles.gap(*counter_), entry, triangles.reference_sphere());
     for (; open; open &= open - 1) {
       const int lane = std::countr_zero(open);
       if (hold(triangles.of_a(lane), triangles.of_b(lane))) return true;
@@ -248,12 +249,12 @@ class WideTraversal {
   /// enough.
   [[gnu::noinline]] bool open_distances(const NodePair& pair) {
     const auto triangles = pair_frame_.triangles(pair);
-    std::uint64_t left = triangles.lanes();
+    std::uint64_t remaining = triangles.lanes();
     if constexpr (requires { triangles.gaps(*counter_); })
-      left &= ~bits(query_->culls(triangles.gaps(*counter_)));
-    counter_->primitives(static_cast<std::uint64_t>(std::popcount(left)));
-    for (; left; left &= left - 1) {
-      const int lane = std::countr_zero(left);
+      remaining &= ~bits(query_->culls(triangles.gaps(*counter_)));
+    counter_->primitives(static_cast<std::uint64_t>(std::popcount(remaining)));
+    for (; remaining; remaining &= remaining - 1) {
+      const int lane = std::countr_zero(remaining);
       if (hold(triangles.of_a(lane), triangles.of_b(lane))) return true;
     }
     return pending_ > 0 && flush();

@@ -99,7 +99,7 @@ template <class S, std::size_t parts>
 }  // namespace detail
 
 /// Which pair of a step is to be taken next; pairs are pushed accordingly.
-enum class Next { any, nearest_child };
+enum class NextPair { any, nearest_child };
 
 /// The nodes of one body in sixteen lanes.
 using NodesOfLanes [[gnu::vector_size(64)]] = std::uint32_t;

@@ -33,7 +33,7 @@ class ChangedBlocks {
     count_ = boxes;
     index_slots();
     placed_ = false, active_ = true;
-    looks_when_sorted_ = 0, looks_ = asked_for_ = 0;
+    leaves_per_query_when_sorted_ = 0, leaves_found_ = queries_ = 0;
   }
 
   /// The box with index `id` as it was in the last frame.
@@ -42,31 +42,32 @@ class ChangedBlocks {
   }
 
   /// Expected cost per moved box in units of BlockCosts; 0 where none was measured.
-  double expected() const { return expected_; }
-  /// Lowers the expectation, so that an old measurement does not hold for ever.
-  void doubt() { expected_ *= 0.9; }
+  double expected_cost() const { return expected_cost_; }
+  /// Lowers the expected cost, so that an old measurement does not hold for ever.
+  void decay_expected_cost() { expected_cost_ *= 0.9; }
 
   /// Updates the list to `boxes`, which may differ from the last frame in the boxes of `moved`, in
   /// new ones and in those that are gone. Returns false, and becomes inactive, where that would
   /// cost more than `affordable`; the tree must then be built anew.
   bool update(Boxes<T> boxes, std::span<const std::uint32_t> moved, double affordable) {
-    newcomers_.clear(), emptied_.clear(), was_.clear(), touched_.clear();
+    inserted_.clear(), emptied_.clear(), was_.clear(), touched_.clear();
     moved_count_ = 0;
-    for (std::size_t id = boxes.size(); id < count_; ++id) vacate(static_cast<std::uint32_t>(id));
+    for (std::size_t id = boxes.size(); id < count_; ++id)
+      clear_slot_of(static_cast<std::uint32_t>(id));
     const std::size_t staying = std::min(boxes.size(), count_);
     for (const std::uint32_t id : moved)
       if (id < staying && slots_[id] != no_slot) move(id, boxes[id]);
     for (std::size_t id = count_; id < boxes.size(); ++id)
-      newcomers_.push_back(static_cast<std::uint32_t>(id));
-    if (100 * newcomers_.size() > boxes.size() + 3200) return stop(), false;
-    if (!newcomers_.empty()) seat_newcomers(boxes);
+      inserted_.push_back(static_cast<std::uint32_t>(id));
+    if (100 * inserted_.size() > boxes.size() + 3200) return stop(), false;
+    if (!inserted_.empty()) insert_in_new_slots(boxes);
     order_touched();
     if (!find_changes(affordable)) return stop(), false;
     if (!emptied_.empty()) pairs_.cancel_out();
     apply(boxes.size());
-    settle();
+    refit_touched();
     count_ = boxes.size();
-    sorted_ = worn();
+    sorted_ = sort_pays();
     if (sorted_) sort(boxes);
     return true;
   }
@@ -97,13 +98,13 @@ class ChangedBlocks {
     const Box<T> was = last(id);
     if (was == now) return;
     if (joined_.jumped(row_of(now), row_of(was))) {
-      vacate(id);
-      newcomers_.push_back(id);
+      clear_slot_of(id);
+      inserted_.push_back(id);
       return;
     }
     change(slots_[id], now);
   }
-  void vacate(std::uint32_t id) {
+  void clear_slot_of(std::uint32_t id) {
     change(slots_[id], nowhere<T>());
     emptied_.push_back(slots_[id]);
     slots_[id] = no_slot;
@@ -125,16 +126,16 @@ class ChangedBlocks {
   }
 
   /// Puts boxes that jumped or are new into leaves of their own, in spatial order.
-  void seat_newcomers(Boxes<T> boxes) {
+  void insert_in_new_slots(Boxes<T> boxes) {
     new_boxes_.clear();
-    for (const std::uint32_t id : newcomers_) new_boxes_.push_back(boxes[id]);
-    const auto order = newcomers_order_(new_boxes_, joined_.shares().threads());
+    for (const std::uint32_t id : inserted_) new_boxes_.push_back(boxes[id]);
+    const auto order = insertion_order_(new_boxes_, joined_.shares().threads());
     const std::uint32_t first = tree_.add_slots(order.size());
     changed_.resize(tree_.leaves(), 0);
     was_at_.resize(tree_.leaves());
     slots_.resize(std::max(slots_.size(), boxes.size()));
     for (std::size_t k = 0; k < order.size(); ++k) {
-      const std::uint32_t id = newcomers_[order[k].id];
+      const std::uint32_t id = inserted_[order[k].id];
       const std::uint32_t slot = first + static_cast<std::uint32_t>(k);
       tree_.ids(0)[slot] = id;
       slots_[id] = slot;
@@ -153,12 +154,12 @@ class ChangedBlocks {
   // ---- which pairs change -------------------------------------------------------------------
 
   /// A batch of moved boxes and the leaves that their queries found.
-  struct Asked {
+  struct QueryBatch {
     std::vector<std::uint32_t> slots;
     std::vector<Box<T>> both;  ///< encloses the old and the new box of each
     typename BlockTree<T>::Finds finds;
     PairList began, ended;
-    std::size_t looks;
+    std::size_t leaves_found;
   };
 
   /// Fills `began` and `ended`. False where a first part of the work, or all of it, turns out to
@@ -167,76 +168,77 @@ class ChangedBlocks {
     constexpr std::size_t some = 32;  // leaves
     const std::size_t all = touched_.size(), parts = (all + some - 1) / some;
     Threads& threads = joined_.shares().threads();
-    asked_.resize(threads.count() == 1 ? std::min<std::size_t>(parts, 1) : parts);
-    std::size_t looks = 0;
+    batches_.resize(threads.count() == 1 ? std::min<std::size_t>(parts, 1) : parts);
+    std::size_t leaves_found = 0;
     const auto cost = [&](double share) {
       return BlockCosts::moved * static_cast<double>(moved_count_) +
-             (BlockCosts::leaf * static_cast<double>(looks) +
+             (BlockCosts::leaf * static_cast<double>(leaves_found) +
               BlockCosts::change(static_cast<double>(pairs_.all.size())) *
                   static_cast<double>(pairs_.began.size() + pairs_.ended.size())) /
                  share;
     };
-    const auto ask = [&](std::size_t part, Asked& asked, PairList& began, PairList& ended) {
-      ask_for(part * some, std::min(part * some + some, all), asked, began, ended);
+    const auto query_part = [&](std::size_t part, QueryBatch& batch, PairList& began,
+                                PairList& ended) {
+      query_range(part * some, std::min(part * some + some, all), batch, began, ended);
     };
-    const auto ask_all = [&](std::size_t first, std::size_t last) {
+    const auto query_parts = [&](std::size_t first, std::size_t last) {
       if (threads.count() == 1 || last - first < 8) {
         for (std::size_t part = first; part < last; ++part) {
-          ask(part, asked_[0], pairs_.began, pairs_.ended);
-          looks += asked_[0].looks;
+          query_part(part, batches_[0], pairs_.began, pairs_.ended);
+          leaves_found += batches_[0].leaves_found;
         }
         return;
       }
       // Each part writes lists of its own, so that the order does not depend on threads.
       threads.share(last - first, [&](std::size_t k, std::size_t) {
-        Asked& asked = asked_[first + k];
-        asked.began.clear(), asked.ended.clear();
-        ask(first + k, asked, asked.began, asked.ended);
+        QueryBatch& batch = batches_[first + k];
+        batch.began.clear(), batch.ended.clear();
+        query_part(first + k, batch, batch.began, batch.ended);
       });
       for (std::size_t part = first; part < last; ++part) {
-        looks += asked_[part].looks;
-        pairs_.began.append(asked_[part].began.view());
-        pairs_.ended.append(asked_[part].ended.view());
+        leaves_found += batches_[part].leaves_found;
+        pairs_.began.append(batches_[part].began.view());
+        pairs_.ended.append(batches_[part].ended.view());
       }
     };
     const std::size_t few = std::min(parts, parts / 16 + 1);
-    ask_all(0, few);
+    query_parts(0, few);
     const double done = static_cast<double>(std::min(few * some, all));
     // A refusal would lose the known places, so with them a partial estimate may be twice as high.
     if (all > 0 && cost(done / static_cast<double>(all)) > (placed_ ? 2 : 1) * affordable)
       return refused(cost(done / static_cast<double>(all)));
-    ask_all(few, parts);
+    query_parts(few, parts);
     if (cost(1) > affordable) return refused(cost(1));
-    looks_ += looks, asked_for_ += moved_count_;
+    leaves_found_ += leaves_found, queries_ += moved_count_;
     return true;
   }
   bool refused(double cost) {
-    expected_ = cost / static_cast<double>(std::max<std::size_t>(moved_count_, 1));
+    expected_cost_ = cost / static_cast<double>(std::max<std::size_t>(moved_count_, 1));
     return false;
   }
   /// Compares the moved boxes of touched leaves `first` to `last` with all boxes.
-  void ask_for(std::size_t first, std::size_t last, Asked& asked, PairList& began,
-               PairList& ended) const {
-    asked.slots.clear(), asked.both.clear();
+  void query_range(std::size_t first, std::size_t last, QueryBatch& batch, PairList& began,
+                   PairList& ended) const {
+    batch.slots.clear(), batch.both.clear();
     for (std::size_t k = first; k < last; ++k)
       for (LaneMask moved = changed_[touched_[k]]; moved; moved &= moved - 1) {
         const std::uint32_t slot = touched_[k] * block_width + std::countr_zero(moved);
-        asked.slots.push_back(slot);
-        asked.both.push_back(enclosing(now(slot), was(slot)));
+        batch.slots.push_back(slot);
+        batch.both.push_back(enclosing(now(slot), was(slot)));
       }
-    tree_.find(asked.both, asked.finds);
-    asked.looks = asked.finds.count;
+    tree_.find(batch.both, batch.finds);
+    batch.leaves_found = batch.finds.count;
     // Keep only leaves that hold a box near this one, or a box that moved.
-    std::uint32_t* const leaves = asked.finds.leaves.data();
-    std::uint32_t* const boxes = asked.finds.boxes.data();
+    std::uint32_t* const leaves = batch.finds.leaves.data();
+    std::uint32_t* const boxes = batch.finds.boxes.data();
     std::size_t near = 0;
-    for (std::size_t k = 0; k < asked.looks; ++k) {
+    for (std::size_t k = 0; k < batch.leaves_found; ++k) {
       const std::uint32_t leaf = leaves[k], box = boxes[k];
-      if (k + ahead < asked.looks) tree_.fetch(leaves[k + ahead]);
+      if (k + ahead < batch.leaves_found) tree_.fetch(leaves[k + ahead]);
       leaves[near] = leaf, boxes[near] = box;
-      near += (overlapping_lanes<Closed>(tree_.leaf(leaf), asked.both[box]) | changed_[leaf]) != 0;
+      near += (overlapping_lanes<Closed>(tree_.leaf(leaf), batch.both[box]) | changed_[leaf]) != 0;
     }
-    for (std::size_t k = 0; k < near; ++k) compare(asked.slots[boxes[k]], leaves[k], began, ended);
+    for (std::size_t k = 0; k < near; ++k) compare(batch.slots[boxes[k]], leaves[k], began, ended);
   }
   static constexpr std::size_t ahead = 6;  ///< leaves between a prefetch and its use
   Box<T> now(std::uint32_t slot) const {
@@ -278,7 +280,7 @@ class ChangedBlocks {
   }
 
   /// Refits the bounds of touched leaves and clears all marks.
-  void settle() {
+  void refit_touched() {
     for (const std::uint32_t slot : emptied_) tree_.ids(0)[slot] = no_box;
     for (const std::uint32_t leaf : touched_) changed_[leaf] = 0;
     tree_.refit(touched_);
@@ -288,23 +290,24 @@ class ChangedBlocks {
 
   /// Whether many slots are empty, or queries have found so many more leaves than those right after
   /// sorting that sorting anew would have cost no more.
-  bool worn() {
+  bool sort_pays() {
     if (tree_.slots() > count_ + count_ / 8 + 64) return true;
-    const double looks = static_cast<double>(looks_), asked = static_cast<double>(asked_for_);
-    if (looks_when_sorted_ == 0) {
-      if (4 * asked_for_ < count_ + 2048) return false;
-      looks_when_sorted_ = looks / asked;
-      looks_ = asked_for_ = 0;
+    const double leaves_found = static_cast<double>(leaves_found_),
+                 queries = static_cast<double>(queries_);
+    if (leaves_per_query_when_sorted_ == 0) {
+      if (4 * queries_ < count_ + 2048) return false;
+      leaves_per_query_when_sorted_ = leaves_found / queries;
+      leaves_found_ = queries_ = 0;
       return false;
     }
-    return BlockCosts::leaf * (looks - looks_when_sorted_ * asked) >
+    return BlockCosts::leaf * (leaves_found - leaves_per_query_when_sorted_ * queries) >
            BlockCosts::sort * static_cast<double>(count_);
   }
   /// Sorts the boxes anew; the list is unchanged.
   void sort(Boxes<T> boxes) {
     joined_.build(joined_.order()(boxes, joined_.shares().threads()), boxes);
     index_slots();
-    looks_when_sorted_ = 0, looks_ = asked_for_ = 0;
+    leaves_per_query_when_sorted_ = 0, leaves_found_ = queries_ = 0;
   }
 
   JoinedBlocks<T, Contact>& joined_;
@@ -320,14 +323,14 @@ class ChangedBlocks {
   std::vector<Block<T>> was_;           ///< leaves as they were in the last frame
   std::vector<std::uint32_t> touched_;  ///< leaves where boxes moved
   std::size_t moved_count_ = 0;
-  std::vector<Asked> asked_;
-  std::size_t looks_ = 0, asked_for_ = 0;  ///< leaves found by queries since the tree was sorted
-  double looks_when_sorted_ = 0;           ///< leaves per query right after sorting; 0: unknown
-  double expected_ = 0;
+  std::vector<QueryBatch> batches_;
+  std::size_t leaves_found_ = 0, queries_ = 0;  ///< since the tree was sorted
+  double leaves_per_query_when_sorted_ = 0;     ///< right after sorting; 0: unknown
+  double expected_cost_ = 0;
 
-  std::vector<std::uint32_t> newcomers_, emptied_;
+  std::vector<std::uint32_t> inserted_, emptied_;
   std::vector<Box<T>> new_boxes_;
-  SpatialOrder<T> newcomers_order_;
+  SpatialOrder<T> insertion_order_;
 };
 
 }  // namespace bvlab

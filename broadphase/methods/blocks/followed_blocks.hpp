@@ -42,7 +42,7 @@ class FollowedBlocks {
   }
 
   /// Whether the candidates are valid for another frame.
-  bool goes_on() const { return !worn_ && (age_ < horizon_ || !steady_); }
+  bool candidates_valid() const { return !must_rebuild_ && (age_ < horizon_ || !steady_); }
   /// The number of frames in a row, up to the last, in which at most one box in eight moved.
   int few_moved() const { return few_moved_; }
   /// Whether boxes keep their motion well enough for one-sided fat boxes.
@@ -56,27 +56,27 @@ class FollowedBlocks {
   /// Whether it is time to choose a horizon for the next candidates.
   bool time_to_prepare() const {
     if (next_.begun()) return false;
-    if (crowded_) return true;
+    if (too_many_candidates_) return true;
     if (steady_) return age_ == horizon_ - time_to_find();
-    return horizon_ > shortest && age_ > 0 && age_ % 4 == 0 && (at_ease() || half_used());
+    return horizon_ > shortest && age_ > 0 && age_ % 4 == 0 && (nearly_still() || half_used());
   }
   /// Whether boxes barely move: the shortest horizon is enough.
-  bool at_ease() const { return !steady_ && !restless_ && age_ >= 2 * horizon_; }
+  bool nearly_still() const { return !steady_ && !margins_exceeded_ && age_ >= 2 * horizon_; }
   /// Starts to find the next candidates, a part in each frame; finds none where `horizon` is 0.
   void prepare(int horizon) {
     if (horizon == 0) {
-      worn_ |= crowded_;
+      must_rebuild_ |= too_many_candidates_;
       return;
     }
     next_.begin(horizon, time_to_find());
-    unsettled_.clear();
-    resettle_ = false;
+    pending_insertions_.clear();
+    slots_changed_ = false;
     takes_over_at_ = age_ + time_to_find();
-    next_ahead_ = at_ease() ? 0 : shortest;
+    next_ahead_ = nearly_still() ? 0 : shortest;
   }
 
   /// Whether boxes left the shortest margins: longer ones are worth more than they cost.
-  bool restless() const { return !steady_ && restless_; }
+  bool margins_exceeded() const { return !steady_ && margins_exceeded_; }
 
   /// The last frame's box in this slot.
   Row<T> last_row(std::uint32_t slot) const {
@@ -95,7 +95,7 @@ class FollowedBlocks {
     auto& rows = candidates_.rows();
     last_rows_ = rows;
     const bool followed = follow(boxes);
-    if (!newcomers_.empty() || !emptied_.empty()) return followed;  // slots changed: next time
+    if (!inserted_.empty() || !emptied_.empty()) return followed;  // slots changed: next time
     std::swap(rows, last_rows_);
     // Where too many left their fat boxes, the list is still that of the last frame.
     begin(boxes, horizon, followed ? Changes::unreported : Changes::reported);
@@ -105,31 +105,31 @@ class FollowedBlocks {
   /// Updates the list for one frame; false where too many boxes left their fat boxes.
   bool follow(Boxes<T> boxes) {
     if (next_.begun() && !next_.ready()) prepare_a_part(boxes);
-    escaped_.clear(), newcomers_.clear(), emptied_.clear();
+    escaped_.clear(), inserted_.clear(), emptied_.clear();
     moved_count_ = 0;
-    for (std::size_t id = boxes.size(); id < count_; ++id) vacate(slots_[id]);
+    for (std::size_t id = boxes.size(); id < count_; ++id) clear_slot(slots_[id]);
     const std::size_t staying = std::min(boxes.size(), count_);
-    look(boxes, staying);
+    scan(boxes, staying);
     for (std::size_t id = count_; id < boxes.size(); ++id)
-      newcomers_.push_back(static_cast<std::uint32_t>(id));
-    // One escape costs about as much as starting over does for 32 boxes, a newcomer 100.
-    if (32 * escaped_.size() + 100 * newcomers_.size() > boxes.size() + 3200) {
-      if (newcomers_.size() < escaped_.size()) distrust();
+      inserted_.push_back(static_cast<std::uint32_t>(id));
+    // One escape costs about as much as starting over does for 32 boxes, an insertion 100.
+    if (32 * escaped_.size() + 100 * inserted_.size() > boxes.size() + 3200) {
+      if (inserted_.size() < escaped_.size()) degrade_prediction();
       return false;
     }
     widen_escaped();
-    if (!newcomers_.empty()) seat_newcomers(boxes);
+    if (!inserted_.empty()) insert_in_new_slots(boxes);
     few_moved_ = few_of(boxes.size()) ? few_moved_ + 1 : 0;
     write_candidates();
     for (const std::uint32_t slot : emptied_) tree_.ids(0)[slot] = no_box;
     // A pair that ended in one slot and began in another, where its box went, did not change.
     if (settings_.changes == Changes::reported && !emptied_.empty()) pairs_.cancel_out();
-    if (next_.begun()) note_unsettled(boxes.size());
+    if (next_.begun()) note_slot_changes(boxes.size());
     count_ = boxes.size();
     ++age_;
-    crowded_ = candidates_.size() > 2 * candidates_at_first_ + boxes.size();
-    worn_ = candidates_.size() > 4 * candidates_at_first_ + 2 * boxes.size() ||
-            tree_.slots() > boxes.size() + boxes.size() / 8 + 64;
+    too_many_candidates_ = candidates_.size() > 2 * candidates_at_first_ + boxes.size();
+    must_rebuild_ = candidates_.size() > 4 * candidates_at_first_ + 2 * boxes.size() ||
+                    tree_.slots() > boxes.size() + boxes.size() / 8 + 64;
     took_over_ = next_.ready() && age_ >= takes_over_at_;
     if (took_over_) take_over_next(boxes);
     return true;
@@ -194,7 +194,7 @@ class FollowedBlocks {
     count_ = boxes.size();
     active_ = true;
     horizon_ = horizon, age_ = 0;
-    worn_ = crowded_ = false;
+    must_rebuild_ = too_many_candidates_ = false;
     few_moved_ = 0;
     write_candidates();
     if (compare) pairs_.compare_with_kept();
@@ -223,7 +223,7 @@ class FollowedBlocks {
   }
 
   bool sort_due(std::size_t boxes) const {
-    return joined_.holey(boxes) || 3 * visits_ >= 4 * visits_when_sorted_;
+    return joined_.sorting_frees_a_leaf(boxes) || 3 * visits_ >= 4 * visits_when_sorted_;
   }
   /// Sorts anew once the old order costs a third more or leaves too many slots empty.
   void sort_if_due(Boxes<T> boxes) {
@@ -272,39 +272,40 @@ class FollowedBlocks {
   }
   /// Notes boxes that are new, gone or in another slot since the search for the next candidates
   /// began. Where they are many, that search is abandoned.
-  void note_unsettled(std::size_t boxes) {
-    resettle_ |= !newcomers_.empty() || !emptied_.empty();
-    unsettled_.insert(unsettled_.end(), newcomers_.begin(), newcomers_.end());
-    if (100 * unsettled_.size() > boxes + 3200) next_.abandon();
+  void note_slot_changes(std::size_t boxes) {
+    slots_changed_ |= !inserted_.empty() || !emptied_.empty();
+    pending_insertions_.insert(pending_insertions_.end(), inserted_.begin(), inserted_.end());
+    if (100 * pending_insertions_.size() > boxes + 3200) next_.abandon();
   }
   /// Replaces the candidates in use by the next ones.
   void take_over_next(Boxes<T> boxes) {
     std::swap(tree_, next_.tree());
     std::swap(fat_boxes_, next_.fat_boxes());
-    if (resettle_) forget_unsettled();
-    if (sorted_next_ || resettle_) take_over_order();
+    if (slots_changed_) clear_outdated_slots();
+    if (sorted_next_ || slots_changed_) take_over_order();
     candidates_.clear();
     std::swap(candidates_.list(), next_.candidates());
-    if (!unsettled_.empty()) {
-      std::swap(newcomers_, unsettled_);
-      seat_newcomers(boxes);
+    if (!pending_insertions_.empty()) {
+      std::swap(inserted_, pending_insertions_);
+      insert_in_new_slots(boxes);
     }
     visits_ = next_.visits();
     if (sorted_next_) visits_when_sorted_ = visits_;
     candidates_at_first_ = candidates_.size();
     horizon_ = next_.horizon(), age_ = 0;
-    worn_ = crowded_ = false;
+    must_rebuild_ = too_many_candidates_ = false;
     next_.abandon();
     if (settings_.changes == Changes::reported) know_which_overlap();
   }
   /// Removes boxes that are gone, or about to get other slots, from the tree that takes over.
-  void forget_unsettled() {
-    std::sort(unsettled_.begin(), unsettled_.end());
-    unsettled_.erase(std::unique(unsettled_.begin(), unsettled_.end()), unsettled_.end());
+  void clear_outdated_slots() {
+    std::sort(pending_insertions_.begin(), pending_insertions_.end());
+    pending_insertions_.erase(std::unique(pending_insertions_.begin(), pending_insertions_.end()),
+                              pending_insertions_.end());
     for (std::uint32_t slot = 0; slot < tree_.slots(); ++slot) {
       std::uint32_t& id = tree_.ids(0)[slot];
-      if (id == no_box ||
-          (id < count_ && !std::binary_search(unsettled_.begin(), unsettled_.end(), id)))
+      if (id == no_box || (id < count_ && !std::binary_search(pending_insertions_.begin(),
+                                                              pending_insertions_.end(), id)))
         continue;
       id = no_box;
       tree_.leaf(slot / block_width).put(static_cast<int>(slot % block_width), nowhere<T>());
@@ -364,7 +365,7 @@ class FollowedBlocks {
   // ---- one frame ----------------------------------------------------------------------------
 
   /// Reads every box, in the order of slots; notes those that moved or left their fat boxes.
-  void look(Boxes<T> boxes, std::size_t staying) {
+  void scan(Boxes<T> boxes, std::size_t staying) {
     const std::uint32_t slots = tree_.slots();
     Threads& threads = joined_.shares().threads();
     const bool shared = threads.count() > 1 && slots >= 2 * slots_a_stretch;
@@ -374,15 +375,15 @@ class FollowedBlocks {
       for (std::size_t byte = 0; byte < boxes.size_bytes(); byte += 64)
         __builtin_prefetch(reinterpret_cast<const char*>(boxes.data()) + byte, 0, 2);
     const std::uint32_t stretch = shared ? slots_a_stretch : std::max(slots, 1u);
-    looks_.resize((slots + stretch - 1) / stretch);
-    threads.share(looks_.size(), [&](std::size_t k, std::size_t) {
+    scans_.resize((slots + stretch - 1) / stretch);
+    threads.share(scans_.size(), [&](std::size_t k, std::size_t) {
       const auto first = static_cast<std::uint32_t>(k) * stretch;
-      look_at_slots(boxes, staying, first, std::min(slots - first, stretch) + first, as_needed,
-                    looks_[k]);
+      scan_slots(boxes, staying, first, std::min(slots - first, stretch) + first, as_needed,
+                 scans_[k]);
     });
-    for (const Look& look : looks_) {
-      moved_count_ += look.moved;
-      for (const auto& [slot, was] : look.left) leave_fat_box(slot, was);
+    for (const SlotScan& scan : scans_) {
+      moved_count_ += scan.moved;
+      for (const auto& [slot, was] : scan.escaped) leave_fat_box(slot, was);
     }
   }
   struct Escaped {
@@ -390,18 +391,18 @@ class FollowedBlocks {
     Row<T> was;
   };
   /// What one thread found in a range of slots.
-  struct Look {
+  struct SlotScan {
     std::size_t moved;
-    std::vector<Escaped> left;  ///< whose boxes left their fat boxes
+    std::vector<Escaped> escaped;  ///< whose boxes left their fat boxes
   };
-  void look_at_slots(Boxes<T> boxes, std::size_t staying, std::uint32_t first, std::uint32_t last,
-                     bool as_needed, Look& look) {
+  void scan_slots(Boxes<T> boxes, std::size_t staying, std::uint32_t first, std::uint32_t last,
+                  bool as_needed, SlotScan& scan) {
     const std::uint32_t* ids = tree_.ids(0);
     Row<T>* const rows = candidates_.rows().data();
     const Row<T>* const fat_boxes = fat_boxes_.data();
     std::size_t moved = 0;
     const std::size_t too_many = boxes.size() + 3200;
-    look.left.clear();
+    scan.escaped.clear();
     for (std::uint32_t slot = first; slot < last; ++slot) {
       if (as_needed && slot + ahead < last && ids[slot + ahead] < staying)
         __builtin_prefetch(&boxes[ids[slot + ahead]]);
@@ -411,11 +412,11 @@ class FollowedBlocks {
       rows[slot].lo = now.lo, rows[slot].hi = now.hi;
       moved += !same(now, was);
       if (!inside(now, fat_boxes[slot])) [[unlikely]] {
-        look.left.push_back({slot, was});
-        if (32 * look.left.size() > too_many) break;
+        scan.escaped.push_back({slot, was});
+        if (32 * scan.escaped.size() > too_many) break;
       }
     }
-    look.moved = moved;
+    scan.moved = moved;
   }
   static constexpr std::uint32_t ahead = 16;  ///< slots between a prefetch and its use
 
@@ -424,11 +425,11 @@ class FollowedBlocks {
       escaped_.push_back({slot, was});
       return;
     }
-    newcomers_.push_back(tree_.ids(0)[slot]);
-    vacate(slot);
+    inserted_.push_back(tree_.ids(0)[slot]);
+    clear_slot(slot);
   }
   /// Empties the slot. Its pairs end with this frame; its candidates remain but never overlap.
-  void vacate(std::uint32_t slot) {
+  void clear_slot(std::uint32_t slot) {
     candidates_.rows()[slot] = nowhere_row<T>();
     tree_.leaf(slot / block_width).put(static_cast<int>(slot % block_width), nowhere<T>());
     emptied_.push_back(slot);
@@ -470,18 +471,18 @@ class FollowedBlocks {
   }
 
   /// Puts boxes that jumped or are new into slots of their own, in spatial order.
-  void seat_newcomers(Boxes<T> boxes) {
-    std::erase_if(newcomers_, [&](std::uint32_t id) { return id >= boxes.size(); });
+  void insert_in_new_slots(Boxes<T> boxes) {
+    std::erase_if(inserted_, [&](std::uint32_t id) { return id >= boxes.size(); });
     new_boxes_.clear();
-    for (const std::uint32_t id : newcomers_) new_boxes_.push_back(boxes[id]);
-    const auto order = newcomers_order_(new_boxes_, joined_.shares().threads());
+    for (const std::uint32_t id : inserted_) new_boxes_.push_back(boxes[id]);
+    const auto order = insertion_order_(new_boxes_, joined_.shares().threads());
     const std::uint32_t first = tree_.add_slots(order.size());
     slots_.resize(boxes.size());
     auto& rows = candidates_.rows();
     rows.resize(tree_.slots(), nowhere_row<T>());
     fat_boxes_.resize(tree_.slots());
     for (std::size_t k = 0; k < order.size(); ++k) {
-      const std::uint32_t id = newcomers_[order[k].id];
+      const std::uint32_t id = inserted_[order[k].id];
       const std::uint32_t slot = first + static_cast<std::uint32_t>(k);
       tree_.ids(0)[slot] = id;
       slots_[id] = slot;
@@ -492,11 +493,11 @@ class FollowedBlocks {
   }
 
   /// Too many boxes left their fat boxes: change from one-sided boxes to margins, or adapt these.
-  void distrust() {
+  void degrade_prediction() {
     if (steady_)
       steady_ = age_ >= horizon_;
     else if (horizon_ == shortest)
-      restless_ = true;
+      margins_exceeded_ = true;
     else if (age_ < horizon_)
       longest_ = std::max(shortest, longest_ / 2);
   }
@@ -549,22 +550,23 @@ class FollowedBlocks {
   std::size_t count_ = 0;             ///< boxes of the last frame
   std::size_t candidates_at_first_ = 0, visits_ = 0, visits_when_sorted_ = 0;
   bool active_ = false, sorted_ = false, steady_ = true;
-  bool restless_ = false;  ///< boxes left the shortest margins
-  bool crowded_ = false;   ///< so many candidates that new ones are worth finding
-  bool worn_ = false;      ///< too many candidates or empty slots to go on
+  bool margins_exceeded_ = false;     ///< boxes left the shortest margins
+  bool too_many_candidates_ = false;  ///< so many candidates that new ones are worth finding
+  bool must_rebuild_ = false;         ///< too many candidates or empty slots to go on
   NextCandidates<T, Contact> next_;
   bool sorted_next_ = false, took_over_ = false;
   int longest_ = 64, horizon_ = 0, age_ = 0, takes_over_at_ = 0, next_ahead_ = 0;
 
   std::vector<Escaped> escaped_;
-  std::vector<Look> looks_;
-  std::vector<std::uint32_t> newcomers_, emptied_;
-  std::vector<std::uint32_t> unsettled_;  ///< newcomers since the next candidates were begun
-  bool resettle_ = false;                 ///< whether any box came, went or jumped
+  std::vector<SlotScan> scans_;
+  std::vector<std::uint32_t> inserted_, emptied_;
+  /// Boxes inserted since the search for the next candidates began.
+  std::vector<std::uint32_t> pending_insertions_;
+  bool slots_changed_ = false;  ///< whether any box came, went or jumped since then
   std::size_t moved_count_ = 0;
   int few_moved_ = 0;  ///< frames in a row
   std::vector<Box<T>> new_boxes_;
-  SpatialOrder<T> newcomers_order_;
+  SpatialOrder<T> insertion_order_;
 };
 
 }  // namespace bvlab

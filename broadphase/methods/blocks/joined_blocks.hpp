@@ -25,7 +25,7 @@ struct BlockCosts {
   static constexpr double visit = 36;     ///< visit a pair of leaves in the join
   static constexpr double pair = 1.3;     ///< write an overlapping pair
   static constexpr double report = 12;    ///< find whether a pair began or ended, by sorting
-  static constexpr double look = 8;       ///< read a box that is followed
+  static constexpr double read = 8;       ///< read a box that is followed
   static constexpr double fat_box = 10;   ///< make a fat box
   static constexpr double candidate = 3;  ///< write a candidate
   static constexpr double moved = 120;    ///< update the tree for a moved box
@@ -119,7 +119,9 @@ class JoinedBlocks {
   }
 
   /// Whether sorting these boxes would free at least one leaf.
-  bool holey(std::size_t boxes) const { return tree_.slots() >= boxes + block_width; }
+  bool sorting_frees_a_leaf(std::size_t boxes) const {
+    return tree_.slots() >= boxes + block_width;
+  }
 
   std::size_t bytes() const { return tree_.bytes() + order_.bytes() + shares_.bytes(); }
 

@@ -48,7 +48,7 @@ class NextCandidates {
     fat_boxes_.resize(tree_.slots());
     // The join reserves somewhat more than it writes.
     candidates_.clear();
-    candidates_.room_for(candidates + candidates / 8 + 16 * 256);
+    candidates_.reserve(candidates + candidates / 8 + 16 * 256);
   }
 
   BlockTree<T>& tree() { return tree_; }
