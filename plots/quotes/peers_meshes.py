@@ -9,6 +9,10 @@ OURS = ["recommended", "wide, from the roots"]
 TARGETS = {"touching": 5, "contacts, near": 6, "distance": 8}
 
 
+def written_us(us):
+    return f"{us:.0f}" if us >= 9.95 else f"{us:.2g}"
+
+
 def query_of(work):
     return work if work in TARGETS else "touching"
 
@@ -17,7 +21,6 @@ def query_of(work):
 def peers_meshes(record):
     """By mesh and motion: the median over seeds of the fastest library's time over ours, with an interval."""
     rows = records.read(record)
-    claim((rows.alone != "no").all(), "the rows were timed alone")
     claim((rows[rows.peer == ""].differing == 0).all(), "answers of ours agree")
     claim(rows.mesh.nunique() == 5 and rows.seed.nunique() == 10, "five meshes and ten seeds")
     rows = rows.assign(us=rows.later_ns / rows.later_pairs / 1e3)
@@ -29,13 +32,37 @@ def peers_meshes(record):
         at = libraries.loc[place]
         low, high = bootstrap(of.to_numpy(), "median")
         leads[query_of(place[1])].append(of.median())
-        lines.append(["" if place[0] == last else place[0], place[1], f"{us.recommended.loc[place].median():.2g}", at.median().idxmin(),
-                      f"{at.median().min():.2g}", f"{of.median():.1f} ({low:.1f} to {high:.1f})"])
+        lines.append(["" if place[0] == last else place[0], place[1], written_us(us.recommended.loc[place].median()), at.median().idxmin(),
+                      written_us(at.median().min()), f"{of.median():.1f} ({low:.1f} to {high:.1f})"])
         last = place[0]
+    alike = {query: [value for (_, work), of in lead.groupby(["mesh", "work"]) if query_of(work) == query
+                     for value in [of.median() / lead["bunny", work].median()]] for query in ("touching", "contacts, near")}
     wrong = rows[(rows.differing > 0) & (rows["query"] != "distance")].groupby("method").differing.max()
     claim(min(min(of) for of in leads.values()) > 1, "recommended is faster than every library on each mesh and motion")
     return {"rows": lines, "seeds": rows.seed.nunique(), "cells": len(lines),
             **{query.split(",")[0]: Interval(of) for query, of in leads.items()},
             **{f"{query.split(',')[0]}_reached": sum(value >= TARGETS[query] for value in of) for query, of in leads.items()},
             **{f"{query.split(',')[0]}_cells": len(of) for query, of in leads.items()},
-            "wrong": ", ".join(f"{name} up to {count}" for name, count in wrong.items())}
+            "alone": 100 * (rows.alone == "yes").mean(), "touching_alike": Interval(alike["touching"]), "contacts_alike": Interval(alike["contacts, near"]),
+            "wrong": ", ".join(f"{name.replace(',', '')} {count}" for name, count in wrong.items())}
+
+
+@quotes("peers-meshes")
+def peers_counts(record):
+    """Tests a pair of `recommended`, from the roots and of OPCODE, medians over seeds, by mesh."""
+    rows = records.read(record)
+    rows = rows.assign(us=rows.later_ns / rows.later_pairs / 1e3, volumes=rows.n_v / rows.pairs, triangles=rows.n_p / rows.pairs)
+    each = rows.groupby(["work", "method", "mesh"])[["us", "volumes", "triangles"]].median()
+    contacts, opcode = each.loc["contacts, near", "recommended"], each.loc["contacts, near", "OPCODE"]
+    slow, coherent = each.loc["slow", "recommended"], each.loc["slow", "OPCODE, coherent"]
+    roots, cold = each.loc["5 degrees", "wide, from the roots"], each.loc["5 degrees", "OPCODE"]
+
+    def price(part):
+        return Interval(1e3 * part.us / (part.volumes + part.triangles))
+    claim((contacts.volumes < opcode.volumes).all() and (contacts.triangles > 2 * opcode.triangles).all(),
+          "for contacts ours makes fewer tests of volumes than OPCODE, and more than twice its tests of triangles")
+    claim((roots.volumes < cold.volumes).all(), "from the roots ours makes fewer tests of volumes than OPCODE")
+    return {"volumes": Interval(contacts.volumes / opcode.volumes), "triangles": Interval(contacts.triangles / opcode.triangles),
+            "price": price(contacts), "opcode_price": price(opcode), "slow": Interval(slow.volumes), "coherent": Interval(coherent.volumes),
+            "slow_us": Interval(slow.us), "coherent_us": Interval(coherent.us),
+            "roots": Interval(roots.volumes / cold.volumes), "roots_triangles": Interval(roots.triangles / cold.triangles)}
