@@ -38,6 +38,9 @@ def peers_meshes(record):
     alike = {query: [value for (_, work), of in lead.groupby(["mesh", "work"]) if query_of(work) == query
                      for value in [of.median() / lead["bunny", work].median()]] for query in ("touching", "contacts, near")}
     wrong = rows[(rows.differing > 0) & (rows["query"] != "distance")].groupby("method").differing.max()
+    fastest = {work: {libraries.loc[mesh, work].median().idxmin() for mesh in us.index.levels[0]} for work in us.index.levels[1]}
+    claim(fastest == {"5 degrees": {"PhysX"}, "near": {"PhysX"}, "contacts, near": {"PhysX"}, "slow": {"OPCODE, coherent"}, "distance": {"FCL, obbrss"}},
+          "PhysX is the fastest library for touching and contacts, in slow motion OPCODE's coherent mode, FCL for distances")
     claim(min(min(of) for of in leads.values()) > 1, "recommended is faster than every library on each mesh and motion")
     return {"rows": lines, "seeds": rows.seed.nunique(), "cells": len(lines),
             **{query.split(",")[0]: Interval(of) for query, of in leads.items()},
