@@ -3,6 +3,7 @@
 
 from functools import cache
 
+import numpy as np
 import pandas as pd
 from bvlab_plots import records
 from quoting import Interval, claim, quotes
@@ -44,6 +45,27 @@ def real_motions_table(record):
     _, found = motions(record)
     return {"rows": [[motion, f"{line.us:.2f}", f"{line.over_ours:.2f}", line.peer, f"{line.peer_us:.2f}", f"{line.times:.1f}"]
                      for motion, line in found.iterrows()]}
+
+
+@quotes("real-motions")
+def real_motions_bounds(record):
+    """What a pair costs whatever it does, and a test, fitted to motions of one pair; and tests where the lead is below five."""
+    rows, found = motions(record)
+    rows = rows.assign(volumes=rows.n_v / rows.pairs, tests=(rows.n_v + rows.n_p) / rows.pairs)
+    each = rows.groupby(["method", "motion"])[["us", "volumes", "tests"]].median()
+    single = each.loc["recommended"].drop("kuka (unseen)")
+    alone = rows[rows.motion != "kuka (unseen)"]
+    claim((alone.pairs == alone.frames).all(), "one pair a frame but on kuka")
+    terms = np.column_stack([np.ones(len(single)), single.tests])
+    fixed, price = np.linalg.lstsq(terms / single.us.to_numpy()[:, None], np.ones(len(single)), rcond=None)[0]
+    off = terms @ [fixed, price] / single.us
+    few = ["easy (seen)", "env-rob (unseen)", "abstract (unseen)"]
+    low = found.index[found.times < 5]
+    claim(set(low) == {*few, "kuka (unseen)", "spirelli (unseen)", "escape (unseen)"}, "the motions on which the lead is below five")
+    ours, theirs = single.volumes["spirelli (unseen)"], each.loc["FCL, obb"].volumes["spirelli (unseen)"]
+    claim(found.peer["spirelli (unseen)"] == "FCL, obb" and ours > theirs, "on spirelli FCL is the fastest library and makes fewer tests")
+    return {"fixed": fixed, "price": 1e3 * price, "off": max(off.max(), 1 / off.min()), "few": [f"{single.tests[name]:.0f}" for name in few],
+            "share": Interval(100 * fixed / single.us[few]), "spirelli": ours, "spirelli_fcl": theirs, "escape": single.tests["escape (unseen)"]}
 
 
 @quotes(["recommended-rule", "real-motions"])
