@@ -282,7 +282,7 @@ class Adaptive : public AdaptivePrices {
   int unseen_ = 0;                      // runs since the bodies were followed
   int swept_ = 0;                       // complete runs of the list since its rebuild
   double cost_before_retry_ = 0, failed_at_ = 0;  // to spend before the next trial; step at failure
-  double displacement_ = 0, step_ = 0;  // bound of both bodies; motion in the last run
+  double displacement_ = 0, step_ = 0;            // bound of both bodies; motion in the last run
   SphereTest spheres_;
   double leaf_ = 0;                             // size of a leaf, mean of both bodies
   double rebuild_ = 0;                          // cost of the list's last rebuild
