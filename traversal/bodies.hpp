@@ -119,7 +119,7 @@ class Bodies {
   bool roots_are_apart(const ObjectPair& pair, Query& query) {
     static thread_local Workspace workspace;
     auto &a = bodies_[pair.i], &b = bodies_[pair.j];
-    const auto* placement = detail::placement_in_b(a, b, workspace);
+    const auto* placement = placement_in_b(a, b, workspace);
     if constexpr (PlacedRelatively<V>) {
       PairBatch<Element<typename V::scalar>, false> roots;
       roots.put(0, {0, 0});

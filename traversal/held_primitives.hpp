@@ -29,6 +29,13 @@ class HeldPrimitives {
         workspace_(workspace),
         front_(front),
         pending_(workspace.pending) {}
+  /// The leaf stage of a traversal from a front (see traversal.hpp).
+  template <class Pair, class Memory>
+  HeldPrimitives(Body<V>& a, Body<V>& b, const Pair&, Query& query, Counter& counter,
+                 Workspace& workspace, const Memory& memory)
+      : HeldPrimitives(a, b, query, counter, workspace, memory.front()) {
+    pending_.clear();
+  }
 
   /// Holds the primitive pairs of two leaves, from the entry in `slot` (Outcome::none: no entry).
   void hold(const Node& a, const Node& b, std::size_t slot) {
@@ -48,16 +55,15 @@ class HeldPrimitives {
     return std::size_t{a.count} * b.count > portion;
   }
 
-  /// Whether the caller should flush now.
-  bool full() const {
-    return satisfied_ ||
-           pending_.size() > std::max<std::size_t>(Query::buffer_size, F::held_at_least);
-  }
+  /// Flushes if enough are held.
+  [[gnu::always_inline]] bool test_due() { return full() && flush(); }
+  /// Flushes at the end of a run.
+  [[gnu::always_inline]] bool finish() { return flush(); }
 
   /// Tests the held pairs and returns whether the query is satisfied. Where two large leaves have
   /// satisfied it already, nothing is tested: the entries of later leaves stay untested until the
   /// next run.
-  bool flush() {
+  [[gnu::always_inline]] bool flush() {
     if (!satisfied_) return test();
     for (const Candidate& candidate : pending_)
       if (candidate.slot != Outcome::none) front_.keep(candidate.slot, EntryState::not_yet, 0);
@@ -73,6 +79,11 @@ class HeldPrimitives {
 
  private:
   static constexpr std::size_t portion = 512;
+
+  bool full() const {
+    return satisfied_ ||
+           pending_.size() > std::max<std::size_t>(Query::buffer_size, F::held_at_least);
+  }
 
   struct Portions {
     bool satisfied;

@@ -302,6 +302,59 @@ TEST(Wide, TouchingInAPlaneLasts) {
   EXPECT_LT(10 * traversed, touching);
 }
 
+/// Bodies that jump in every frame, then hardly move, then jump again, one time over.
+std::vector<PosesOfFrame> jumping_and_slow(std::size_t bodies) {
+  std::mt19937 random(5);
+  std::vector<PosesOfFrame> frames;
+  for (int f = 0; f < 30; ++f) frames.push_back(random_frame(random, bodies, 1.2, 0, {0, 0, 0}));
+  for (int f = 0; f < 30; ++f) {
+    frames.push_back(frames.back());
+    for (auto& pose : frames.back()) pose.translation[0] += 1e-5;
+  }
+  for (int f = 0; f < 90; ++f) frames.push_back(random_frame(random, bodies, 1.2, 0, {0, 0, 0}));
+  return frames;
+}
+
+/// Plays these frames and expects the answers from the roots in every frame, also in those in which
+/// a pause begins or ends. Returns in how many frames margins paused while bodies jumped, and in
+/// how many while they were slow.
+template <class Query, class MakeQuery, class AnswerOf>
+std::array<std::size_t, 2> pauses_of(const MakeQuery& make_query, const AnswerOf& answer_of) {
+  const TriangleMesh mesh = formula_mesh("star", 120);
+  const WideHierarchy<SlabBox<float>, 16> hierarchy(mesh, builds::BottomUpLocal::topology(mesh, 1));
+  const std::vector<WideShape<SlabBox<float>, 16>> shapes(5, {&mesh, &hierarchy});
+  WidePairs<SlabBox<float>, 16, WideMargins> margins(shapes, all_object_pairs(5));
+  WidePairs<SlabBox<float>, 16> from_roots(shapes, all_object_pairs(5));
+  std::size_t paused_slow = 0, paused_fast = 0;
+  const auto frames = jumping_and_slow(5);
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    std::vector<double> expected(margins.pairs().size(), -1), found = expected;
+    Counting counter;
+    from_roots.frame(frames[f], counter, make_query,
+                     [&](std::size_t p, const Query& query) { expected[p] = answer_of(query); });
+    margins.frame(frames[f], counter, make_query,
+                  [&](std::size_t p, const Query& query) { found[p] = answer_of(query); });
+    EXPECT_EQ(found, expected) << f;
+    const bool slow = f >= 33 && f < 60;  // the end of a pause is seen a few frames later
+    (slow ? paused_slow : paused_fast) += margins.memory().paused();
+  }
+  return {paused_fast, paused_slow};
+}
+
+/// A distance is kept by bodies at rest alone, so it pauses for slow ones, too.
+TEST(Wide, MarginsPauseWhereBodiesAreFast) {
+  const auto [fast, slow] =
+      pauses_of<Touching>([](std::size_t) { return Touching(); },
+                          [](const Touching& query) { return query.touching() ? 1.0 : 0.0; });
+  EXPECT_GT(fast, 20u);
+  EXPECT_EQ(slow, 0u);
+  const auto [fast_distances, slow_distances] =
+      pauses_of<Distance>([](std::size_t) { return Distance(); },
+                          [](const Distance& query) { return query.distance(); });
+  EXPECT_GT(fast_distances, 20u);
+  EXPECT_GT(slow_distances, 0u);
+}
+
 /// What rests, moves along together or is far from the rest is not tested again.
 TEST(Wide, RestIsNotTested) {
   for (const auto& [scene, truth] : scenes_with_truth()) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What a traversal of two wide trees measures for a memory of margins (wide_margins.hpp): a lower
-/// bound on the distance of the bodies, while it finds them apart; and which triangles cross.
+/// What a traversal of two wide trees records: nothing (NoRecord); or, for a memory of margins
+/// (wide_margins.hpp), a lower bound on the distance of the bodies, while it finds them apart, and
+/// which triangles cross (GapMeasure). See traversal.hpp for the members of a traversal's memory.
 #pragma once
 
 #include <algorithm>
@@ -19,69 +20,124 @@ struct Crossing {
   bool certain;  ///< the filter in float decided it; otherwise the query's own test did
 };
 
+/// The expected answer. It affects the order of steps, but no answer.
+enum class Expect { touching, apart };
+
+/// Where a traversal of wide trees starts, as the memory of its pair of bodies knows.
+struct TraversalStart {
+  Expect expect = Expect::touching;
+  std::optional<NodePair> touched = {};  ///< GapMeasure::touched of the last frame, tested first
+  /// Null, or a front: if it is complete the traversal starts from it, else it is written anew.
+  WideFront* front = nullptr;
+  double rotation = 0;  ///< bound on the rotation of both bodies since the first frame
+};
+
+/// Records nothing: the memory of a traversal (see traversal.hpp) that starts from the roots.
+class NoRecord {
+ public:
+  static constexpr bool measures_gaps = false;
+
+  explicit NoRecord(const TraversalStart& start) : expect_(start.expect) {}
+
+  template <class Pair>
+  void begin(Pair& pair) const {
+    pair.start(expect_);
+  }
+  static constexpr bool sweep_is_due() { return false; }
+  static constexpr bool sweeps() { return false; }
+  template <class Traversal>
+  static bool sweep(Traversal&) {
+    return false;
+  }
+  static constexpr std::size_t no_entries() { return WideFront::none; }
+  template <class Pair, class Step, class Found, class Query>
+  [[gnu::always_inline]] static std::uint64_t record(const Pair&, const Step&, const Found&,
+                                                     std::uint64_t near, std::size_t, Query&) {
+    return near;
+  }
+  template <class Pair, class Leaves>
+  static void finish(const Pair&, const Leaves&, bool) {}
+
+  static constexpr bool record_triangles(const NodePair&, bool, std::size_t) { return false; }
+  static void record_crossing(const Crossing&) {}
+  template <class Triangles, class Counter>
+  static void set_triangle_gap(const Triangles&, Counter&, std::size_t) {}
+
+ private:
+  Expect expect_;
+};
+
+/// Measures the least gap, and keeps a front if it is given one.
 template <Batched S>
 class GapMeasure {
  public:
-  static constexpr bool measures = true;
+  static constexpr bool measures_gaps = true;
 
-  /// Starts a traversal. A front that is not complete is cleared, to be written anew. `rotation`
-  /// bounds the rotation of both bodies since the first frame.
-  void begin(WideFront* front, double rotation) {
-    front_ = front, rotation_ = rotation;
-    sweeps_ = front && front->is_complete(), swept_ = false, due_ = 0;
-    if (front && !sweeps_) front->clear();
-    least_ = S(infinity), least_remaining_ = WideFront::S(infinity);
-    touched_.reset(), crossing_.reset();
+  explicit GapMeasure(const TraversalStart& start)
+      : start_(start),
+        front_(start.front),
+        least_(infinity),
+        least_remaining_(infinity),
+        sweep_is_due_(front_ && front_->is_complete()),
+        sweeps_(sweep_is_due_) {
+    if (front_ && !sweeps_) front_->clear();
   }
 
-  /// Whether the traversal starts from a front, and whether that has been swept.
-  bool sweeps() const { return sweeps_; }
-  bool swept() const { return swept_; }
-  WideFront& sweep() { return swept_ = true, *front_; }
-  bool front() const { return front_; }
-  std::size_t due() const { return due_; }
-
-  /// Which of the entries from `first` on, at most a register of them, are due, that is, may have
-  /// closed their gaps.
-  [[gnu::always_inline]] std::uint64_t due(std::size_t first, std::size_t entries,
-                                           const CornerTransform& corners) {
-    const WideFront::S remaining = front_->remaining_gaps(first, corners, rotation_);
-    const std::size_t lanes = std::min<std::size_t>(entries, WideFront::width);
-    const auto apart = remaining > WideFront::S(0.0f);
-    stdx::where(apart, least_remaining_) = stdx::min(least_remaining_, remaining);
-    const std::uint64_t due = ~bits(apart) & ((std::uint64_t{1} << lanes) - 1);
-    due_ += static_cast<std::size_t>(std::popcount(due));
-    return due;
+  template <class Pair>
+  void begin(Pair& pair) const {
+    if (sweeps_) return;
+    pair.start(start_.expect);
+    if (start_.touched) pair.retry(*start_.touched);
   }
 
-  /// Which volumes of one register of a step are apart. The least gap of those is kept in `least`,
-  /// lane by lane. Lanes without a child repeat one.
-  [[gnu::always_inline]] static std::uint64_t apart(const S& separation, S& least) {
-    const auto apart = separation > S(0.0f);
-    stdx::where(apart, least) = stdx::min(least, separation);
-    return bits(apart);
+  /// Whether the traversal starts from a front that has not been swept yet.
+  bool sweep_is_due() const { return sweep_is_due_; }
+  /// Retests the entries whose gaps may have closed. Returns whether the query is satisfied.
+  template <class Traversal>
+  bool sweep(Traversal& traversal) {
+    sweep_is_due_ = false;
+    auto& pair = traversal.pair();
+    const std::size_t size = front_->size();  // added entries are not retested
+    for (std::size_t first = 0; first < size; first += WideFront::width)
+      for (std::uint64_t rest = due(first, size - first, pair.frame().a_to_b()); rest;
+           rest &= rest - 1) {
+        const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(rest));
+        const WideFront::Entry entry = (*front_)[i];
+        if (!entry.triangle)
+          pair.step(
+              entry.pair, traversal.counter(), [&](auto&& step) __attribute__((always_inline)) {
+                traversal.visit(step, i);
+              });
+        else if (traversal.leaves().test(entry.pair, i))
+          return true;
+      }
+    return traversal.leaves().test_due();
   }
-  /// Records a step: the lanes that are not apart, and the gap `least` of the others, measured at
-  /// `sphere_of()`. Returns those lanes that were not opened before.
-  template <class SphereOf>
-  [[gnu::always_inline]] std::uint64_t record_step(const NodePair& pair, std::uint64_t lanes,
-                                                   std::size_t entry, const S& least,
-                                                   SphereOf&& sphere_of) {
-    least_ = stdx::min(least_, least);
-    if (!front_) return lanes;
-    std::uint64_t fresh = lanes;
+  static constexpr std::size_t no_entries() { return WideFront::none; }
+
+  /// Records a step: the lanes that are near, and the gap of the others, at its reference sphere.
+  /// Returns those lanes that were not opened before.
+  template <class Pair, class Step, class Found, class Query>
+  [[gnu::always_inline]] std::uint64_t record(const Pair&, const Step& step, const Found& found,
+                                              std::uint64_t near, std::size_t entry, Query&) {
+    least_ = stdx::min(least_, found.least);
+    if (!front_) return near;
+    std::uint64_t fresh = near;
     if (entry == WideFront::none) {
-      entry = front_->add({pair, static_cast<std::uint16_t>(lanes), 0, 0});
+      entry = front_->add({step.pair, static_cast<std::uint16_t>(near), 0, 0});
     } else {
       auto& opened = (*front_)[entry].opened;
-      fresh = lanes & ~std::uint64_t{opened};
+      fresh = near & ~std::uint64_t{opened};
       opened = static_cast<std::uint16_t>(opened | fresh);
     }
-    front_->set_gap(entry, stdx::hmin(least), sphere_of(), rotation_);
+    front_->set_gap(entry, stdx::hmin(found.least), step.of.reference_sphere(), start_.rotation);
     return fresh;
   }
+  template <class Pair, class Leaves>
+  static void finish(const Pair&, const Leaves&, bool) {}
+
   /// Records a test of triangles; `touching`: some may touch. Returns whether to measure their gap.
-  bool triangles(const NodePair& pair, bool touching, std::size_t entry) {
+  bool record_triangles(const NodePair& pair, bool touching, std::size_t entry) {
     if (touching) touched_ = pair;
     if (!front_ || entry == WideFront::none) {
       least_ = S(0.0f);
@@ -94,14 +150,21 @@ class GapMeasure {
     least_ = S(0.0f);
     return false;
   }
-  void crossing(const Crossing& found) { crossing_ = found; }
-  const std::optional<Crossing>& crossing() const { return crossing_; }
-  void set_triangle_gap(float gap, std::size_t entry, const ReferenceSphere& reference) {
+  template <class Triangles, class Counter>
+  void set_triangle_gap(const Triangles& triangles, Counter& counter, std::size_t entry) {
+    const float gap = triangles.gap(counter);
     least_ = stdx::min(least_, S(gap));
-    front_->set_gap(entry, gap, reference, rotation_);
+    front_->set_gap(entry, gap, triangles.reference_sphere(), start_.rotation);
     if (!(gap > 0)) (*front_)[entry].rest = 8;
   }
+  void record_crossing(const Crossing& found) { crossing_ = found; }
 
+  /// Whether a front was kept; whether the traversal started from it, and how many of its entries
+  /// were due.
+  bool front() const { return front_; }
+  bool sweeps() const { return sweeps_; }
+  std::size_t due() const { return due_; }
+  const std::optional<Crossing>& crossing() const { return crossing_; }
   /// The pair whose triangles touched, or may have.
   const std::optional<NodePair>& touched() const { return touched_; }
   /// A lower bound on the distance of the bodies; 0 where none is known. It covers the rounding of
@@ -114,14 +177,27 @@ class GapMeasure {
  private:
   static constexpr float infinity = std::numeric_limits<float>::infinity();
 
+  /// Which of the entries from `first` on, at most a register of them, are due, that is, may have
+  /// closed their gaps.
+  [[gnu::always_inline]] std::uint64_t due(std::size_t first, std::size_t entries,
+                                           const CornerTransform& corners) {
+    const WideFront::S remaining = front_->remaining_gaps(first, corners, start_.rotation);
+    const std::size_t lanes = std::min<std::size_t>(entries, WideFront::width);
+    const auto apart = remaining > WideFront::S(0.0f);
+    stdx::where(apart, least_remaining_) = stdx::min(least_remaining_, remaining);
+    const std::uint64_t due = ~bits(apart) & ((std::uint64_t{1} << lanes) - 1);
+    due_ += static_cast<std::size_t>(std::popcount(due));
+    return due;
+  }
+
+  TraversalStart start_;
+  WideFront* front_;
   S least_;
   WideFront::S least_remaining_;
   std::optional<NodePair> touched_;
   std::optional<Crossing> crossing_;
-  WideFront* front_ = nullptr;
-  double rotation_ = 0;
   std::size_t due_ = 0;
-  bool sweeps_ = false, swept_ = false;
+  bool sweep_is_due_, sweeps_;
 };
 
 }  // namespace bvlab

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <ranges>
 #include <span>
 #include <type_traits>
@@ -18,6 +19,7 @@
 #include "hierarchies/geometry/threads.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/wide/wide_margins.hpp"
+#include "traversal/wide/wide_pair.hpp"
 
 namespace bvlab {
 
@@ -57,7 +59,8 @@ class WidePairs {
     using Query = std::remove_cvref_t<decltype(make_query(0))>;
     if (!has_origin_) origin_ = centre_of(poses), has_origin_ = true;
     poses_ = poses;
-    memory_.template begin_frame<Query>();
+    const auto all = std::views::iota(std::size_t{0}, bodies_.size());
+    memory_.template begin_frame<Query>(last_frame(all));
     if (threads_.count() > 1) return frame_on_threads<Query>(counter, make_query, take);
     for (std::size_t i = 0; i < bodies_.size(); ++i) move(i);
     query_pairs<Query>(
@@ -83,7 +86,7 @@ class WidePairs {
              const Vec3<double>&, Threads& threads) {
     poses_ = poses;
     if (workers_.size() < threads.count()) workers_.resize(threads.count());
-    memory_.template begin_frame<Query>();
+    memory_.template begin_frame<Query>(last_frame(moved_));
     for (const auto i : moved_) memory_.rest(i);
     moved_.assign(movers.begin(), movers.end());
   }
@@ -109,6 +112,7 @@ class WidePairs {
   }
 
   const std::vector<ObjectPair>& pairs() const { return pairs_; }
+  const Memory& memory() const { return memory_; }
   /// Entries of all fronts, or of one pair's. An entry is a step's pair of nodes with the lanes it
   /// closed, or a triangle with a leaf.
   std::size_t front_size() const { return memory_.front_size(); }
@@ -121,7 +125,20 @@ class WidePairs {
   struct alignas(128) Worker {
     std::array<WideWorkspace, at_once> workspaces;
     PairSieve sieve;
+    FrameOfPairs frame;
   };
+
+  /// What became of the pairs in the last frame, in which these bodies moved.
+  template <class Moved>
+  FrameOfPairs last_frame(const Moved& moved) {
+    FrameOfPairs last;
+    for (auto& worker : workers_) last.add(worker.frame), worker.frame = {};
+    if (memory_.paused() && std::size(moved) > 0) {
+      for (const auto i : moved) last.motion += memory_.motion(i);
+      last.motion /= static_cast<double>(std::size(moved));
+    }
+    return last;
+  }
 
   void move(std::size_t i) { memory_.move(i, bodies_[i], poses_[i], culling_, origin_); }
 
@@ -151,15 +168,22 @@ class WidePairs {
       memory_.repeat(p, query);
       take(p, query);
     };
-    for (const std::uint32_t p : slots)
-      if (memory_.template answer_valid<Query>(p, pairs_[p]))
-        repeat(p);
-      else
-        sieve.add(p);
+    if (memory_.paused()) {
+      for (const std::uint32_t p : slots) sieve.add(p);
+    } else {
+      for (const std::uint32_t p : slots)
+        if (memory_.template answer_valid<Query>(p, pairs_[p]))
+          worker.frame.spared += memory_.spares_traversal(p), repeat(p);
+        else
+          sieve.add(p);
+    }
     const std::uint64_t before = counter.n_v + counter.n_p;
     counter.tested(sieve.undecided().size());
+    worker.frame.queried += slots.size();
     if constexpr (!wants_bound<Query>()) {
       memory_.template cull<Query>(sieve, {pairs_, poses_, meshes_, culling_}, counter, make_query);
+      for (const std::int32_t p : sieve.decided())
+        worker.frame.spared += memory_.spares_traversal(static_cast<std::size_t>(p));
       counter.tested(culling_.cull_by_directions(
           sieve, pairs_, [&](std::size_t p) { return memory_.skips_directions(p); },
           [&](std::size_t p, double gap) { memory_.apart(p, pairs_[p], gap); }));
@@ -168,48 +192,63 @@ class WidePairs {
         repeat(static_cast<std::size_t>(p));
       }
     }
-    traverse_interleaved<Query>(sieve.undecided(), worker, before, counter, make_query, take);
+    if (sieve.undecided().empty()) return;
+    worker.frame.traversed += sieve.undecided().size();
+    using Lanes = typename Kernel::template PairFrame<V, F>::S;
+    using Measure = typename Memory::template Measure<Lanes>;
+    if constexpr (!wants_bound<Query>() && !std::is_same_v<Measure, NoRecord>)
+      if (!memory_.paused())
+        return traverse_interleaved<Query, Measure>(sieve.undecided(), worker, before, counter,
+                                                    make_query, take);
+    traverse_interleaved<Query, NoRecord>(sieve.undecided(), worker, before, counter, make_query,
+                                          take);
   }
 
   /// `before`: n_v + n_p when the frame began.
-  template <class Query, class Counter, class MakeQuery, class Take>
+  template <class Query, class Measure, class Counter, class MakeQuery, class Take>
   void traverse_interleaved(std::span<const std::int32_t> near, Worker& worker,
                             std::uint64_t before, Counter& counter, MakeQuery& make_query,
                             Take& take) {
-    using Lanes = typename Kernel::template PairFrame<V, F>::S;
-    using Measure = std::conditional_t<wants_bound<Query>(), NotMeasuring,
-                                       typename Memory::template Measure<Lanes>>;
-    using Traversal = WideTraversal<V, F, Query, Counter, Measure, Kernel>;
-    std::array<Traversal, at_once> traversals{Traversal(worker.workspaces[0]),
-                                              Traversal(worker.workspaces[1])};
-    std::array<std::uint32_t, at_once> pair;
+    struct Running {
+      std::uint32_t pair;
+      std::optional<Query> query;
+      std::optional<Traversal<WidePair<V, F, Kernel>, Query, Counter, Measure>> traversal;
+    };
+    std::array<Running, at_once> all;
+    std::array<Running*, at_once> running;
     std::size_t next = 0, active = 0;
-    std::array<Traversal*, at_once> running;
     const auto begin = [&](std::size_t k) {
-      pair[k] = static_cast<std::uint32_t>(near[next++]);
-      const auto [i, j] = pairs_[pair[k]];
+      const std::uint32_t p = near[next++];
+      Running& now = *running[k];
+      const auto [i, j] = pairs_[p];
       memory_.require(bodies_[i], poses_[i]), memory_.require(bodies_[j], poses_[j]);
-      running[k]->begin(bodies_[i], bodies_[j], make_query(pair[k]), counter,
-                        memory_.template start<Query>(pair[k], pairs_[pair[k]]));
+      now.pair = p;
+      now.query.emplace(make_query(p));
+      now.traversal.emplace(bodies_[i], bodies_[j], *now.query, counter,
+                            worker.workspaces[static_cast<std::size_t>(&now - all.data())],
+                            memory_.template start<Query>(p, pairs_[p]));
     };
     for (; active < at_once && next < near.size(); ++active) {
-      running[active] = &traversals[active];
+      running[active] = &all[active];
       begin(active);
     }
     while (active > 0)
       for (std::size_t k = 0; k < active;) {
-        if (running[k]->advance()) {
+        Running& now = *running[k];
+        if (now.traversal->advance()) {
           ++k;
           continue;
         }
         counter.queried(before);
-        memory_.remember(pair[k], pairs_[pair[k]], running[k]->query(), running[k]->measure());
-        take(pair[k], running[k]->query());
+        const auto& recorded = now.traversal->memory();
+        worker.frame.spared += recorded.sweeps();
+        memory_.remember(now.pair, pairs_[now.pair], *now.query, recorded);
+        take(now.pair, *now.query);
         if (next < near.size()) {
           begin(k++);
         } else {
           --active;
-          std::swap(running[k], running[active]), std::swap(pair[k], pair[active]);
+          std::swap(running[k], running[active]);
         }
       }
   }

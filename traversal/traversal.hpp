@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The loop over two hierarchies, for every kernel, query and memory.
+///
+/// A step takes pairs of nodes, tests their volumes in the lanes of registers, has the memory
+/// record what is apart, and passes the rest on: pairs of leaves to the leaf stage, which tests
+/// their triangles, and all others back to the queue of open pairs. A traversal from the two roots
+/// is the recursive algorithm. From a front, the steps of its entries come first.
+///
+/// The parts do not know each other:
+///   the pair    two bodies as a kernel sees them, and the open pairs: what a step tests, and what
+///               comes next (GatheredPair, WidePair)
+///   the memory  what is kept of tested pairs (FrontMemory; NoRecord and GapMeasure of wide trees)
+///   the leaves  the leaf stage (HeldPrimitives, FilteredTriangles)
+///
+/// Members of a pair. `visit(step)` is the loop's; the lanes of a step are bits of a mask.
+///   done()                            whether no pair is open
+///   next<wanted>(query, counter, visit)   visits the step that is next, or several
+///   test<wanted>(step, query, counter)    what is apart: a LanesApart, or more in a derived class
+///   pass_on(step, found, lanes, entries, memory, leaves, query, counter)
+///                                     queues what a step has found near
+/// Members of a memory:
+///   measures_gaps                     whether steps measure gaps for it
+///   begin(pair)                       queues where the traversal starts, unless a sweep does
+///   no_entries()                      the `entries` of a step that comes from none
+///   sweep_is_due(), sweep(traversal)  whether entries of a front come first; tests them, and
+///                                     returns whether the query is satisfied
+///   record(pair, step, found, lanes, entries, query)
+///                                     keeps the lanes that are apart, and returns those to pass
+///                                     on; `entries` says which entries the step came from
+///   finish(pair, leaves, satisfied)   the run is over
+/// Members of the leaves:
+///   test_due(), finish()              test triangles that need not wait any longer, or all; return
+///                                     whether the query is satisfied
+///   tested()                          pairs of triangles tested so far
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "traversal/queries/query.hpp"
+#include "traversal/tracked_front.hpp"
+
+namespace bvlab {
+
+/// What a test of two volumes is for: whether they overlap; for margins, also a lower bound on
+/// their distance; or a lower bound by which the query culls.
+enum class TestFor { overlap, margins, bound };
+
+/// The lanes of a step whose volumes are apart, or which the query culls.
+struct LanesApart {
+  std::uint64_t apart;
+};
+
+/// One run, made in one go or step by step, so that a caller can interleave several pairs of
+/// bodies: while one waits for a result, another is computed.
+template <class PairType, class QueryType, class Counter, class Memory>
+class Traversal {
+ public:
+  using Pair = PairType;
+  using Query = QueryType;
+  using Leaves = typename Pair::template Leaves<Query, Counter, Memory>;
+  static constexpr TestFor wanted = wants_bound<Query>()    ? TestFor::bound
+                                    : Memory::measures_gaps ? TestFor::margins
+                                                            : TestFor::overlap;
+
+  /// The memory is constructed from `start`. All other arguments must outlive this.
+  template <class Body, class Start>
+  Traversal(Body& a, Body& b, Query& query, Counter& counter, typename Pair::Workspace& workspace,
+            Start&& start)
+      : query_(query),
+        counter_(counter),
+        workspace_(workspace),
+        memory_(start),
+        pair_(a, b, workspace),
+        leaves_(a, b, pair_, query, counter, workspace, memory_) {
+    memory_.begin(pair_);
+  }
+  Traversal(const Traversal&) = delete;
+  Traversal& operator=(const Traversal&) = delete;
+
+  /// Makes one step; returns whether there is more to do.
+  [[gnu::noinline]] bool advance() { return step(); }
+  /// Makes all steps that are left.
+  [[gnu::always_inline]] TraversalStatistics run() {
+    while (step()) {
+    }
+    return {!satisfied_, tests_, leaves_.tested()};
+  }
+
+  /// Tests a step's volumes and passes on what is near. Always inlined: what it finds stays in
+  /// registers.
+  template <class Step, class Entries>
+  [[gnu::always_inline]] void visit(Step& step, const Entries& entries) {
+    const std::uint64_t lanes = step.lanes();
+    count_tests(static_cast<std::size_t>(std::popcount(lanes)));
+    const auto found = pair_.template test<wanted>(step, query_, counter_);
+    const std::uint64_t near =
+        memory_.record(pair_, step, found, lanes & ~found.apart, entries, query_);
+    pair_.pass_on(step, found, near, entries, memory_, leaves_, query_, counter_);
+  }
+
+  /// Visits what the kernel takes next; returns whether the query is satisfied.
+  bool next() {
+    pair_.template next<wanted>(
+        query_, counter_, [this](auto&& step) __attribute__((always_inline)) {
+          visit(step, memory_.no_entries());
+        });
+    return leaves_.test_due();
+  }
+
+  void count_tests(std::size_t count) {
+    tests_ += count;
+    counter_.tested(count);
+  }
+
+  Pair& pair() { return pair_; }
+  Query& query() const { return query_; }
+  Counter& counter() const { return counter_; }
+  typename Pair::Workspace& workspace() const { return workspace_; }
+  Memory& memory() { return memory_; }
+  Leaves& leaves() { return leaves_; }
+
+ private:
+  [[gnu::always_inline]] bool step() {
+    satisfied_ = memory_.sweep_is_due() ? memory_.sweep(*this) : next();
+    if (!satisfied_ && !pair_.done()) return true;
+    satisfied_ = satisfied_ || leaves_.finish();
+    memory_.finish(pair_, leaves_, satisfied_);
+    return false;
+  }
+
+  Query& query_;
+  Counter& counter_;
+  typename Pair::Workspace& workspace_;
+  [[no_unique_address]] Memory memory_;
+  Pair pair_;
+  Leaves leaves_;
+  std::size_t tests_ = 0;
+  bool satisfied_ = false;
+};
+
+}  // namespace bvlab

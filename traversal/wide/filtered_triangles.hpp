@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The leaf stage of wide trees: tests the triangles of two leaves in float, a register of pairs at
+/// a time, with a derived bound on all rounding (triangle_filter.hpp). Pairs decided by this filter
+/// skip the exact test; the few others are held and go to the query, in the world.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "traversal/primitives/triangle_filter.hpp"
+#include "traversal/queries/candidate.hpp"
+#include "traversal/queries/query.hpp"
+#include "traversal/wide/wide_front.hpp"
+#include "traversal/wide/work_queue.hpp"
+
+namespace bvlab {
+
+/// PairFrame is a kernel's; Memory records what is found (GapMeasure, NoRecord).
+template <class PairFrame, class Body, class Query, class Counter, class Memory>
+class FilteredTriangles {
+  using S = typename PairFrame::S;
+  static constexpr std::size_t parts = PairFrame::parts, width = S::size();
+
+ public:
+  template <class Pair, class Workspace>
+  FilteredTriangles(Body& a, Body& b, const Pair& pair, Query& query, Counter& counter,
+                    Workspace& workspace, Memory& memory)
+      : bodies_{&a, &b},
+        frame_(pair.frame()),
+        query_(query),
+        counter_(counter),
+        memory_(memory),
+        queue_(workspace.triangles) {}
+
+  /// Tests the queued triangles; returns whether the query is satisfied.
+  [[gnu::always_inline]] bool test_due() {
+    while (!queue_.empty()) {
+      if constexpr (wants_bound<Query>()) {
+        float order;
+        const NodePair next = queue_.take_least(order);
+        // Where it is positive, `order` is a lower bound on the distance of the pair.
+        if (!(order > 0 && bits(query_.culls(order))) && measure(next)) return true;
+      } else {
+        if (test(queue_.take_last())) return true;
+      }
+    }
+    return false;
+  }
+  /// Tests the held candidates at the end of a run.
+  bool finish() { return pending_ > 0 && flush(); }
+  /// Pairs of triangles tested.
+  std::size_t tested() const { return tested_; }
+
+  /// Tests the triangles of a pair that a step has found near. `entry` is the front's entry that is
+  /// retested, if any.
+  [[gnu::noinline]] bool test(const NodePair& pair, std::size_t entry = WideFront::none) {
+    const auto triangles = frame_.triangles(pair);
+    const std::uint64_t lanes = triangles.lanes();
+    count(lanes);
+    std::uint64_t met = 0, apart = 0;
+    for_each_part([&](std::size_t part) __attribute__((always_inline)) {
+      const auto [x, y] = triangles.corners(part);
+      const auto verdict = certainly_within<S>(x, y, S(frame_.a_to_b().error_bound()));
+      met |= bits(verdict.meeting) << (part * width);
+      apart |= bits(verdict.apart) << (part * width);
+    });
+    for (std::uint64_t rest = met &= lanes; rest; rest &= rest - 1) {
+      const int lane = std::countr_zero(rest);
+      if (!query_.known(triangles.of_a(lane), triangles.of_b(lane))) continue;
+      memory_.record_triangles(pair, true, entry);
+      memory_.record_crossing({triangles.of_a(lane), triangles.of_b(lane), true});
+      return true;
+    }
+    std::uint64_t open = lanes & ~apart & ~met;
+    if (memory_.record_triangles(pair, open != 0, entry))
+      memory_.set_triangle_gap(triangles, counter_, entry);
+    for (; open; open &= open - 1) {
+      const int lane = std::countr_zero(open);
+      if (hold(triangles.of_a(lane), triangles.of_b(lane))) return true;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr std::size_t at_most = 16;
+
+  /// Unrolled: a loop, even of one pass, would keep its results in memory.
+  template <class Do>
+  [[gnu::always_inline]] static void for_each_part(Do&& what) {
+    [&]<std::size_t... part>(std::index_sequence<part...>) __attribute__((always_inline)) {
+      (what(part), ...);
+    }
+    (std::make_index_sequence<parts>());
+  }
+
+  void count(std::uint64_t lanes) {
+    const auto pairs = static_cast<std::size_t>(std::popcount(lanes));
+    tested_ += pairs;
+    counter_.primitives(pairs);
+  }
+
+  /// As test, where a distance is sought: holds pairs of triangles whose volumes are near enough.
+  [[gnu::noinline]] bool measure(const NodePair& pair) {
+    const auto triangles = frame_.triangles(pair);
+    std::uint64_t remaining = triangles.lanes();
+    if constexpr (requires { triangles.gaps(counter_); })
+      remaining &= ~bits(query_.culls(triangles.gaps(counter_)));
+    count(remaining);
+    for (; remaining; remaining &= remaining - 1) {
+      const int lane = std::countr_zero(remaining);
+      if (hold(triangles.of_a(lane), triangles.of_b(lane))) return true;
+    }
+    return finish();
+  }
+
+  bool hold(std::uint32_t a, std::uint32_t b) {
+    world_[0][pending_] = bodies_[0]->triangle(a), world_[1][pending_] = bodies_[1]->triangle(b);
+    candidates_[pending_] = {&world_[0][pending_], &world_[1][pending_], a, b, 0};
+    ++pending_;
+    return pending_ > std::min(Query::buffer_size, at_most - 1) && flush();
+  }
+
+  bool flush() {
+    const std::size_t count = std::exchange(pending_, 0);
+    const Outcome outcome = query_.primitives(std::span(candidates_).first(count));
+    if constexpr (Query::one_hit_is_enough)
+      if (outcome.witness < count)
+        memory_.record_crossing(
+            {candidates_[outcome.witness].a, candidates_[outcome.witness].b, false});
+    return outcome.satisfied;
+  }
+
+  std::array<Body*, 2> bodies_;
+  const PairFrame& frame_;
+  Query& query_;
+  Counter& counter_;
+  Memory& memory_;
+  WorkQueue& queue_;
+  std::array<std::array<Triangle, at_most>, 2> world_;
+  std::array<Candidate, at_most> candidates_;
+  std::size_t pending_ = 0, tested_ = 0;
+};
+
+}  // namespace bvlab

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Two bodies over wide trees as the loop sees them (traversal.hpp), by any kernel that tests all
+/// lanes of a step in registers (siblings_kernel.hpp, mixed_kernel.hpp): an entry of a front, and
+/// an open pair, is a step's pair of nodes.
+///
+/// Where one hit is enough or a distance is sought, the open pair that is likeliest to end the
+/// search is taken first (see WorkQueue).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include "traversal/traversal.hpp"
+#include "traversal/wide/filtered_triangles.hpp"
+#include "traversal/wide/gap_measure.hpp"
+#include "traversal/wide/siblings_kernel.hpp"
+#include "traversal/wide/work_queue.hpp"
+
+namespace bvlab {
+
+/// Buffers that are reused from one traversal to the next.
+struct WideWorkspace {
+  WorkQueue nodes;      ///< pairs of nodes
+  WorkQueue triangles;  ///< pairs whose triangles are to be tested
+};
+
+template <BoundingVolume V, int F, class Kernel>
+class WidePair {
+ public:
+  using PairFrame = typename Kernel::template PairFrame<V, F>;
+  using Workspace = WideWorkspace;
+  template <class Query, class Counter, class Memory>
+  using Leaves =
+      FilteredTriangles<PairFrame, typename Kernel::template Body<V, F>, Query, Counter, Memory>;
+  static_assert(std::is_same_v<typename V::scalar, float>,
+                "orders and the filter of triangles are float32");
+
+  template <class Body>
+  WidePair(Body& a, Body& b, Workspace& workspace)
+      : nodes_(workspace.nodes), triangles_(workspace.triangles) {
+    frame_.begin(a, b);
+    nodes_.clear(), triangles_.clear();
+  }
+
+  /// Starts from the roots.
+  void start(Expect expect) {
+    steps_ = expect == Expect::touching ? 0 : most_in_order + 1;
+    nodes_.push(frame_.roots(), 0);
+  }
+  /// The pair that touched in the last frame, tested first.
+  void retry(const NodePair& touched) { frame_.retry(touched, nodes_, triangles_); }
+
+  const PairFrame& frame() const { return frame_; }
+  bool done() const { return nodes_.empty(); }
+
+  template <TestFor wanted, class Query, class Counter, class Visit>
+  [[gnu::always_inline]] void next(Query& query, Counter& counter, Visit&& visit) {
+    if constexpr (wanted == TestFor::bound) {
+      float order;
+      const NodePair pair = nodes_.take_least(order);
+      // Where it is positive, `order` is a lower bound on the distance of the pair.
+      if (!(order > 0 && bits(query.culls(order)))) step(pair, counter, visit);
+    } else if constexpr (Query::one_hit_is_enough) {
+      if (!triangles_.empty()) return;  // those of the pair that touched come first
+      float order;
+      if (++steps_ <= most_in_order)
+        step(Kernel::nearest_child_first ? nodes_.take_last() : nodes_.take_least(order), counter,
+             visit);
+      else
+        several(counter, visit);
+    } else {
+      step(nodes_.take_last(), counter, visit);
+    }
+  }
+
+  /// A kernel's step and the pair that it is the step of.
+  template <class KernelStep>
+  struct Step {
+    const KernelStep& of;
+    NodePair pair;
+
+    std::uint64_t lanes() const { return of.lanes(); }
+  };
+
+  /// Makes the step of a pair.
+  template <class Counter, class Visit>
+  [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Visit&& visit) const {
+    frame_.step(
+        pair,
+        counter, [&]<class KernelStep>(const KernelStep& step) __attribute__((always_inline)) {
+          visit(Step<KernelStep>{step, pair});
+        });
+  }
+
+  /// What a step has found, lane by lane.
+  struct Found : LanesApart {
+    using S = typename PairFrame::S;
+    std::array<S, PairFrame::parts>
+        order;  ///< the lane with the least is likeliest to end a search
+    S least;    ///< the least gap of lanes that are apart, where measured
+  };
+
+  template <TestFor wanted, class Step, class Query, class Counter>
+  [[gnu::always_inline]] Found test(const Step& step, Query& query, Counter&) const {
+    using S = typename Found::S;
+    Found found;
+    found.apart = 0, found.least = S(std::numeric_limits<float>::infinity());
+    // Unrolled: a loop, even of one pass, would keep its results in memory.
+    [&]<std::size_t... part>(std::index_sequence<part...>) __attribute__((always_inline)) {
+      ((found.apart |= test_part<wanted>(step.of, query, part, found) << (part * S::size())), ...);
+    }
+    (std::make_index_sequence<PairFrame::parts>());
+    return found;
+  }
+
+  template <class Step, class Entry, class Memory, class Leaves, class Query, class Counter>
+  [[gnu::always_inline]] void pass_on(const Step& step, const Found& found, std::uint64_t lanes,
+                                      Entry, Memory&, Leaves&, Query&, Counter&) {
+    constexpr bool ordered =
+        Kernel::nearest_child_first && Query::one_hit_is_enough && !wants_bound<Query>();
+    step.of.push(nodes_, triangles_, lanes, found.order,
+                 ordered && steps_ <= most_in_order ? NextPair::nearest_child : NextPair::any);
+  }
+
+ private:
+  /// A hit takes 5 to 13 steps. After more, the bodies are likely apart, and then the order is
+  /// irrelevant: steps that do not wait for one another take half the time.
+  static constexpr int most_in_order = 16;
+  static constexpr std::size_t at_once = 4;
+
+  template <class Counter, class Visit>
+  [[gnu::always_inline]] void several(Counter& counter, Visit& visit) {
+    std::array<NodePair, at_once> taken;
+    const std::size_t count = std::min(nodes_.size(), at_once);
+    for (std::size_t k = 0; k < count; ++k) taken[k] = nodes_.take_last();
+    for (std::size_t k = 0; k < count; ++k) step(taken[k], counter, visit);
+  }
+
+  template <TestFor wanted, class Step, class Query>
+  [[gnu::always_inline]] static std::uint64_t test_part(const Step& step, Query& query,
+                                                        std::size_t part, Found& found) {
+    using S = typename Found::S;
+    if constexpr (wanted == TestFor::bound) {
+      found.order[part] = step.gaps(part);
+      return bits(query.culls(found.order[part]));
+    } else if constexpr (wanted == TestFor::margins) {
+      const auto seen = step.separation(part);
+      found.order[part] = seen.order;
+      const auto apart = seen.gap > S(0.0f);
+      // Lanes without a child repeat one.
+      stdx::where(apart, found.least) = stdx::min(found.least, seen.gap);
+      return bits(apart);
+    } else {
+      const auto seen = step.overlap(part);
+      found.order[part] = seen.order;
+      return bits(seen.apart);
+    }
+  }
+
+  PairFrame frame_;
+  WorkQueue& nodes_;
+  WorkQueue& triangles_;
+  int steps_ = most_in_order + 1;
+};
+
+}  // namespace bvlab
