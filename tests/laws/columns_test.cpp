@@ -98,7 +98,7 @@ TEST(Columns, SpheresAreThoseAroundPoints) {
       const NodeSphere sphere(all.columns, begin, end, all.columns.box(begin, end));
       const Vec3<double> centre(sphere.centre[0], sphere.centre[1], sphere.centre[2]);
       double farthest = 0;
-      for (const auto& p : points) farthest = std::max(farthest, (p - centre).squaredNorm());
+      for (const auto& p : points) farthest = std::max(farthest, squared_norm<double>(p - centre));
       EXPECT_EQ(all.columns.farthest_squared(begin, end, centre), farthest);
       const NodeSphere other(points);
       for (int k = 0; k < 3; ++k) EXPECT_EQ(sphere.centre[k], other.centre[k]);
