@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 
+#include "hierarchies/build/cheapest_cut.hpp"
 #include "hierarchies/build/topology.hpp"
 #include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/threads.hpp"
@@ -39,31 +40,6 @@ struct TopDown {
 
 namespace detail {
 
-/// The sort item of a triangle: its centroid and its index in the mesh (exact in a double). A
-/// centroid is loaded as four numbers, of which the fourth is ignored.
-struct CentroidOf {
-  static constexpr bool has_box = false;
-  static constexpr std::size_t centroid_at = 0;
-  std::array<double, 4> numbers;
-
-  CentroidOf(const Triangle& t, std::size_t i) {
-    const Vec3<double> c = t[0] / 3 + t[1] / 3 + t[2] / 3;
-    numbers = {c[0], c[1], c[2], static_cast<double>(i)};
-  }
-};
-/// The same, preceded by the lower and upper corner of the triangle's box.
-struct BoxOf {
-  static constexpr bool has_box = true;
-  static constexpr std::size_t lo_at = 0, hi_at = 3, centroid_at = 6;
-  std::array<double, 10> numbers;
-
-  BoxOf(const Triangle& t, std::size_t i) {
-    const Vec3<double> lo = t[0].cwiseMin(t[1]).cwiseMin(t[2]),
-                       hi = t[0].cwiseMax(t[1]).cwiseMax(t[2]), c = t[0] / 3 + t[1] / 3 + t[2] / 3;
-    numbers = {lo[0], lo[1], lo[2], hi[0], hi[1], hi[2], c[0], c[1], c[2], static_cast<double>(i)};
-  }
-};
-
 /// Partitions the items themselves, not indices: a range is contiguous in memory at any depth.
 template <class Item>
 class Splitter {
@@ -82,7 +58,7 @@ class Splitter {
       topology.nodes = subtrees({{0, count}, extent(items_)}, threads);
     topology.primitives.reserve(items_.size());
     for (const Item& item : items_)
-      topology.primitives.push_back(static_cast<std::uint32_t>(index(item)));
+      topology.primitives.push_back(static_cast<std::uint32_t>(detail::index(item)));
     return topology;
   }
 
@@ -216,9 +192,10 @@ class Splitter {
     Extent left_extent, right_extent;
     std::size_t left = 0;
     if (low < high && options_.at != SplitAt::median) {
-      const double cut = options_.at == SplitAt::mean     ? mean_of(range, key)
-                         : options_.at == SplitAt::middle ? low / 2 + high / 2
-                                                          : cheapest_cut(range, key, low, high);
+      const double cut = options_.at == SplitAt::mean ? mean_of(range, key)
+                         : options_.at == SplitAt::middle
+                             ? low / 2 + high / 2
+                             : CheapestCut<Item>::of(range, key, low, high);
       left = partition(
           range, [&](const Item& item) { return key(item) < cut; }, left_extent, right_extent);
     }
@@ -226,7 +203,8 @@ class Splitter {
       left = range.size() / 2;
       std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(left),
                        range.end(), [&](const Item& a, const Item& b) {
-                         return key(a) < key(b) || (key(a) == key(b) && index(a) < index(b));
+                         return key(a) < key(b) ||
+                                (key(a) == key(b) && detail::index(a) < detail::index(b));
                        });
       left_extent = extent(range.first(left)), right_extent = extent(range.subspan(left));
     }
@@ -260,14 +238,6 @@ class Splitter {
     return sum / static_cast<double>(range.size());
   }
 
-  static Eigen::Map<const Four> four(const Item& item, std::size_t at) {
-    return Eigen::Map<const Four>(item.numbers.data() + at);
-  }
-  static Eigen::Map<const Vec3<double>> centroid(const Item& item) {
-    return Eigen::Map<const Vec3<double>>(item.numbers.data() + Item::centroid_at);
-  }
-  static double index(const Item& item) { return item.numbers[Item::centroid_at + 3]; }
-
   /// The principal axis of the centroids; `sides` are those of their box.
   static Vec3<double> principal(Items range, const Vec3<double>& sides, Eigen::Index longest) {
     Vec3<double> along_box = Vec3<double>::Unit(longest);
@@ -282,58 +252,6 @@ class Splitter {
     }
     const Eigen::SelfAdjointEigenSolver<Mat3<double>> solver(covariance);
     return solver.info() == Eigen::Success ? Vec3<double>(solver.eigenvectors().col(2)) : along_box;
-  }
-
-  /// The box and number of the triangles with centroids in one part of the range.
-  struct Bin {
-    Four lo = Four::Constant(infinite), hi = Four::Constant(-infinite);
-    std::size_t count = 0;
-
-    void add(const Bin& other) {
-      lo = lo.min(other.lo), hi = hi.max(other.hi), count += other.count;
-    }
-    /// Half the surface area, times the count.
-    double cost() const {
-      if (count == 0) return 0;
-      const Four d = hi - lo;
-      return (d[0] * d[1] + d[1] * d[2] + d[2] * d[0]) * static_cast<double>(count);
-    }
-  };
-
-  /// The cut between bins with the least sum of (area x count) over both sides.
-  template <class Key>
-  static double cheapest_cut(Items range, const Key& key, double low, double high) {
-    if constexpr (Item::has_box) {
-      constexpr std::size_t count = 32;
-      std::array<Bin, count> bins;
-      const double per_unit = count / (high - low);
-      for (const Item& item : range) {
-        // Where the range is so small or large that the quotient overflows, all are in the last
-        // bin.
-        const double at = (key(item) - low) * per_unit;
-        Bin& bin = bins[at < count ? static_cast<std::size_t>(at) : count - 1];
-        bin.lo = bin.lo.min(four(item, Item::lo_at)), bin.hi = bin.hi.max(four(item, Item::hi_at)),
-        ++bin.count;
-      }
-      std::array<double, count> right_cost;
-      Bin right, left;
-      double cost = 0;
-      for (std::size_t k = count - 1; k > 0; --k) {
-        if (bins[k].count > 0) right.add(bins[k]), cost = right.cost();
-        right_cost[k] = cost;
-      }
-      double best = infinite, cut = low;
-      for (std::size_t k = 1; k < count; ++k) {
-        if (bins[k - 1].count == 0) continue;  // cut before
-        left.add(bins[k - 1]);
-        if (left.count == range.size()) break;
-        const double both = left.cost() + right_cost[k];
-        if (both < best) best = both, cut = low + static_cast<double>(k) / per_unit;
-      }
-      return cut;
-    } else {
-      return low;
-    }
   }
 
   const TopDown& options_;

@@ -42,7 +42,9 @@ class LargeAllocator : public std::allocator<T> {
     pages::advise(memory, memory + whole, true);
     for (std::size_t k = 0; k < whole; k += pages::huge)
       if (!pages::bring(memory + k, memory + k + pages::huge)) {
+        // The rest in small pages, but in bulk all the same.
         pages::advise(memory, memory + whole, false);
+        pages::bring(memory + k + pages::huge, memory + whole);
         break;
       }
     return reinterpret_cast<T*>(memory);

@@ -18,6 +18,7 @@
 #include "hierarchies/geometry/placement.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 #include "hierarchies/volumes/obb.hpp"
+#include "hierarchies/volumes/slab_box_columns.hpp"
 
 namespace bvlab {
 
@@ -34,6 +35,8 @@ struct SlabBox {
   using over = SlabBox<Other>;
   /// Its test in a relative frame; include wide/slab_box_sibling_test.hpp to use it.
   using sibling_test = SlabBoxSiblingTest<S>;
+  /// Fits volumes to ranges of triangles that lie in columns.
+  using columns = SlabBoxColumns<SlabBox>;
 
   Vec3<S> centre, half, normal;
   S slab_centre, width;
@@ -62,11 +65,11 @@ struct SlabBox {
     Mat3<double> facing = Mat3<double>::Zero();
     for (const auto& t : triangles) {
       const Vec3<double> normal = (t[1] - t[0]).cross(t[2] - t[0]);
-      const double area = normal.norm();
+      const double area = std::sqrt(squared_norm(normal));
       mean += normal;
       if (area > 0) facing += normal * normal.transpose() / area;
     }
-    const double length = mean.norm();
+    const double length = std::sqrt(squared_norm(mean));
     if (triangles.size() == 1 && length > 0) {
       box.cut(mean / length, points);
       return box;
@@ -81,10 +84,16 @@ struct SlabBox {
   }
 
  private:
-  /// The box without its slab. A difference of two coordinates has one rounding.
+  friend SlabBoxColumns<SlabBox>;
+
+  /// The box without its slab.
   static SlabBox box_around(std::span<const Vec3<double>> points) {
     Vec3<double> low = points[0], high = low;
     for (const auto& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    return between(low, high);
+  }
+  /// A difference of two coordinates has one rounding.
+  static SlabBox between(const Vec3<double>& low, const Vec3<double>& high) {
     SlabBox box;
     box.centre = rounded<S>(low / 2 + high / 2);
     for (int i = 0; i < 3; ++i) {
@@ -95,21 +104,29 @@ struct SlabBox {
     return box;
   }
 
-  /// Sets the slab across `direction`; the x axis if that is zero or not finite. Sums of three
-  /// products of differences are off by less than 8u of their magnitudes, which are at most |x|_1
-  /// for a normal of about unit length.
+  /// Sets the slab across `direction`.
   void cut(const Vec3<double>& direction, std::span<const Vec3<double>> points) {
-    normal = rounded<S>(direction.allFinite() && direction.squaredNorm() > 0.5
-                            ? direction
-                            : Vec3<double>(Vec3<double>::UnitX()));
+    face(direction);
     const Vec3<double> n = normal.template cast<double>(), c = centre.template cast<double>();
     double low = std::numeric_limits<double>::infinity(), high = -low, farthest = 0;
     for (const auto& p : points) {
       const Vec3<double> x = p - c;
       const double at = dot<double>(n, x);
       low = std::min(low, at), high = std::max(high, at);
-      farthest = std::max(farthest, x.template lpNorm<1>());
+      farthest = std::max(farthest, (std::abs(x[0]) + std::abs(x[1])) + std::abs(x[2]));
     }
+    bound(low, high, farthest);
+  }
+  /// Sets the normal to `direction`; to the x axis if that is zero or not finite.
+  void face(const Vec3<double>& direction) {
+    normal = rounded<S>(direction.allFinite() && squared_norm(direction) > 0.5
+                            ? direction
+                            : Vec3<double>(Vec3<double>::UnitX()));
+  }
+  /// Sets the slab around all n.x from `low` to `high`, for the normal n and points x about the
+  /// centre, |x|_1 being at most `farthest`. Sums of three products of differences are off by less
+  /// than 8u of their magnitudes, which are at most |x|_1 for a normal of about unit length.
+  void bound(double low, double high, double farthest) {
     slab_centre = static_cast<S>(low / 2 + high / 2);
     const double tiny = std::ldexp(1.0, std::numeric_limits<double>::min_exponent / 2);
     width = rounded_up<S>(std::max(high - double(slab_centre), double(slab_centre) - low) +
@@ -205,15 +222,20 @@ bool contains(const SlabBox<S>& volume, const Vec3<long double>& point) {
   return contains(posed(volume, Placement<S>()), point);
 }
 
-/// Half the diagonal.
+/// Half the diagonal. Of numbers or batches, in the order of Eigen's norm of three floats.
 template <class S>
 S size(const SlabBox<S>& volume) {
-  return volume.half.norm();
+  using std::sqrt;
+  const Vec3<S>& h = volume.half;
+  return sqrt(h[0] * h[0] + (h[1] * h[1] + h[2] * h[2]));
 }
 
 template <class S>
 S reach(const SlabBox<S>& volume) {
-  return volume.centre.norm() + volume.half.norm() * S(1 + 8 * unit_roundoff<S>);
+  using std::sqrt;
+  const Vec3<S>& c = volume.centre;
+  return sqrt(c[0] * c[0] + (c[1] * c[1] + c[2] * c[2])) +
+         size(volume) * S(1 + 8 * unit_roundoff<S>);
 }
 
 }  // namespace bvlab

@@ -8,8 +8,9 @@
 /// whose triangles are its children. O(n F^2).
 #pragma once
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -36,38 +37,42 @@ namespace detail {
 
 class Collapsing {
  public:
-  Collapsing(const TriangleMesh& mesh, const Topology& binary) : binary_(binary) {
-    const std::size_t n = binary.nodes.size();
-    surface_.resize(n), begin_.resize(n), end_.resize(n);
-    LargeVector<Eigen::AlignedBox3d> boxes(n);
-    for (std::size_t i = n; i-- > 0;) {
-      const auto& [first, count] = binary.nodes[i];
-      if (count == 0) {
-        boxes[i] = boxes[first].merged(boxes[first + 1]);
-        begin_[i] = std::min(begin_[first], begin_[first + 1]);
-        end_[i] = std::max(end_[first], end_[first + 1]);
+  static constexpr std::uint32_t most = 16;  ///< the largest fan-out
+
+  Collapsing(const TriangleMesh& mesh, const Topology& binary, std::uint32_t leaf_size)
+      : binary_(binary) {
+    take_nodes(leaf_size);
+    surface_.resize(nodes_.size());
+    LargeVector<Box> boxes(nodes_.size());
+    for (std::size_t i = nodes_.size(); i-- > 0;) {
+      const Node& node = nodes_[i];
+      Box box;
+      if (node.leaf()) {
+        for (std::uint32_t k = node.begin; k < node.end; ++k)
+          for (const std::uint32_t v : mesh.triangles[binary.primitives[k]])
+            box.extend(mesh.vertices[v]);
       } else {
-        begin_[i] = first, end_[i] = first + count;
-        for (std::uint32_t k = first; k < first + count; ++k)
-          for (const auto& corner : mesh.corners(binary.primitives[k])) boxes[i].extend(corner);
+        box = boxes[node.first], box.extend(boxes[node.first + 1]);
       }
-      const Vec3<double> d = boxes[i].sizes();
+      boxes[i] = box;
+      const Vec3<double> d = box.high - box.low;
       surface_[i] = d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
     }
   }
 
-  WideTopology collapse(std::uint32_t fan_out, std::uint32_t leaf_size) {
-    find_least_costs(fan_out, leaf_size);
+  WideTopology collapse(std::uint32_t fan_out) {
+    assert(fan_out <= most);
+    find_least_costs(fan_out);
     WideTopology wide;
     wide.primitives = binary_.primitives;
     std::vector<std::uint32_t> from{0};  // the binary node of each wide one
     for (std::size_t i = 0; i < from.size(); ++i) {
-      const std::uint32_t b = from[i];
+      const Node& b = nodes_[from[i]];
       WideTopology::Node node;
-      node.begin = begin_[b], node.end = end_[b];
-      node.leaf = is_leaf(b, leaf_size);
+      node.begin = b.begin, node.end = b.end;
+      node.leaf = b.leaf();
       if (node.leaf) {
-        node.first = begin_[b], node.count = end_[b] - begin_[b];
+        node.first = b.begin, node.count = b.end - b.begin;
       } else {
         node.first = static_cast<std::uint32_t>(from.size());
         add_children(b, fan_out, from);
@@ -79,67 +84,122 @@ class Collapsing {
   }
 
  private:
-  bool is_leaf(std::uint32_t b, std::uint32_t leaf_size) const {
-    return binary_.nodes[b].count > 0 || end_[b] - begin_[b] <= leaf_size;
+  /// A box without the checks of Eigen's for emptiness.
+  struct Box {
+    Vec3<double> low = Vec3<double>::Constant(std::numeric_limits<double>::infinity());
+    Vec3<double> high = -low;
+
+    void extend(const Vec3<double>& point) {
+      low = low.cwiseMin(point), high = high.cwiseMax(point);
+    }
+    void extend(const Box& other) {
+      low = low.cwiseMin(other.low), high = high.cwiseMax(other.high);
+    }
+  };
+  /// A binary node that is not below a leaf of the result.
+  struct Node {
+    static constexpr std::uint32_t none = 0xffffffff;
+    std::uint32_t first, begin, end;  ///< the first of two adjacent children; the primitives
+    std::uint32_t cuts;               ///< the index of its cuts; a leaf has none
+
+    bool leaf() const { return cuts == none; }
+  };
+
+  /// Numbers the nodes that are not below a leaf. Children come after their parent, as in `binary`.
+  void take_nodes(std::uint32_t leaf_size) {
+    const std::size_t n = binary_.nodes.size();
+    LargeVector<std::uint32_t> begin(n), end(n), number(n);
+    for (std::size_t i = n; i-- > 0;) {
+      const auto& [first, count] = binary_.nodes[i];
+      begin[i] = count ? first : std::min(begin[first], begin[first + 1]);
+      end[i] = count ? first + count : std::max(end[first], end[first + 1]);
+      number[i] = 0;
+    }
+    number[0] = 1;
+    std::uint32_t numbered = 0, inner = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!number[i]) continue;
+      number[i] = numbered++;
+      const auto& [first, count] = binary_.nodes[i];
+      const bool leaf = count > 0 || end[i] - begin[i] <= leaf_size;
+      nodes_.push_back({first, begin[i], end[i], leaf ? Node::none : inner++});
+      if (!leaf) number[first] = number[first + 1] = 1;
+    }
+    for (Node& node : nodes_)
+      if (!node.leaf()) node.first = number[node.first];
   }
 
-  /// The best replacement of a binary subtree by at most a given number of wide nodes, from 1 to
-  /// the fan-out.
-  struct Cut {
-    double cost = 0;
-    std::uint32_t left = 0, right = 0;  ///< nodes given to each child; 0: one node for the subtree
+  /// The best replacements of a binary subtree by at most 1, 2, ... wide nodes: their costs, and
+  /// how many nodes each child is given; 0: one node for the subtree.
+  struct Cuts {
+    std::array<double, most> cost;
+    std::array<std::uint8_t, most> left, right;
   };
-  /// The best cut of subtree b into at most `roots` nodes. A leaf has only one.
-  Cut& cut(std::uint32_t b, std::uint32_t roots) {
-    return cuts_[first_cut_[b] + (leaf_[b] ? 0 : roots - 1)];
-  }
 
   /// Fills in all cuts, children before parents.
-  void find_least_costs(std::uint32_t fan_out, std::uint32_t leaf_size) {
-    const auto n = static_cast<std::uint32_t>(binary_.nodes.size());
-    std::size_t needed = 0;
-    for (std::uint32_t b = 0; b < n; ++b) {
-      first_cut_.push_back(needed), leaf_.push_back(is_leaf(b, leaf_size));
-      needed += leaf_[b] ? 1 : fan_out;
-    }
-    cuts_.resize(needed);
-    for (std::uint32_t b = n; b-- > 0;) {
-      cut(b, 1) = {surface_[b]};
-      if (leaf_[b]) continue;
-      for (std::uint32_t roots = 2; roots <= fan_out; ++roots) cut(b, roots) = shared(b, roots);
-      cut(b, 1).cost += cut(b, fan_out).cost;
-      for (std::uint32_t roots = 2; roots <= fan_out; ++roots)
-        if (cut(b, roots - 1).cost < cut(b, roots).cost) cut(b, roots) = cut(b, roots - 1);
+  void find_least_costs(std::uint32_t fan_out) {
+    cuts_.resize(nodes_.size() / 2);
+    for (std::size_t b = nodes_.size(); b-- > 0;) {
+      const Node& node = nodes_[b];
+      if (node.leaf()) continue;
+      Cuts& cuts = cuts_[node.cuts];
+      share(node, fan_out, cuts);
+      cuts.cost[0] = surface_[b] + cuts.cost[fan_out - 1];
+      cuts.left[0] = cuts.right[0] = 0;
+      for (std::uint32_t k = 1; k < fan_out; ++k)
+        if (cuts.cost[k - 1] < cuts.cost[k])
+          cuts.cost[k] = cuts.cost[k - 1], cuts.left[k] = cuts.left[k - 1],
+          cuts.right[k] = cuts.right[k - 1];
     }
   }
-  /// The best way to divide `roots` nodes between the children of b.
-  Cut shared(std::uint32_t b, std::uint32_t roots) {
-    const std::uint32_t first = binary_.nodes[b].first;
-    Cut best{std::numeric_limits<double>::infinity(), 1, roots - 1};
-    for (std::uint32_t left = 1; left < roots; ++left) {
-      const double cost = cut(first, left).cost + cut(first + 1, roots - left).cost;
-      if (cost < best.cost) best = {cost, left, roots - left};
+  /// The costs of child b as [roots - 1]. A leaf is one node whatever it is given.
+  const double* costs(std::uint32_t b, std::array<double, most>& of_leaf) const {
+    if (!nodes_[b].leaf()) return cuts_[nodes_[b].cuts].cost.data();
+    of_leaf.fill(surface_[b]);
+    return of_leaf.data();
+  }
+  /// The best ways to divide 2, 3, ... nodes between the children; of equal ones that which gives
+  /// the left child least. Sums for no more nodes than the left child has are infinite, so that all
+  /// inner loops have one length.
+  void share(const Node& node, std::uint32_t fan_out, Cuts& cuts) const {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    std::array<double, most> of_leaf, best, given;
+    std::array<double, 2 * most> of_right;
+    std::fill_n(of_right.begin(), most, infinite);
+    std::copy_n(costs(node.first + 1, of_leaf), most, of_right.begin() + most);
+    const double* const of_left = costs(node.first, of_leaf);
+    best.fill(infinite), given.fill(1);
+    for (std::uint32_t left = 1; left < fan_out; ++left) {
+      const double* const rest = of_right.data() + most - left;
+      for (std::uint32_t k = 0; k < most; ++k) {
+        const double cost = of_left[left - 1] + rest[k];
+        const bool less = cost < best[k];
+        best[k] = less ? cost : best[k], given[k] = less ? left : given[k];
+      }
     }
-    return best;
+    for (std::uint32_t k = 1; k < most; ++k) {
+      cuts.cost[k] = best[k];
+      cuts.left[k] = static_cast<std::uint8_t>(given[k]);
+      cuts.right[k] = static_cast<std::uint8_t>(k + 1 - cuts.left[k]);
+    }
   }
 
-  void add_children(std::uint32_t b, std::uint32_t roots, std::vector<std::uint32_t>& to) {
-    const Cut& best = cut(b, roots);
-    const std::uint32_t first = binary_.nodes[b].first;
-    for (const auto& [child, share] :
-         {std::pair(first, best.left), std::pair(first + 1, best.right)})
-      if (cut(child, share).left == 0)
+  void add_children(const Node& b, std::uint32_t roots, std::vector<std::uint32_t>& to) const {
+    const Cuts& cuts = cuts_[b.cuts];
+    for (const auto& [child, share] : {std::pair(b.first, cuts.left[roots - 1]),
+                                       std::pair(b.first + 1, cuts.right[roots - 1])}) {
+      const Node& node = nodes_[child];
+      if (node.leaf() || cuts_[node.cuts].left[share - 1] == 0)
         to.push_back(child);
       else
-        add_children(child, share, to);
+        add_children(node, share, to);
+    }
   }
 
   const Topology& binary_;
+  std::vector<Node> nodes_;
   LargeVector<double> surface_;
-  LargeVector<std::uint32_t> begin_, end_;
-  std::vector<bool> leaf_;
-  std::vector<std::size_t> first_cut_;  // index of each node's first cut in cuts_
-  LargeVector<Cut> cuts_;
+  LargeVector<Cuts> cuts_;
 };
 
 }  // namespace detail
@@ -147,7 +207,7 @@ class Collapsing {
 /// A leaf of `binary` remains a leaf, so it must hold at most `fan_out` triangles.
 inline WideTopology collapsed(const TriangleMesh& mesh, const Topology& binary,
                               std::uint32_t fan_out, std::uint32_t leaf_size) {
-  return detail::Collapsing(mesh, binary).collapse(fan_out, leaf_size);
+  return detail::Collapsing(mesh, binary, leaf_size).collapse(fan_out);
 }
 
 }  // namespace bvlab

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "hierarchies/bounding_volume.hpp"
@@ -13,7 +15,9 @@
 #include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/small_matrices.hpp"
 #include "hierarchies/geometry/threads.hpp"
+#include "hierarchies/geometry/triangle_columns.hpp"
 #include "hierarchies/wide/collapse.hpp"
+#include "hierarchies/wide/lanes.hpp"
 
 namespace bvlab {
 
@@ -24,10 +28,13 @@ struct MeshSphere {
 
   MeshSphere() = default;
   explicit MeshSphere(const TriangleMesh& mesh) {
+    // Each vertex once, where its first triangle is.
     LargeVector<Vec3<double>> corners;
-    corners.reserve(3 * mesh.triangles.size());
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-      for (const auto& corner : mesh.corners(i)) corners.push_back(corner);
+    corners.reserve(mesh.vertices.size());
+    std::vector<char> taken(mesh.vertices.size(), 0);
+    for (const auto& triangle : mesh.triangles)
+      for (const std::uint32_t v : triangle)
+        if (!taken[v]) taken[v] = 1, corners.push_back(mesh.vertices[v]);
     centre = enclosing_sphere(corners).centre;
     for (const auto& corner : corners) radius = std::max(radius, stable_norm(corner - centre));
     radius *= 1 + 16 * unit_roundoff<double>;
@@ -53,6 +60,22 @@ struct alignas(16) NodeSphere {
     }
     double farthest = 0;
     for (const auto& point : points) farthest = std::max(farthest, stable_norm(point - at));
+    radius = rounded_up<float>(farthest * (1 + 16 * unit_roundoff<double>));
+  }
+  /// Around a range of triangles, whose box is `box`. A difference, three products and two sums
+  /// have five roundings at most, the root halves them and has one of its own: fewer than 4u.
+  NodeSphere(const TriangleColumns& columns, std::size_t begin, std::size_t end,
+             const TriangleColumns::Box& box) {
+    Vec3<double> at;
+    for (int i = 0; i < 3; ++i) {
+      centre[i] = static_cast<float>(0.5 * box.low[i] + 0.5 * box.high[i]);
+      at[i] = static_cast<double>(centre[i]);
+    }
+    const double squared = columns.farthest_squared(begin, end, at);
+    double farthest = std::sqrt(squared);
+    if (!(squared > 1e-280 && squared < 1e300))  // squares may over- or underflow
+      for (std::size_t k = 3 * begin; k < 3 * end; ++k)
+        farthest = std::max(farthest, stable_norm(columns.corner(k / 3, k % 3) - at));
     radius = rounded_up<float>(farthest * (1 + 16 * unit_roundoff<double>));
   }
 };
@@ -86,9 +109,73 @@ class OrderedTriangles {
   LargeVector<Triangle> triangles_;
 };
 
+/// The volumes of nodes and of single triangles of a wide topology.
+template <BoundingVolume V>
+class NodeFitting {
+ public:
+  NodeFitting(const TriangleMesh& mesh, const WideTopology& topology, Fit fit, Threads& threads)
+      : triangles_(mesh, topology, threads), fit_(fit) {}
+
+  /// The volume and the sphere around primitives `begin` to `end` of the topology.
+  std::pair<V, NodeSphere> around(std::uint32_t begin, std::uint32_t end) const {
+    return {triangles_.template volume<V>(begin, end, fit_),
+            NodeSphere(triangles_.points(begin, end))};
+  }
+  /// Writes the volumes of `count` primitives from `first` on, and their sizes, to lanes of
+  /// siblings. Vacant lanes repeat the last. Returns how far they reach.
+  template <class Siblings, class Corners>
+  double put_each(std::uint32_t first, std::uint32_t count, Siblings& to, Corners& corners) const {
+    constexpr auto lanes = static_cast<std::uint32_t>(sizeof(to.size) / sizeof(typename V::scalar));
+    double reach = 0;
+    V volume;
+    for (std::uint32_t lane = 0; lane < lanes; ++lane) {
+      const std::uint32_t k = first + std::min(lane, count - 1);
+      if (lane < count) {
+        volume = triangles_.template volume<V>(k, k + 1, fit_);
+        reach = std::max(reach, static_cast<double>(reach_of(volume)));
+      }
+      put_lane(to.volumes, static_cast<int>(lane), volume);
+      to.size[lane] = size_of(volume);
+      corners.put(lane, triangles_[k]);
+    }
+    return reach;
+  }
+
+ private:
+  OrderedTriangles triangles_;
+  Fit fit_;
+};
+
+/// The same for a volume that is fitted to columns.
+template <BoundingVolume V>
+requires requires { typename V::columns; }
+class NodeFitting<V> {
+ public:
+  NodeFitting(const TriangleMesh& mesh, const WideTopology& topology, Fit, Threads& threads)
+      : columns_(mesh, topology.primitives, threads), volumes_(columns_, threads) {}
+
+  std::pair<V, NodeSphere> around(std::uint32_t begin, std::uint32_t end) const {
+    const TriangleColumns::Box box = columns_.box(begin, end);
+    return {volumes_.volume(begin, end, box), NodeSphere(columns_, begin, end, box)};
+  }
+  template <class Siblings, class Corners>
+  double put_each(std::uint32_t first, std::uint32_t count, Siblings& to, Corners& corners) const {
+    volumes_.put_each(first, count, to.volumes);
+    to.size = size(to.volumes);
+    corners.put(columns_, first, count);
+    return stdx::hmax(reach(to.volumes));
+  }
+
+ private:
+  TriangleColumns columns_;
+  typename V::columns volumes_;
+};
+
 /// The largest reach of volumes seen by one thread, aligned to cache lines of its own.
 struct alignas(128) Reach {
   double farthest = 0;
+
+  void add(double reach) { farthest = std::max(farthest, reach); }
 
   template <BoundingVolume V>
   void add(const V& volume) {

@@ -62,28 +62,22 @@ class WideHierarchy {
     nodes_.resize(topology.nodes.size());
     node_spheres_.resize(topology.nodes.size());
     siblings_.resize(topology.nodes.size());
-    const OrderedTriangles triangles(mesh, topology, threads);
+    const NodeFitting<V> fitting(mesh, topology, fit, threads);
     std::vector<Reach> reach(threads.count());
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       if (topology.nodes[i].leaf) leaves_.push_back(static_cast<std::uint32_t>(i));
     corners_.resize(leaves_.size());
     triangles_.resize(leaves_.size() * F);
-    threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
-      const auto& node = topology.nodes[i];
-      assert(node.count <= F);
-      const V volume = triangles.template volume<V>(node.begin, node.end, fit);
-      reach[worker].add(volume);
-      const auto lanes = static_cast<std::uint16_t>((1u << node.count) - 1);
-      nodes_[i] = {volume, size_of(volume), node.first, lanes, node.leaf};
-      node_spheres_[i] = NodeSphere(triangles.points(node.begin, node.end));
+    threads.share(leaves_.size(), [&](std::size_t leaf, std::size_t worker) {
+      put_node(leaves_[leaf], topology, fitting, reach[worker]);
+      put_triangles(leaf, topology, fitting, reach[worker]);
     });
-    threads.share_out(nodes_.size(), 8,
-                      [&](std::size_t begin, std::size_t end, std::size_t worker) {
-                        for (std::size_t i = begin; i < end; ++i)
-                          put_children(i, topology, triangles, fit, reach[worker]);
-                      });
-    threads.share(leaves_.size(), [&](std::size_t leaf, std::size_t) {
-      keep_triangles(leaf, topology, triangles);
+    threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
+      if (!topology.nodes[i].leaf) put_node(i, topology, fitting, reach[worker]);
+    });
+    threads.share_out(nodes_.size(), 8, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (!topology.nodes[i].leaf) put_children(i, topology.nodes[i].count);
     });
     reach_ = reach_of_all<scalar>(mesh, reach);
   }
@@ -112,33 +106,38 @@ class WideHierarchy {
   }
 
  private:
-  /// Fills the lanes of node i. All nodes must have their volumes already.
-  void put_children(std::size_t i, const WideTopology& topology, const OrderedTriangles& triangles,
-                    Fit fit, Reach& reach) {
+  void put_node(std::size_t i, const WideTopology& topology, const NodeFitting<V>& fitting,
+                Reach& reach) {
     const auto& node = topology.nodes[i];
-    const auto of_child = [&](std::uint32_t k) -> V {
-      return node.leaf ? triangles.template volume<V>(k, k + 1, fit) : nodes_[k].volume;
-    };
-    V volume = of_child(node.first);
+    assert(node.count <= F);
+    const auto [volume, sphere] = fitting.around(node.begin, node.end);
+    reach.add(volume);
+    const auto lanes = static_cast<std::uint16_t>((1u << node.count) - 1);
+    nodes_[i] = {volume, size_of(volume), node.first, lanes, node.leaf};
+    node_spheres_[i] = sphere;
+  }
+
+  /// Fills the lanes of an inner node. All nodes must have their volumes already.
+  void put_children(std::size_t i, std::uint32_t count) {
     for (int lane = 0; lane < F; ++lane) {
       // Vacant lanes repeat the last child.
-      if (const auto k = static_cast<std::uint32_t>(lane); k > 0 && k < node.count)
-        volume = of_child(node.first + k);
-      put_lane(siblings_[i].volumes, lane, volume);
-      siblings_[i].size[lane] = size_of(volume);
-      reach.add(volume);
+      const Node& child =
+          nodes_[nodes_[i].first + std::min(static_cast<std::uint32_t>(lane), count - 1)];
+      put_lane(siblings_[i].volumes, lane, child.volume);
+      siblings_[i].size[lane] = child.size;
     }
   }
 
-  void keep_triangles(std::size_t leaf, const WideTopology& topology,
-                      const OrderedTriangles& triangles) {
-    const WideTopology::Node& node = topology.nodes[leaves_[leaf]];
-    nodes_[leaves_[leaf]].first = static_cast<std::uint32_t>(leaf * F);
-    for (int lane = 0; lane < F; ++lane) {
-      const std::uint32_t k = node.first + std::min<std::uint32_t>(lane, node.count - 1);
-      triangles_[leaf * F + static_cast<std::size_t>(lane)] = topology.primitives[k];
-      corners_[leaf].put(static_cast<std::size_t>(lane), triangles[k]);
-    }
+  /// Fills the lanes of a leaf.
+  void put_triangles(std::size_t leaf, const WideTopology& topology, const NodeFitting<V>& fitting,
+                     Reach& reach) {
+    const std::uint32_t i = leaves_[leaf];
+    const WideTopology::Node& node = topology.nodes[i];
+    nodes_[i].first = static_cast<std::uint32_t>(leaf * F);
+    for (std::uint32_t lane = 0; lane < F; ++lane)
+      triangles_[leaf * F + lane] =
+          topology.primitives[node.first + std::min(lane, node.count - 1)];
+    reach.add(fitting.put_each(node.first, node.count, siblings_[i], corners_[leaf]));
   }
 
   LargeVector<Node> nodes_;

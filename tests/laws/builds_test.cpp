@@ -6,12 +6,17 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
+#include <map>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "experiments/scenes/formula_mesh.hpp"
 #include "hierarchies/hierarchy.hpp"
 #include "hierarchies/volumes/obb.hpp"
 #include "hierarchies/volumes/sphere.hpp"
+#include "hierarchies/wide/collapse.hpp"
 #include "traversal/recommended.hpp"
 
 namespace bvlab {
@@ -122,6 +127,126 @@ TEST(Builds, RangesBeyondNumbersAreSplit) {
       expect_each_once(TopDown{SplitAxis::longest, at, 1}(mesh), mesh.triangles.size());
     expect_each_once(BottomUp{1}(mesh), mesh.triangles.size());
   }
+}
+
+using Box3 = Eigen::AlignedBox3d;
+double half_surface_of(const Box3& box) {
+  const Vec3<double> d = box.sizes();
+  return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
+}
+Box3 box_of(const TriangleMesh& mesh, std::span<const std::uint32_t> primitives) {
+  Box3 box;
+  for (const std::uint32_t k : primitives)
+    for (const auto& corner : mesh.corners(k)) box.extend(corner);
+  return box;
+}
+/// The primitives below each node.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges_of(const Topology& topology) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges(topology.nodes.size());
+  for (std::size_t i = ranges.size(); i-- > 0;) {
+    const auto& [first, count] = topology.nodes[i];
+    ranges[i] = count ? std::pair(first, first + count)
+                      : std::pair(ranges[first].first, ranges[first + 1].second);
+  }
+  return ranges;
+}
+
+/// No plane between two of 32 bins would cost less than the one chosen, for ranges that are binned
+/// and those that are sorted.
+TEST(Builds, SurfaceAreaCutsCostLeast) {
+  for (const auto& mesh : meshes()) {
+    const Topology topology = builds::TopDownSurfaceArea::topology(mesh, 1);
+    const auto ranges = ranges_of(topology);
+    const auto cost = [&](std::span<const std::uint32_t> part) {
+      return half_surface_of(box_of(mesh, part)) * static_cast<double>(part.size());
+    };
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      if (topology.nodes[i].count > 0) continue;
+      const auto [begin, end] = ranges[i];
+      std::vector<std::uint32_t> all(topology.primitives.begin() + begin,
+                                     topology.primitives.begin() + end);
+      const auto centroid = [&](std::uint32_t k) -> Vec3<double> {
+        const Triangle t = mesh.corners(k);
+        return t[0] / 3 + t[1] / 3 + t[2] / 3;
+      };
+      Box3 centroids;
+      for (const auto k : all) centroids.extend(centroid(k));
+      Eigen::Index axis = 0;
+      const double length = centroids.sizes().maxCoeff(&axis), low = centroids.min()[axis];
+      const auto middle = ranges[topology.nodes[i].first].second - begin;
+      const double chosen =
+          cost(std::span(all).first(middle)) + cost(std::span(all).subspan(middle));
+      double least = std::numeric_limits<double>::infinity();
+      for (int k = 1; k < 32 && length > 0; ++k) {
+        // Whatever lies on the plane up to rounding may be on either side.
+        const auto left = std::ranges::partition(
+            all, [&](auto t) { return (centroid(t)[axis] - low) * (32 / length) < k; });
+        const auto count = all.size() - left.size();
+        if (count == 0 || count == all.size()) continue;
+        least = std::min(least,
+                         cost(std::span(all).first(count)) + cost(std::span(all).subspan(count)));
+      }
+      EXPECT_LE(chosen, least * (1 + 1e-12)) << i << ": " << all.size();
+    }
+  }
+}
+
+/// The least total surface of wide nodes, by trying every division between children.
+class LeastSurface {
+ public:
+  LeastSurface(const TriangleMesh& mesh, const Topology& binary, std::uint32_t fan_out,
+               std::uint32_t leaf_size)
+      : mesh_(mesh),
+        binary_(binary),
+        ranges_(ranges_of(binary)),
+        fan_out_(fan_out),
+        leaf_size_(leaf_size) {}
+
+  double of(std::uint32_t b, std::uint32_t roots) {
+    if (const auto known = known_.find({b, roots}); known != known_.end()) return known->second;
+    const auto [begin, end] = ranges_[b];
+    const double surface =
+        half_surface_of(box_of(mesh_, std::span(binary_.primitives).subspan(begin, end - begin)));
+    if (binary_.nodes[b].count > 0 || end - begin <= leaf_size_)
+      return known_[{b, roots}] = surface;
+    double least = surface + divided(b, fan_out_);
+    if (roots > 1) least = std::min(least, divided(b, roots));
+    return known_[{b, roots}] = least;
+  }
+
+ private:
+  /// Of a subtree that is replaced by at least two nodes, `roots` at most.
+  double divided(std::uint32_t b, std::uint32_t roots) {
+    double least = std::numeric_limits<double>::infinity();
+    const std::uint32_t first = binary_.nodes[b].first;
+    for (std::uint32_t k = 2; k <= roots; ++k)
+      for (std::uint32_t left = 1; left < k; ++left)
+        least = std::min(least, of(first, left) + of(first + 1, k - left));
+    return least;
+  }
+  const TriangleMesh& mesh_;
+  const Topology& binary_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges_;
+  std::uint32_t fan_out_, leaf_size_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> known_;
+};
+
+TEST(Builds, CollapsedTreesHaveTheLeastSurface) {
+  for (const auto& mesh : {formula_mesh("torus", 300), formula_mesh("star", 200)})
+    for (const std::uint32_t binary_leaf : {1u, 2u})
+      for (const auto& [fan_out, leaf_size] :
+           {std::pair{2u, 1u}, {4u, 4u}, {8u, 3u}, {16u, 4u}, {16u, 1u}}) {
+        const Topology binary = builds::TopDownSurfaceArea::topology(mesh, binary_leaf);
+        const WideTopology wide = collapsed(mesh, binary, fan_out, leaf_size);
+        double total = 0;
+        for (const auto& node : wide.nodes) {
+          total += half_surface_of(
+              box_of(mesh, std::span(wide.primitives).subspan(node.begin, node.end - node.begin)));
+          EXPECT_LE(node.leaf ? 1u : node.count, fan_out);
+        }
+        const double least = LeastSurface(mesh, binary, fan_out, leaf_size).of(0, 1);
+        EXPECT_NEAR(total, least, 1e-12 * least) << fan_out << ' ' << leaf_size;
+      }
 }
 
 /// Bits, so that not even a zero changes its sign.
