@@ -122,6 +122,36 @@ struct SlabBoxSiblingTest<float> {
     return max(max(max(faces_b, face_0), max(face_1, face_2)), max(slab_a, slab_b));
   }
 
+  /// A lower bound on the gap from a volume of body b to each of the triangles of a in the lanes;
+  /// negative where they may overlap. `triangles` is a TransformedLeaf: corners within `off`, boxes
+  /// grown by more than 2 off. A bound of the volume's box is off by e r_b < off / 2. Along the
+  /// slab's normal n: a corner is off by |n_x| + |n_y| + |n_z| < 1.8 times off; n.c + m, of four
+  /// terms, whose moduli sum to at most 3.1 r_b, by 13 e r_b < 6.5 off; three more roundings by
+  /// 3.1 e (r_a + |t|) + 9.4 e r_b < 5 off. 16 off is more than all.
+  template <Batched S, class Triangles>
+  [[gnu::always_inline]] static S triangle_gaps(const SlabBox<float>& one,
+                                                const Triangles& triangles) {
+    using stdx::max, stdx::min;
+    const auto lanes = [](const auto& x) { return S(x.data(), stdx::vector_aligned); };
+    S gap(-std::numeric_limits<float>::infinity());
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int i = static_cast<int>(k);
+      gap = max(gap, S(one.centre[i] - one.half[i]) - lanes(triangles.high()[k]));
+      gap = max(gap, lanes(triangles.low()[k]) - S(one.centre[i] + one.half[i]));
+    }
+    const float slab = -(one.normal[0] * one.centre[0] + one.normal[1] * one.centre[1] +
+                         one.normal[2] * one.centre[2] + one.slab_centre);
+    const auto along = [&](std::size_t i) __attribute__((always_inline)) {
+      const auto& corner = triangles.corners().corner[i];
+      return fused<S>(lanes(corner[2]), S(one.normal[2]),
+                      fused<S>(lanes(corner[1]), S(one.normal[1]),
+                               fused<S>(lanes(corner[0]), S(one.normal[0]), S(slab))));
+    };
+    const S p = along(0), q = along(1), r = along(2);
+    const S beyond = max(min(min(p, q), r), -max(max(p, q), r));
+    return max(gap, (beyond - S(one.width)) - S(16 * triangles.off()));
+  }
+
   /// The order is the penetration relative to the sizes, deepest first.
   template <Batched S>
   [[gnu::always_inline]] static OverlapLanes<S> overlap(const PosedNode& one,

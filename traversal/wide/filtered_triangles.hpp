@@ -29,12 +29,12 @@ class FilteredTriangles {
   template <class Pair, class Workspace>
   FilteredTriangles(Body& a, Body& b, const Pair& pair, Query& query, Counter& counter,
                     Workspace& workspace, Memory& memory)
-      : bodies_{&a, &b},
-        frame_(pair.frame()),
+      : frame_(pair.frame()),
         query_(query),
         counter_(counter),
         memory_(memory),
-        queue_(workspace.triangles) {}
+        queue_(workspace.triangles),
+        bodies_{&a, &b} {}
 
   /// Tests the queued triangles; returns whether the query is satisfied.
   [[gnu::always_inline]] bool test_due() {
@@ -52,15 +52,12 @@ class FilteredTriangles {
   }
   /// Tests the held candidates at the end of a run.
   bool finish() { return pending_ > 0 && flush(); }
-  /// Pairs of triangles tested.
-  std::size_t tested() const { return tested_; }
-
   /// Tests the triangles of a pair that a step has found near. `entry` is the front's entry that is
   /// retested, if any.
   [[gnu::noinline]] bool test(const NodePair& pair, std::size_t entry = WideFront::none) {
     const auto triangles = frame_.triangles(pair);
     const std::uint64_t lanes = triangles.lanes();
-    count(lanes);
+    counter_.primitives(static_cast<std::uint64_t>(std::popcount(lanes)));
     std::uint64_t met = 0, apart = 0;
     for_each_part([&](std::size_t part) __attribute__((always_inline)) {
       const auto [x, y] = triangles.corners(part);
@@ -85,6 +82,23 @@ class FilteredTriangles {
     return false;
   }
 
+ protected:
+  using Lanes = S;
+
+  /// Holds a pair that the filter left open; returns whether the query is satisfied.
+  bool hold(std::uint32_t a, std::uint32_t b) {
+    world_[0][pending_] = bodies_[0]->triangle(a), world_[1][pending_] = bodies_[1]->triangle(b);
+    candidates_[pending_] = {&world_[0][pending_], &world_[1][pending_], a, b, 0};
+    ++pending_;
+    return pending_ > std::min(Query::buffer_size, at_most - 1) && flush();
+  }
+
+  const PairFrame& frame_;
+  Query& query_;
+  Counter& counter_;
+  Memory& memory_;
+  WorkQueue& queue_;
+
  private:
   static constexpr std::size_t at_most = 16;
 
@@ -97,31 +111,18 @@ class FilteredTriangles {
     (std::make_index_sequence<parts>());
   }
 
-  void count(std::uint64_t lanes) {
-    const auto pairs = static_cast<std::size_t>(std::popcount(lanes));
-    tested_ += pairs;
-    counter_.primitives(pairs);
-  }
-
   /// As test, where a distance is sought: holds pairs of triangles whose volumes are near enough.
   [[gnu::noinline]] bool measure(const NodePair& pair) {
     const auto triangles = frame_.triangles(pair);
     std::uint64_t remaining = triangles.lanes();
     if constexpr (requires { triangles.gaps(counter_); })
       remaining &= ~bits(query_.culls(triangles.gaps(counter_)));
-    count(remaining);
+    counter_.primitives(static_cast<std::uint64_t>(std::popcount(remaining)));
     for (; remaining; remaining &= remaining - 1) {
       const int lane = std::countr_zero(remaining);
       if (hold(triangles.of_a(lane), triangles.of_b(lane))) return true;
     }
     return finish();
-  }
-
-  bool hold(std::uint32_t a, std::uint32_t b) {
-    world_[0][pending_] = bodies_[0]->triangle(a), world_[1][pending_] = bodies_[1]->triangle(b);
-    candidates_[pending_] = {&world_[0][pending_], &world_[1][pending_], a, b, 0};
-    ++pending_;
-    return pending_ > std::min(Query::buffer_size, at_most - 1) && flush();
   }
 
   bool flush() {
@@ -135,14 +136,9 @@ class FilteredTriangles {
   }
 
   std::array<Body*, 2> bodies_;
-  const PairFrame& frame_;
-  Query& query_;
-  Counter& counter_;
-  Memory& memory_;
-  WorkQueue& queue_;
   std::array<std::array<Triangle, at_most>, 2> world_;
   std::array<Candidate, at_most> candidates_;
-  std::size_t pending_ = 0, tested_ = 0;
+  std::size_t pending_ = 0;
 };
 
 }  // namespace bvlab

@@ -59,6 +59,7 @@ class NoRecord {
   static void finish(const Pair&, const Leaves&, bool) {}
 
   static constexpr bool record_triangles(const NodePair&, bool, std::size_t) { return false; }
+  static void record_undecided(const NodePair&) {}
   static void record_crossing(const Crossing&) {}
   template <class Triangles, class Counter>
   static void set_triangle_gap(const Triangles&, Counter&, std::size_t) {}
@@ -104,7 +105,7 @@ class GapMeasure {
         const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(rest));
         const WideFront::Entry entry = (*front_)[i];
         if (!entry.triangle)
-          pair.step(
+          pair.template step<typename Traversal::Query>(
               entry.pair, traversal.counter(), [&](auto&& step) __attribute__((always_inline)) {
                 traversal.visit(step, i);
               });
@@ -157,6 +158,8 @@ class GapMeasure {
     front_->set_gap(entry, gap, triangles.reference_sphere(), start_.rotation);
     if (!(gap > 0)) (*front_)[entry].rest = 8;
   }
+  /// Two triangles, by their numbers, may touch.
+  void record_undecided(const NodePair& pair) { touched_ = pair; }
   void record_crossing(const Crossing& found) { crossing_ = found; }
 
   /// Whether a front was kept; whether the traversal started from it, and how many of its entries

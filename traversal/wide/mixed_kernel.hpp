@@ -19,6 +19,7 @@
 #include "hierarchies/wide/block_hierarchy.hpp"
 #include "traversal/primitives/triangle_filter.hpp"
 #include "traversal/primitives/triangle_gap.hpp"
+#include "traversal/wide/contact_sieve.hpp"
 #include "traversal/wide/relative_frame.hpp"
 #include "traversal/wide/sixteen_lanes.hpp"
 #include "traversal/wide/work_queue.hpp"
@@ -58,6 +59,7 @@ struct MixedKernel {
 
    public:
     using S = SixteenLanes;
+    using ContactSieve = BlocksSieve<V>;
     static constexpr std::size_t parts = 16 / S::size();
 
     void begin(Body<V, F>& a, Body<V, F>& b) {
@@ -109,8 +111,9 @@ struct MixedKernel {
         return SiblingTest::template gaps<S>(posed(part), pair_frame.frame_change_[1],
                                              others(part));
       }
+      template <class Order>
       [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles,
-                                       std::uint64_t remaining, const std::array<S, parts>& order,
+                                       std::uint64_t remaining, const Order& order,
                                        NextPair next) const {
         push_nodes(nodes, triangles, remaining, each_of_four(row_a.name.data()),
                    four_repeated(row_b.name.data()), order, next);
@@ -145,8 +148,9 @@ struct MixedKernel {
       [[gnu::always_inline]] S gaps(std::size_t part) const {
         return SiblingTest::template gaps<S>(posed, pair_frame.frame_change_[side], others(part));
       }
+      template <class Order>
       [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles,
-                                       std::uint64_t remaining, const std::array<S, parts>& order,
+                                       std::uint64_t remaining, const Order& order,
                                        NextPair next) const {
         const NodesOfLanes many = of_sixteen(block.name.data()), same = NodesOfLanes{} + name;
         push_nodes(nodes, triangles, remaining, side ? same : many, side ? many : same, order,
@@ -158,8 +162,9 @@ struct MixedKernel {
       }
     };
 
-    template <class Counter, class Test>
-    [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Test&& test) const {
+    template <class Counter, class Sieve, class Test>
+    [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Sieve&,
+                                     Test&& test) const {
       const std::uint32_t i = Tree::number_of(pair.a), j = Tree::number_of(pair.b);
       const Node &a = trees_[0]->node(i), &b = trees_[1]->node(j);
       const bool inner = !((pair.a | pair.b) & Tree::leaf_flag);
@@ -180,6 +185,22 @@ struct MixedKernel {
       else
         test(OneBySixteen{*this, 1, trees_[1]->block(b.first), i, pair.a, b.grandchildren,
                           SiblingTest::posed_node(a.volume, a.size, frame_change_[1])});
+    }
+
+    /// Begins to load what the step of a pair of nodes will read.
+    [[gnu::always_inline]] void prefetch(const NodePair& pair) const {
+      const Node &a = trees_[0]->node(Tree::number_of(pair.a)),
+                 &b = trees_[1]->node(Tree::number_of(pair.b));
+      const auto lines = [](const auto& from) __attribute__((always_inline)) {
+        for (std::size_t at = 0; at < sizeof from; at += 64)
+          __builtin_prefetch(reinterpret_cast<const char*>(&from) + at);
+      };
+      if (!(a.leaf | b.leaf) && a.size <= alike * b.size && b.size <= alike * a.size)
+        lines(trees_[0]->row(a.first)), lines(trees_[1]->row(b.first));
+      else if (!a.leaf && (b.leaf || a.size > b.size))
+        lines(trees_[0]->block(a.first));
+      else if (!b.leaf)
+        lines(trees_[1]->block(b.first));
     }
 
     /// Up to four triangles of a against up to four of b.
@@ -239,6 +260,15 @@ struct MixedKernel {
     };
     [[gnu::always_inline]] Triangles triangles(const NodePair& pair) const { return {*this, pair}; }
 
+    template <class Counter>
+    [[gnu::always_inline]] void sift(ContactSieve& sieve, WorkQueue& triangles, ContactBatch& batch,
+                                     Counter& counter) const {
+      sieve.sift(trees_, a_to_b(), triangles, batch, counter);
+    }
+    std::uint32_t triangle(std::size_t side, std::uint32_t number) const {
+      return trees_[side]->triangle(number);
+    }
+
    private:
     /// The sphere of the smaller of two nodes.
     ReferenceSphere reference_sphere(const NodePair& node) const {
@@ -270,10 +300,10 @@ struct MixedKernel {
     }
 
     /// Pairs of two leaves go to the queue of triangles.
+    template <class Order>
     [[gnu::always_inline]] static void push_nodes(WorkQueue& nodes, WorkQueue& triangles,
                                                   std::uint64_t remaining, const NodesOfLanes& a,
-                                                  const NodesOfLanes& b,
-                                                  const std::array<S, parts>& order,
+                                                  const NodesOfLanes& b, const Order& order,
                                                   NextPair next) {
       const std::uint64_t leaves = remaining & highest_bits(a & b);
       if (next == NextPair::nearest_child)

@@ -15,6 +15,8 @@
 ///       overlap(part), separation(part), gaps(part)
 ///       push(nodes, triangles, lanes, order, next)
 ///       reference_sphere()               a sphere around one of the nodes, in both frames
+///     prefetch(pair)                   begins to load what a step will read
+///     sift(sieve, triangles, ...)      where all hits are sought (contact_sieve.hpp)
 ///     triangles(pair)                  triangles tested at once, of pairs that `push` found:
 ///       lanes(), corners(part) of a and of b, of_a(lane), of_b(lane)
 ///       gap(counter), reference_sphere() a lower bound on their distance, and its sphere
@@ -27,6 +29,7 @@
 #include <string_view>
 
 #include "traversal/primitives/triangle_filter.hpp"
+#include "traversal/wide/contact_sieve.hpp"
 #include "traversal/wide/relative_frame.hpp"
 #include "traversal/wide/work_queue.hpp"
 
@@ -53,7 +56,13 @@ struct SiblingsKernel {
 
    public:
     using S = Batch<typename V::scalar, F>;
+    using ContactSieve = SiblingsSieve<V, F>;
     static constexpr std::size_t parts = 1;
+    /// Whether volumes can be tested against triangles.
+    static constexpr bool tests_triangles =
+        requires(const V& volume, const TransformedLeaf<F>& triangles) {
+          SiblingTestOf<V>::template triangle_gaps<S>(volume, triangles);
+        };
 
     void begin(Body& a, Body& b) {
       hierarchies_ = {&a.hierarchy(), &b.hierarchy()};
@@ -91,26 +100,81 @@ struct SiblingsKernel {
       [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles,
                                        std::uint64_t remaining, const std::array<S, 1>& order,
                                        NextPair) const {
+        to_queue(nodes, triangles, remaining, order[0]);
+      }
+      [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles,
+                                       std::uint64_t remaining, NoOrder order, NextPair) const {
+        to_queue(nodes, triangles, remaining, order);
+      }
+      template <class Order>
+      [[gnu::always_inline]] void to_queue(WorkQueue& nodes, WorkQueue& triangles,
+                                           std::uint64_t remaining, const Order& order) const {
         WorkQueue& to = leaves ? triangles : nodes;
         to.template push_lanes<F>(static_cast<int>(side), remaining, many.first, node[1 - side],
-                                  order[0]);
+                                  order);
       }
       ReferenceSphere reference_sphere() const {
         return pair_frame.frame_.reference_sphere(1 - side, node[1 - side]);
       }
     };
 
-    template <class Counter, class Test>
-    [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Test&& test) const {
+    /// The step of two leaves where all hits are sought: the triangles of a, in the frame of b,
+    /// against the leaf of b.
+    struct LeafStep {
+      const PairFrame& pair_frame;
+      NodePair node;
+      const Node &a, &b;
+      const TransformedLeaf<F>& triangles_of_a;
+
+      std::uint64_t lanes() const { return a.lanes; }
+      [[gnu::always_inline]] OverlapLanes<S> overlap(std::size_t) const {
+        const S gap = separation(0).gap;
+        return {gap > S(0.0f), gap};
+      }
+      [[gnu::always_inline]] GapLanes<S> separation(std::size_t) const {
+        const S gap = SiblingTestOf<V>::template triangle_gaps<S>(b.volume, triangles_of_a);
+        return {gap, gap};
+      }
+      [[gnu::always_inline]] void push(WorkQueue&, WorkQueue& triangles, std::uint64_t remaining,
+                                       NoOrder order, NextPair) const {
+        triangles.template push_lanes<F>(0, remaining, a.first, node.b, order);
+      }
+      ReferenceSphere reference_sphere() const {
+        return pair_frame.frame_.reference_sphere(1, node.b);
+      }
+    };
+
+    /// `sieve` is a ContactSieve, if all hits are sought.
+    template <class Counter, class Sieve, class Test>
+    [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter,
+                                     [[maybe_unused]] Sieve& sieve, Test&& test) const {
       const auto& a = hierarchies_[0]->node(pair.a);
       const auto& b = hierarchies_[1]->node(pair.b);
       const unsigned leaves = a.leaf & b.leaf;
-      const std::size_t side =
-          (a.leaf & ~b.leaf & 1u) | (((a.leaf | b.leaf) == 0) & (b.size > a.size));
+      if constexpr (std::is_same_v<Sieve, ContactSieve> && tests_triangles)
+        if (leaves) {
+          counter.posed(1);
+          return test(
+              LeafStep{*this, pair, a, b, sieve.leaf_of_a(hierarchies_, a_to_b(), a.first)});
+        }
+      const std::size_t side = larger(a, b);
       const std::array<const Node*, 2> nodes{&a, &b};
       const std::array<std::uint32_t, 2> node{pair.a, pair.b};
       test(Step<Counter>{*this, counter, side, node, leaves != 0, *nodes[side],
                          frame_.posed_node(1 - side, node[1 - side], counter)});
+    }
+
+    /// Begins to load what the step of a pair will read.
+    [[gnu::always_inline]] void prefetch(const NodePair& pair) const {
+      const Node &a = hierarchies_[0]->node(pair.a), &b = hierarchies_[1]->node(pair.b);
+      const auto lines = [](const void* from, std::size_t size) __attribute__((always_inline)) {
+        for (std::size_t at = 0; at < size; at += 64)
+          __builtin_prefetch(static_cast<const char*>(from) + at);
+      };
+      if (tests_triangles && a.leaf & b.leaf)
+        return lines(&hierarchies_[1]->corners(b.first), sizeof(TriangleLanes<float, F>));
+      const std::size_t side = larger(a, b);
+      lines(&hierarchies_[side]->children(side ? pair.b : pair.a), 12 * 64);
     }
 
     /// A triangle of a against all triangles of a leaf of b.
@@ -195,7 +259,23 @@ struct SiblingsKernel {
     };
     [[gnu::always_inline]] Triangles triangles(const NodePair& pair) const { return {*this, pair}; }
 
+    /// Where all hits are sought: the first test of the triangles in the queue (contact_sieve.hpp).
+    template <class Counter>
+    [[gnu::always_inline]] void sift(ContactSieve& sieve, WorkQueue& triangles, ContactBatch& batch,
+                                     Counter& counter) const {
+      sieve.sift(hierarchies_, a_to_b(), triangles, batch, counter);
+    }
+    /// The mesh's index of a triangle of a `side`, by the number that a batch has.
+    std::uint32_t triangle(std::size_t side, std::uint32_t number) const {
+      return hierarchies_[side]->triangle(number);
+    }
+
    private:
+    /// The side of the node that is opened.
+    [[gnu::always_inline]] static std::size_t larger(const Node& a, const Node& b) {
+      return (a.leaf & ~b.leaf & 1u) | (((a.leaf | b.leaf) == 0) & (b.size > a.size));
+    }
+
     std::array<const WideHierarchy<V, F>*, 2> hierarchies_;
     Frame frame_;
   };

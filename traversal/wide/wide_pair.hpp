@@ -18,6 +18,7 @@
 #include "traversal/wide/filtered_triangles.hpp"
 #include "traversal/wide/gap_measure.hpp"
 #include "traversal/wide/siblings_kernel.hpp"
+#include "traversal/wide/sifted_triangles.hpp"
 #include "traversal/wide/work_queue.hpp"
 
 namespace bvlab {
@@ -26,20 +27,26 @@ namespace bvlab {
 struct WideWorkspace {
   WorkQueue nodes;      ///< pairs of nodes
   WorkQueue triangles;  ///< pairs whose triangles are to be tested
+  ContactBatch batch;   ///< pairs of triangles that may touch, where all hits are sought
 };
+
+/// Whether a query wants every pair of triangles that touch.
+template <class Query>
+inline constexpr bool all_hits = !Query::one_hit_is_enough && !wants_bound<Query>();
 
 template <BoundingVolume V, int F, class Kernel>
 class WidePair {
  public:
   using PairFrame = typename Kernel::template PairFrame<V, F>;
   using Workspace = WideWorkspace;
+  using Body = typename Kernel::template Body<V, F>;
   template <class Query, class Counter, class Memory>
   using Leaves =
-      FilteredTriangles<PairFrame, typename Kernel::template Body<V, F>, Query, Counter, Memory>;
+      std::conditional_t<all_hits<Query>, SiftedTriangles<PairFrame, Body, Query, Counter, Memory>,
+                         FilteredTriangles<PairFrame, Body, Query, Counter, Memory>>;
   static_assert(std::is_same_v<typename V::scalar, float>,
                 "orders and the filter of triangles are float32");
 
-  template <class Body>
   WidePair(Body& a, Body& b, Workspace& workspace)
       : nodes_(workspace.nodes), triangles_(workspace.triangles) {
     frame_.begin(a, b);
@@ -55,6 +62,8 @@ class WidePair {
   void retry(const NodePair& touched) { frame_.retry(touched, nodes_, triangles_); }
 
   const PairFrame& frame() const { return frame_; }
+  /// What the first test of triangles keeps of a leaf, where all hits are sought.
+  typename PairFrame::ContactSieve& sieve() { return sieve_; }
   bool done() const { return nodes_.empty(); }
 
   template <TestFor wanted, class Query, class Counter, class Visit>
@@ -63,17 +72,17 @@ class WidePair {
       float order;
       const NodePair pair = nodes_.take_least(order);
       // Where it is positive, `order` is a lower bound on the distance of the pair.
-      if (!(order > 0 && bits(query.culls(order)))) step(pair, counter, visit);
-    } else if constexpr (Query::one_hit_is_enough) {
+      if (!(order > 0 && bits(query.culls(order)))) step<Query>(pair, counter, visit);
+    } else if constexpr (all_hits<Query>) {
+      several<Query>(counter, visit);
+    } else {
       if (!triangles_.empty()) return;  // those of the pair that touched come first
       float order;
       if (++steps_ <= most_in_order)
-        step(Kernel::nearest_child_first ? nodes_.take_last() : nodes_.take_least(order), counter,
-             visit);
+        step<Query>(Kernel::nearest_child_first ? nodes_.take_last() : nodes_.take_least(order),
+                    counter, visit);
       else
-        several(counter, visit);
-    } else {
-      step(nodes_.take_last(), counter, visit);
+        several<Query>(counter, visit);
     }
   }
 
@@ -87,21 +96,26 @@ class WidePair {
   };
 
   /// Makes the step of a pair.
-  template <class Counter, class Visit>
-  [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Visit&& visit) const {
-    frame_.step(
-        pair,
-        counter, [&]<class KernelStep>(const KernelStep& step) __attribute__((always_inline)) {
-          visit(Step<KernelStep>{step, pair});
-        });
+  template <class Query, class Counter, class Visit>
+  [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Visit&& visit) {
+    const auto named = [&]<class KernelStep>(const KernelStep& step)
+        __attribute__((always_inline)) {
+      visit(Step<KernelStep>{step, pair});
+    };
+    if constexpr (all_hits<Query>) {
+      frame_.step(pair, counter, sieve_, named);
+    } else {
+      struct {
+      } no_sieve;
+      frame_.step(pair, counter, no_sieve, named);
+    }
   }
 
   /// What a step has found, lane by lane.
   struct Found : LanesApart {
     using S = typename PairFrame::S;
-    std::array<S, PairFrame::parts>
-        order;  ///< the lane with the least is likeliest to end a search
-    S least;    ///< the least gap of lanes that are apart, where measured
+    std::array<S, PairFrame::parts> order;  ///< of lanes: the least may end a search
+    S least;  ///< the least gap of lanes that are apart, where gaps are measured
   };
 
   template <TestFor wanted, class Step, class Query, class Counter>
@@ -122,8 +136,11 @@ class WidePair {
                                       Entry, Memory&, Leaves&, Query&, Counter&) {
     constexpr bool ordered =
         Kernel::nearest_child_first && Query::one_hit_is_enough && !wants_bound<Query>();
-    step.of.push(nodes_, triangles_, lanes, found.order,
-                 ordered && steps_ <= most_in_order ? NextPair::nearest_child : NextPair::any);
+    if constexpr (all_hits<Query>)
+      step.of.push(nodes_, triangles_, lanes, NoOrder(), NextPair::any);
+    else
+      step.of.push(nodes_, triangles_, lanes, found.order,
+                   ordered && steps_ <= most_in_order ? NextPair::nearest_child : NextPair::any);
   }
 
  private:
@@ -132,12 +149,14 @@ class WidePair {
   static constexpr int most_in_order = 16;
   static constexpr std::size_t at_once = 4;
 
-  template <class Counter, class Visit>
+  template <class Query, class Counter, class Visit>
   [[gnu::always_inline]] void several(Counter& counter, Visit& visit) {
     std::array<NodePair, at_once> taken;
     const std::size_t count = std::min(nodes_.size(), at_once);
     for (std::size_t k = 0; k < count; ++k) taken[k] = nodes_.take_last();
-    for (std::size_t k = 0; k < count; ++k) step(taken[k], counter, visit);
+    if constexpr (all_hits<Query>)
+      for (std::size_t k = 1; k < count; ++k) frame_.prefetch(taken[k]);
+    for (std::size_t k = 0; k < count; ++k) step<Query>(taken[k], counter, visit);
   }
 
   template <TestFor wanted, class Step, class Query>
@@ -162,6 +181,7 @@ class WidePair {
   }
 
   PairFrame frame_;
+  typename PairFrame::ContactSieve sieve_;
   WorkQueue& nodes_;
   WorkQueue& triangles_;
   int steps_ = most_in_order + 1;

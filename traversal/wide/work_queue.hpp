@@ -11,6 +11,7 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "hierarchies/geometry/scalar.hpp"
@@ -101,6 +102,9 @@ template <class S, std::size_t parts>
 /// Which pair of a step is to be taken next; pairs are pushed accordingly.
 enum class NextPair { any, nearest_child };
 
+/// In place of the order of pairs, where they are taken in any: none is kept.
+struct NoOrder {};
+
 /// The nodes of one body in sixteen lanes.
 using NodesOfLanes [[gnu::vector_size(64)]] = std::uint32_t;
 
@@ -121,17 +125,34 @@ class WorkQueue {
   }
 
   /// Pushes `other` with first + k of `side`, for each set bit k of the mask.
-  template <int F>
+  template <int F, class Order>
   [[gnu::always_inline]] void push_lanes(int side, std::uint64_t mask, std::uint32_t first,
-                                         std::uint32_t other, const Batch<float, F>& order) {
+                                         std::uint32_t other, const Order& order) {
     reserve();
     detail::write_numbers<F>(&id_[static_cast<std::size_t>(side)][size_], mask, first);
     std::fill_n(&id_[static_cast<std::size_t>(1 - side)][size_], F, other);
-    detail::write_lanes<F>(&order_[window + size_], mask, order);
+    if constexpr (!std::is_same_v<Order, NoOrder>)
+      detail::write_lanes<F>(&order_[window + size_], mask, order);
     size_ += static_cast<std::size_t>(std::popcount(mask));
   }
 
-  /// Pushes a pair for each set bit of the mask; `order` is that of all sixteen, in registers.
+  /// The same for a pair in each of sixteen lanes.
+  [[gnu::always_inline]] void push_sixteen(std::uint64_t mask, const NodesOfLanes& a,
+                                           const NodesOfLanes& b, NoOrder) {
+    reserve();
+#if defined(__AVX512F__)
+    const auto lanes = static_cast<__mmask16>(mask);
+    _mm512_storeu_si512(&id_[0][size_], _mm512_maskz_compress_epi32(lanes, (__m512i)a));
+    _mm512_storeu_si512(&id_[1][size_], _mm512_maskz_compress_epi32(lanes, (__m512i)b));
+    size_ += static_cast<std::size_t>(std::popcount(mask));
+#else
+    for (; mask; mask &= mask - 1, ++size_) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(mask));
+      id_[0][size_] = a[lane], id_[1][size_] = b[lane];
+    }
+#endif
+  }
+  /// The same; `order` is that of all sixteen, in registers.
   template <class S, std::size_t parts>
   [[gnu::always_inline]] void push_sixteen(std::uint64_t mask, const NodesOfLanes& a,
                                            const NodesOfLanes& b,
@@ -155,6 +176,10 @@ class WorkQueue {
     }
   }
 
+  [[gnu::always_inline]] void push_sixteen_least_last(std::uint64_t mask, const NodesOfLanes& a,
+                                                      const NodesOfLanes& b, NoOrder order) {
+    push_sixteen(mask, a, b, order);
+  }
   /// The same, the least in order last.
   template <class S, std::size_t parts>
   [[gnu::always_inline]] void push_sixteen_least_last(std::uint64_t mask, const NodesOfLanes& a,
@@ -166,6 +191,8 @@ class WorkQueue {
     push_sixteen(least, a, b, order);
   }
 
+  NodePair operator[](std::size_t i) const { return {id_[0][i], id_[1][i]}; }
+  NodePair last() const { return (*this)[size_ - 1]; }
   NodePair take_last() {
     --size_;
     return {id_[0][size_], id_[1][size_]};

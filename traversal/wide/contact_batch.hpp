@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The test of triangles where all hits are sought, in two phases. First one triangle of a against
+/// all of a leaf of b, by boxes and by the plane of the one, in forty operations: a lane in ten is
+/// left. The pairs left by many leaves are packed side by side, and the filter of triangles tests
+/// full registers of them. N_p counts the lanes of the first phase.
+///
+/// Rounding in the first phase. Corners of a are within `off` of where they are, in each coordinate
+/// (CornerTransform), and off > 16 e (r_a + |t|) + 2 e r_b, with r the reaches and e the unit
+/// roundoff. Corners of b are off by e r_b < off / 2.
+///
+/// Boxes of a are grown by 9/4 off. A sum of a coordinate of a and 9/4 off is off by at most
+/// e (r_a + |t| + 4 off) < off / 8: it lies more than 2 off beyond the coordinate.
+///
+/// Planes. Any vector n as computed separates two triangles whose products with n differ by more
+/// than the errors. With N = |n_x| + |n_y| + |n_z|: corners of a and b are off by 3/2 N off in all;
+/// a product is rounded three times, by 3.1 e N times the largest coordinate, which is
+/// 0.2 N off for a and 1.6 N off for b; and growing what a spans by N off / 8. That is less
+/// than 3.5 N off. It is grown by 4 N off, and by the least normal number, which covers underflow.
+///
+/// Overflow. Nothing is apart by its plane unless 4 N off < 2^100; then N times any coordinate is
+/// less than 2^121. Where off is not below 2^100, it is taken to be infinite, and boxes and spans
+/// are. Comparisons with NaN are false.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "hierarchies/wide/triangle_lanes.hpp"
+#include "traversal/primitives/triangle_filter.hpp"
+#include "traversal/wide/relative_frame.hpp"
+
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#endif
+
+namespace bvlab {
+
+template <Batched S, int F>
+[[gnu::always_inline]] inline Corners<S> corners_in_lanes(const TriangleLanes<float, F>& from) {
+  Corners<S> corner;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      corner[i][k] = S(from.corner[i][k].data(), stdx::vector_aligned);
+  return corner;
+}
+
+/// The boxes of triangles, one per lane.
+template <Batched S>
+struct TriangleBoxes {
+  std::array<S, 3> low, high;
+
+  [[gnu::always_inline]] explicit TriangleBoxes(const Corners<S>& corner) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = filter::min(filter::min(corner[0][k], corner[1][k]), corner[2][k]);
+      high[k] = filter::max(filter::max(corner[0][k], corner[1][k]), corner[2][k]);
+    }
+  }
+};
+
+/// The triangles of a leaf of a in the frame of b, with their boxes and what they span along their
+/// normals, both grown by the error bounds. Written lane by lane, read triangle by triangle.
+template <int F>
+class TransformedLeaf {
+  using S = Batch<float, F>;
+
+ public:
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+  void forget() { leaf_ = none; }
+  /// The triangles of a leaf, known by the number `leaf`.
+  [[gnu::always_inline]] void require(std::uint32_t leaf, const TriangleLanes<float, F>& own,
+                                      const CornerTransform& transform) {
+    if (leaf != leaf_) transform_all(leaf, own, transform);
+  }
+  const TriangleLanes<float, F>& corners() const { return transformed_; }
+  /// The error bound of each coordinate.
+  float off() const { return off_; }
+  /// The grown boxes, as low[coordinate][lane].
+  const std::array<std::array<float, F>, 3>& low() const { return low_; }
+  const std::array<std::array<float, F>, 3>& high() const { return high_; }
+
+  /// Which lanes have boxes that are not apart from that of triangle `k`, and corners that are not
+  /// all beyond its plane.
+  [[gnu::always_inline]] std::uint64_t near(std::size_t k, const Corners<S>& corner,
+                                            const TriangleBoxes<S>& boxes) const {
+    Mask<S> apart(false);
+    for (std::size_t i = 0; i < 3; ++i)
+      apart = apart | (boxes.low[i] > S(high_[i][k])) | (boxes.high[i] < S(low_[i][k]));
+    const S x(normal_[0][k]), y(normal_[1][k]), z(normal_[2][k]);
+    const auto along = [&](std::size_t i) __attribute__((always_inline)) {
+      return fused<S>(z, corner[i][2], fused<S>(y, corner[i][1], x * corner[i][0]));
+    };
+    const S p = along(0), q = along(1), r = along(2);
+    apart = apart | (filter::min(filter::min(p, q), r) > S(most_[k])) |
+            (filter::max(filter::max(p, q), r) < S(least_[k]));
+    return ~bits(apart);
+  }
+  /// Of each triangle, a vector across it, of any length, and what it spans along that, grown.
+  const std::array<std::array<float, F>, 3>& normal() const { return normal_; }
+  const std::array<float, F>& least() const { return least_; }
+  const std::array<float, F>& most() const { return most_; }
+
+ private:
+  [[gnu::noinline]] void transform_all(std::uint32_t leaf, const TriangleLanes<float, F>& own,
+                                       const CornerTransform& transform) {
+    leaf_ = leaf;
+    off_ = transform.error_bound() < most_known ? transform.error_bound() : infinity;
+    Corners<S> corner = corners_in_lanes<S>(own);
+    for (std::size_t i = 0; i < 3; ++i) {
+      corner[i] = transform(corner[i][0], corner[i][1], corner[i][2]);
+      for (std::size_t k = 0; k < 3; ++k)
+        corner[i][k].copy_to(transformed_.corner[i][k].data(), stdx::vector_aligned);
+    }
+    const TriangleBoxes<S> boxes(corner);
+    const S grown(2.25f * off_);
+    for (std::size_t k = 0; k < 3; ++k) {
+      (boxes.low[k] - grown).copy_to(low_[k].data(), stdx::vector_aligned);
+      (boxes.high[k] + grown).copy_to(high_[k].data(), stdx::vector_aligned);
+    }
+    put_planes(corner);
+  }
+  [[gnu::always_inline]] void put_planes(const Corners<S>& corner) {
+    using namespace filter;
+    const Vector<S> normal = cross<S>(corner[1] - corner[0], corner[2] - corner[0]);
+    S along[3];
+    for (std::size_t i = 0; i < 3; ++i)
+      along[i] = fused<S>(normal[2], corner[i][2],
+                          fused<S>(normal[1], corner[i][1], normal[0] * corner[i][0]));
+    const S grown =
+        fused<S>(abs(normal[0]) + abs(normal[1]) + abs(normal[2]), S(4 * off_), S(tiny));
+    const Mask<S> known = grown < S(most_known);
+    const S least = min(min(along[0], along[1]), along[2]) - grown,
+            most = max(max(along[0], along[1]), along[2]) + grown;
+    pick<S>(known, least, S(-infinity)).copy_to(least_.data(), stdx::vector_aligned);
+    pick<S>(known, most, S(infinity)).copy_to(most_.data(), stdx::vector_aligned);
+    for (std::size_t k = 0; k < 3; ++k)
+      pick<S>(known, normal[k], S(0)).copy_to(normal_[k].data(), stdx::vector_aligned);
+  }
+
+  using Lanes = std::array<float, F>;
+  static constexpr float tiny = std::numeric_limits<float>::min(), most_known = 0x1p100f,
+                         infinity = std::numeric_limits<float>::infinity();
+
+  std::uint32_t leaf_ = none;
+  float off_;
+  TriangleLanes<float, F> transformed_;
+  alignas(sizeof(float) * F) std::array<Lanes, 3> low_, high_;
+  // A vector, whatever its length, and what each triangle spans along it, grown.
+  alignas(sizeof(float) * F) std::array<Lanes, 3> normal_;
+  alignas(sizeof(float) * F) Lanes least_, most_;
+};
+
+/// Pairs of triangles side by side, in the frame of b.
+class ContactBatch {
+ public:
+  ContactBatch() : number_{}, corner_{} {}
+
+  void clear() { size_ = 0; }
+  bool empty() const { return size_ == 0; }
+  bool full() const { return size_ >= enough; }
+
+  /// Adds triangle k of `a` with each triangle of `b` whose bit is set in `lanes`. Triangles are
+  /// numbered from first_a and first_b on. The batch must not be full.
+  template <int F>
+  [[gnu::always_inline]] void add(std::uint64_t lanes, const TriangleLanes<float, F>& a,
+                                  std::size_t k, std::uint32_t first_a,
+                                  const TriangleLanes<float, F>& b, std::uint32_t first_b) {
+#if defined(__AVX512F__)
+    if constexpr (F == 16) {
+      const __m512i all = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
+      const __m512i lane = _mm512_maskz_compress_epi32(static_cast<__mmask16>(lanes), all);
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) {
+          _mm512_storeu_ps(&corner_[0][i][j][size_], _mm512_set1_ps(a.corner[i][j][k]));
+          _mm512_storeu_ps(&corner_[1][i][j][size_],
+                           _mm512_permutexvar_ps(lane, _mm512_load_ps(b.corner[i][j].data())));
+        }
+      _mm512_storeu_si512(&number_[0][size_], _mm512_set1_epi32(static_cast<int>(first_a + k)));
+      _mm512_storeu_si512(&number_[1][size_],
+                          _mm512_add_epi32(lane, _mm512_set1_epi32(static_cast<int>(first_b))));
+      size_ += static_cast<std::size_t>(std::popcount(lanes));
+      return;
+    }
+#endif
+    for (; lanes; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+      put(a, k, first_a, b, lane, first_b);
+    }
+  }
+
+  /// The same for up to four triangles of each: lane 4 i + j is of triangle i of a and j of b.
+  [[gnu::always_inline]] void add(std::uint64_t lanes, const TriangleLanes<float, 4>& a,
+                                  std::uint32_t first_a, const TriangleLanes<float, 4>& b,
+                                  std::uint32_t first_b) {
+#if defined(__AVX512F__)
+    const __m512i all = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
+    const __m512i lane = _mm512_maskz_compress_epi32(static_cast<__mmask16>(lanes), all),
+                  of_a = _mm512_srli_epi32(lane, 2),
+                  of_b = _mm512_and_si512(lane, _mm512_set1_epi32(3));
+    const auto picked = [](const __m512i& index, const std::array<float, 4>& four) {
+      return _mm512_permutexvar_ps(index, _mm512_castps128_ps512(_mm_load_ps(four.data())));
+    };
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) {
+        _mm512_storeu_ps(&corner_[0][i][j][size_], picked(of_a, a.corner[i][j]));
+        _mm512_storeu_ps(&corner_[1][i][j][size_], picked(of_b, b.corner[i][j]));
+      }
+    _mm512_storeu_si512(&number_[0][size_],
+                        _mm512_add_epi32(of_a, _mm512_set1_epi32(static_cast<int>(first_a))));
+    _mm512_storeu_si512(&number_[1][size_],
+                        _mm512_add_epi32(of_b, _mm512_set1_epi32(static_cast<int>(first_b))));
+    size_ += static_cast<std::size_t>(std::popcount(lanes));
+#else
+    for (; lanes; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+      put(a, lane / 4, first_a, b, lane % 4, first_b);
+    }
+#endif
+  }
+
+  /// Tests full registers of pairs, or all that are left, and calls take(a, b, meeting) with the
+  /// numbers of those that are not certainly apart until it returns true. Returns whether it has.
+  enum class Decide { full_registers, all };
+  template <Batched S, class Take>
+  [[gnu::always_inline]] bool decide(Decide which, float off, Take&& take) {
+    constexpr std::size_t width = S::size();
+    const std::size_t end = which == Decide::all ? size_ : size_ / width * width;
+    for (std::size_t first = 0; first < end; first += width) {
+      const auto verdict = certainly_within<S>(corners<S>(0, first), corners<S>(1, first), S(off));
+      const std::uint64_t meeting = bits(verdict.meeting);
+      const std::size_t used = std::min(width, end - first);
+      std::uint64_t left = ~bits(verdict.apart) & ((std::uint64_t{1} << used) - 1);
+      for (; left; left &= left - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+        if (take(number_[0][first + lane], number_[1][first + lane], (meeting >> lane & 1) != 0))
+          return true;
+      }
+    }
+    keep_from<width>(end);
+    return false;
+  }
+
+ private:
+  static constexpr std::size_t enough = 64, room = enough + 16;
+
+  template <Batched S>
+  [[gnu::always_inline]] Corners<S> corners(std::size_t side, std::size_t first) const {
+    Corners<S> of;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        of[i][j] = S(&corner_[side][i][j][first], stdx::vector_aligned);
+    return of;
+  }
+  template <int F>
+  [[gnu::always_inline]] void put(const TriangleLanes<float, F>& a, std::size_t k,
+                                  std::uint32_t first_a, const TriangleLanes<float, F>& b,
+                                  std::size_t lane, std::uint32_t first_b) {
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) {
+        corner_[0][i][j][size_] = a.corner[i][j][k];
+        corner_[1][i][j][size_] = b.corner[i][j][lane];
+      }
+    number_[0][size_] = first_a + static_cast<std::uint32_t>(k);
+    number_[1][size_] = first_b + static_cast<std::uint32_t>(lane);
+    ++size_;
+  }
+  /// Moves the pairs from `end` on, fewer than a register, to the front.
+  template <std::size_t width>
+  void keep_from(std::size_t end) {
+    size_ -= end;
+    if (size_ == 0) return;
+    for (auto& number : number_) std::copy_n(&number[end], width, &number[0]);
+    for (auto& side : corner_)
+      for (auto& corner : side)
+        for (auto& lanes : corner) std::copy_n(&lanes[end], width, &lanes[0]);
+  }
+
+  std::size_t size_ = 0;
+  std::array<std::array<std::uint32_t, room>, 2> number_;
+  alignas(64) std::array<std::array<std::array<std::array<float, room>, 3>, 3>, 2> corner_;
+};
+
+}  // namespace bvlab
