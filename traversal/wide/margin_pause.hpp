@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// When margins pause. Where bodies are fast, hardly any answer outlasts a frame, and what margins
 /// measure and keep is wasted: up to a seventh of the time. If in six frames less than one
-/// traversal in twenty was spared by what was kept, the next 32 or 64 frames start from the roots. A
-/// pause ends at once when the bodies have slowed down to half their motion, or when a quarter more
-/// of the pairs are decided before any tree is traversed.
+/// traversal in twenty was spared by what was kept, the next 32 or 64 frames start from the roots.
+/// A pause ends at once when the bodies have slowed down to half their motion, or when a quarter
+/// more of the pairs are decided before any tree is traversed.
 #pragma once
 
 #include <algorithm>

@@ -10,7 +10,9 @@
 ///     begin(a, b), a_to_b()
 ///     roots()                          the pair to start with
 ///     retry(touched, nodes, triangles) queues the pair that touched in the last frame first
-///     step(pair, counter, test)        calls test(step) with the volumes to test at once:
+///     step(pair, counter, sieve, test) calls test(step) with the volumes to test at once; `sieve`
+///     is
+///                                      a ContactSieve where all hits are sought, else of no use:
 ///       lanes()                          the lanes in use, of `parts` registers S
 ///       overlap(part), separation(part), gaps(part)
 ///       push(nodes, triangles, lanes, order, next)

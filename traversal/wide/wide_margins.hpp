@@ -42,6 +42,7 @@
 #include "traversal/relative_motion_bound.hpp"
 #include "traversal/wide/crossing_batch.hpp"
 #include "traversal/wide/gap_measure.hpp"
+#include "traversal/wide/kept_of_pair.hpp"
 #include "traversal/wide/no_memory.hpp"
 
 namespace bvlab {
@@ -240,25 +241,9 @@ class WideMargins {
 
   static constexpr int longest_rest = 64;  // traversals without a crossing
 
-  struct Answer {
-    double until = unknown;  ///< valid below this displacement; negative: while nothing moves
-    std::uint32_t epochs = 0;
-    bool touching = false;
-    bool traversed = false;  ///< a traversal has found it, or a crossing that one has found
-  };
-  struct Kept {
-    RelativeMotionBound clock;
-    double deadline = 0;  ///< by the clock; 0: none
-    double distance = 0;
-    NodePair touched{};
-    WideFront front;
-    FrontPause pause;
-    std::optional<Crossing> crossing;
-    int rest = 0, next_rest = 1;  // number of traversals whose crossing is not kept
-    bool was_apart = false, touched_twice = false;
-  };
-
-  static constexpr double unknown = -1;
+  using Answer = PairAnswer;
+  using Kept = KeptOfPair;
+  static constexpr double unknown = PairAnswer::unknown;
   /// Queries whose whole answer is kept; of contacts, it is only kept that there are none.
   template <class Query>
   static constexpr bool keeps_answer = requires(Query query) { query.answer(); };
