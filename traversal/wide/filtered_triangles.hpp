@@ -73,7 +73,7 @@ class FilteredTriangles {
       return true;
     }
     std::uint64_t open = lanes & ~apart & ~met;
-    if (memory_.record_triangles(pair, open != 0, entry))
+    if (memory_.record_triangles(pair, (open | met) != 0, entry))
       memory_.set_triangle_gap(triangles, counter_, entry);
     for (; open; open &= open - 1) {
       const int lane = std::countr_zero(open);

@@ -59,7 +59,7 @@ class NoRecord {
   static void finish(const Pair&, const Leaves&, bool) {}
 
   static constexpr bool record_triangles(const NodePair&, bool, std::size_t) { return false; }
-  static void record_undecided(const NodePair&) {}
+  static void record_touching(const NodePair&) {}
   static void record_crossing(const Crossing&) {}
   template <class Triangles, class Counter>
   static void set_triangle_gap(const Triangles&, Counter&, std::size_t) {}
@@ -158,8 +158,9 @@ class GapMeasure {
     front_->set_gap(entry, gap, triangles.reference_sphere(), start_.rotation);
     if (!(gap > 0)) (*front_)[entry].rest = 8;
   }
-  /// Two triangles, by their numbers, may touch.
-  void record_undecided(const NodePair& pair) { touched_ = pair; }
+  /// Triangles touch, or may, where all hits are sought. Their numbers are not used: such bodies get
+  /// no front, since all contacts would be tested again.
+  void record_touching(const NodePair& pair) { touched_ = pair; }
   void record_crossing(const Crossing& found) { crossing_ = found; }
 
   /// Whether a front was kept; whether the traversal started from it, and how many of its entries

@@ -47,9 +47,8 @@ class SiftedTriangles : public FilteredTriangles<PairFrame, Body, Query, Counter
         which, frame_.a_to_b().error_bound(),
         [&](std::uint32_t number_a, std::uint32_t number_b, bool meeting) {
           const std::uint32_t a = frame_.triangle(0, number_a), b = frame_.triangle(1, number_b);
-          if (meeting) return query_.known(a, b);
-          memory_.record_undecided({number_a, number_b});
-          return hold(a, b);
+          memory_.record_touching({number_a, number_b});
+          return meeting ? query_.known(a, b) : hold(a, b);
         });
   }
 
