@@ -94,7 +94,6 @@ class BlocksSieve {
       boxes.high[k].copy_to(high[k].data(), stdx::vector_aligned);
     }
     std::uint64_t apart = 0;
-#pragma GCC unroll 16
     for (std::size_t part = 0; part < 16 / S::size(); ++part) {
       Mask<S> found = beyond_plane(others, part);
       for (std::size_t k = 0; k < 3; ++k)
