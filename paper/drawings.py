@@ -22,7 +22,7 @@ def draw(folder, out):
         draw_reuse(quoting.record_of("fan-outs", folder), out)
         draw_cycles(quoting.record_of("fan-outs", folder), out)
         draw_strategies(quoting.record_of("coherence", folder), out)
-        draw_lead(quoting.record_of("tournament", folder), out)
+        draw_lead(quoting.record_of("tournament-peers", folder), out)
         draw_displacement(quoting.record_of("boxes-displacement", folder), out)
 
 
@@ -86,7 +86,7 @@ def draw_lead(record, out):
     axis.errorbar(found.ratio, places, xerr=[found.ratio - found.low, found.high - found.ratio], fmt="o", color="black", capsize=2)
     axis.set_yticks(places, names)
     axis.set_xscale("log")
-    axis.set_xticks([1, 2, 5, 10, 15], ["1", "2", "5", "10", "15"])
+    axis.set_xticks([1, 2, 5, 10, 20], ["1", "2", "5", "10", "20"])
     axis.minorticks_off()
     axis.axvline(1, color="black", linewidth=0.6)
     axis.set_xlabel("time of the fastest library / ours")

@@ -62,51 +62,61 @@ def tournament_headline(record):
     claim(faster == {"planner", "slow"}, "with one lane recommended is faster where motion is coherent")
     claim((found["one, coherent"].ratio < 1).all() and len(found["one, coherent"]) == 8, "with one lane OPCODE's coherence is faster in every cell of touching")
     claim((rows.alone == "no").all(), "all of the tournament was timed beside other work")
+    contacts = rows.work.str.startswith("contacts")
+    claim(rows[contacts].frames.max() < 100 < rows[~contacts].frames.min(), "runs for contacts alone have less than a hundred frames")
     claim(set(rows[rows.method.str.startswith(f"{OURS}, ")].volume) == {"slab-box"}, "recommended is one configuration of slab-boxes in the tournament")
-    return {"rows": len(rows), "one_coherent": Interval(found["one, coherent"].ratio), "sixteen": Interval(found["sixteen"].ratio), "eight": Interval(found["eight"].ratio), "one": Interval(found["one"].ratio),
+    names = [name for name in dict.fromkeys(method.split(",")[0] for method in libraries(rows))]
+    return {"libraries": names, "coherent": Interval(beside_all(record).ratio), "contact_frames": rows[contacts].frames.max(), "rows": len(rows), "one_coherent": Interval(found["one, coherent"].ratio), "sixteen": Interval(found["sixteen"].ratio), "eight": Interval(found["eight"].ratio), "one": Interval(found["one"].ratio),
             "roots": Interval(found["roots"].ratio), "roots_one": Interval(found["roots, one"].ratio),
             "width": Interval(found["one"].ours_ns / found["sixteen"].ours_ns), "fcl": Interval(1 / found["fcl"].ratio)}
 
 
-SHOWN = {"recommended": "recommended", "wide, from the roots": "wide, from the roots", "OPCODE": "OPCODE", "OPCODE, coherent": "OPCODE, coherent",
-         "FCL, obb": "FCL, oriented boxes"}
-
-
-PEERS = [name for name in SHOWN if name.startswith(("OPCODE", "FCL"))]
+def libraries(rows):
+    """The methods of other libraries, those compiled from source with our flags where several programs ran them."""
+    rows = rows[rows.peer != ""]
+    if "program" in rows:
+        rows = rows[rows.program == SOURCE]
+    return list(dict.fromkeys(rows.method))
 
 
 @cache
 def beside_all(record):
-    """`recommended` beside the fastest of all configurations of other libraries, OPCODE's coherence among them."""
-    rows, _ = cells(record)
-    return tournament.tournament(rows, called(OURS, SOURCE), [called(name, SOURCE) for name in PEERS]).set_index(tournament.PLACES)
+    """`recommended` beside the fastest of all configurations of other libraries, those that keep answers among them."""
+    rows = tournament.read(record)
+    ours = called(OURS, SOURCE) if "program" in rows else OURS
+    return tournament.tournament(rows, ours, libraries(rows)).set_index(tournament.PLACES)
 
 
-@quotes("tournament")
+SHOWN = ["recommended", "wide, from the roots", "OPCODE", "OPCODE, coherent", "PhysX", "FCL, obb", "Coal, obb"]
+
+
+@quotes("tournament-peers")
 def scenes(record):
-    """Scene by method: microseconds a pair, mean and the 99th percentile of frames; and the lead over the fastest peer."""
-    rows, _ = cells(record)
-    rows = rows[rows.program == SOURCE]
+    """Scene by method: microseconds a pair, mean and the 99th percentile of frames; and the lead over the fastest library."""
+    rows = tournament.read(record)
     middle = rows.groupby([*tournament.PLACES, "method", "seed"])[["ns", "tail_ns"]].median().groupby([*tournament.PLACES, "method"]).mean() / 1e3
     beside = beside_all(record)
-    peers = [called(name, SOURCE) for name in PEERS]
     lines, last = [], None
     for place, line in beside.iterrows():
         texts = []
         for name in SHOWN:
-            key = (*place, called(name, SOURCE))
-            texts.append(f"{quoting.written(middle.ns[key], '.2g')}, {quoting.written(middle.tail_ns[key], '.2g')}" if key in middle.index else "")
+            key, mark = (*place, name), "*" if tournament.differences(rows, place, name) else ""
+            texts.append(f"{quoting.written(middle.ns[key], '.2g')}, {quoting.written(middle.tail_ns[key], '.2g')}{mark}" if key in middle.index else "")
         lines.append(["" if place[0] == last else place[0], str(place[1]), *texts, written(line) + ("*" if line.differing else "")])
         last = place[0]
-    claim((beside.low > 1).all(), "recommended is faster than every peer in every scene")
+    claim(set(libraries(rows)) == {"OPCODE", "OPCODE, coherent", "PhysX", "FCL, obb", "Coal, obb", "Coal, obbrss"}, "the libraries are OPCODE, PhysX, FCL and Coal")
+    claim((rows.alone != "no").all(), "the rows were timed alone")
+    claim((beside.low > 1).all(), "recommended is faster than every library in every scene")
+    wrong = set(rows[rows.differing > 0].work)
+    claim(all(work.startswith("contacts") for work in wrong), "only contacts differ")
     tails = middle.tail_ns.unstack("method")
-    ours, roots = called(OURS, SOURCE), called("wide, from the roots", SOURCE)
-    claim((tails[ours] < tails[peers].min(axis=1)).all(), "recommended has a lower 99th percentile than every library")
+    claim((tails[OURS] < tails[libraries(rows)].min(axis=1)).all(), "recommended has a lower 99th percentile than every library")
     contacts = rows.work.str.startswith("contacts")
     claim(rows[contacts].frames.max() < 100 < rows[~contacts].frames.min(), "runs for contacts alone have less than a hundred frames")
     mean = middle.ns.unstack("method")
+    roots = "wide, from the roots"
     return {"rows": lines, "lead": Interval(beside.ratio), "seeds": rows.seed.nunique(), "repetitions": rows.repetition.nunique(),
-            "cells": len(beside), "roots_faster": int((mean[roots] < mean[ours]).sum()), "roots_tails": int((tails[roots] < tails[ours]).sum()),
+            "cells": len(beside), "roots_faster": int((mean[roots] < mean[OURS]).sum()), "roots_tails": int((tails[roots] < tails[OURS]).sum()),
             "contact_frames": rows[contacts].frames.max()}
 
 
@@ -137,7 +147,8 @@ def tournament_peers(record):
     rule = rows[rows.method == "recommended"].groupby(["work", "polygons", "seed"])[["volume", "fan_out"]].first()
     other = rule[rule.volume != "slab-box"]
     claim({*other.volume} == {"obb"} and {*other.fan_out} == {4} and {*rule.drop(other.index).fan_out} == {16}, "recommended takes slab-boxes or oriented boxes")
-    claim(set(other.index.droplevel("seed")) == {("slow", 500), ("5 degrees", 8000)}, "it takes oriented boxes in slow motion and in 5 degrees")
+    oriented = [f"`{work}` with {polygons} polygons" for work, polygons in dict.fromkeys(other.index.droplevel("seed"))]
+    claim(oriented, "it takes oriented boxes somewhere")
     lead = times.groupby("work")
     wrong = rows[rows.differing > 0].groupby("method").differing.max()
     claim(set(rows[rows.differing > 0].work) == {"contacts, near"} and set(wrong.index) == {"Coal, obb", "Coal, obbrss", "OPCODE"}, "Coal and OPCODE differ, in contacts alone")
@@ -147,7 +158,7 @@ def tournament_peers(record):
         lines.append(["" if work == last else work, str(polygons), *cells, f"{times[work, polygons]:.1f}"])
         last = work
     return {"rows": lines, "touching": Interval(touching), "five": int((touching >= 5).sum()), "cells": len(touching), "roots": Interval(roots),
-            "contacts": Interval(contacts), "physx": len(physx), "places": len(us), "slab": len(rule) - len(other), "chosen": len(rule), "oriented": len(other),
+            "contacts": Interval(contacts), "physx": len(physx), "places": len(us), "slab": len(rule) - len(other), "chosen": len(rule), "oriented": len(other), "oriented_in": oriented,
             **{f"lead_{short}": Interval(lead.get_group(work)) for short, work in (("five", "5 degrees"), ("near", "near"), ("contacts", "contacts, near"))},
             "roots_faster": int((us["wide, from the roots"] < us.recommended).sum()), "coal": int(wrong["Coal, obb"]), "opcode": int(wrong["OPCODE"]), "seeds": rows.seed.nunique(),
             "repetitions": rows.repetition.nunique()}
