@@ -355,6 +355,75 @@ TEST(Wide, MarginsPauseWhereBodiesAreFast) {
   EXPECT_GT(slow_distances, 0u);
 }
 
+/// The answers of all pairs in a world, of which each frame queries those with a body that moved.
+template <class Pairs>
+class SlotAnswers {
+ public:
+  SlotAnswers(std::span<const WideShape<SlabBox<float>, 16>> shapes,
+              const std::vector<ObjectPair>& pairs)
+      : world_(shapes), pairs_(pairs), touching_(pairs.size()) {
+    for (std::uint32_t slot = 0; slot < pairs.size(); ++slot) world_.put(slot, pairs[slot]);
+  }
+  const std::vector<std::uint8_t>& frame(const std::vector<std::uint32_t>& movers,
+                                         const PosesOfFrame& poses) {
+    world_.template begin<Touching>(movers, poses, Vec3<double>::Zero(), threads_);
+    for (const auto i : movers) world_.set_pose(i);
+    std::vector<std::uint32_t> due;
+    for (std::uint32_t slot = 0; slot < pairs_.size(); ++slot)
+      for (const auto i : movers)
+        if (pairs_[slot].i == i || pairs_[slot].j == i) {
+          due.push_back(slot);
+          break;
+        }
+    Counting counter;
+    world_.run(
+        due, 0, counter, [](std::uint32_t, const ObjectPair&) { return Touching(); },
+        [&](std::uint32_t slot, const ObjectPair&, const Touching& query) {
+          touching_[slot] = query.touching();
+        });
+    return touching_;
+  }
+  bool paused() const { return world_.memory().paused(); }
+
+ private:
+  Pairs world_;
+  std::vector<ObjectPair> pairs_;
+  std::vector<std::uint8_t> touching_;
+  Threads threads_{1};
+};
+
+/// In a world some bodies rest: those that moved in a pause and rest at its end, too. Answers are
+/// those from the roots in every frame.
+TEST(Wide, MarginsPauseInWorlds) {
+  const TriangleMesh mesh = formula_mesh("star", 120);
+  const WideHierarchy<SlabBox<float>, 16> hierarchy(mesh, builds::BottomUpLocal::topology(mesh, 1));
+  const std::vector<WideShape<SlabBox<float>, 16>> shapes(6, {&mesh, &hierarchy});
+  const auto pairs = all_object_pairs(6);
+  SlotAnswers<WidePairs<SlabBox<float>, 16, WideMargins>> margins(shapes, pairs);
+  SlotAnswers<WidePairs<SlabBox<float>, 16>> from_roots(shapes, pairs);
+  std::mt19937 random(8);
+  PosesOfFrame poses = random_frame(random, 6, 1.2, 0, {0, 0, 0});
+  int paused = 0, ended = 0;
+  for (int f = 0; f < 3000; ++f) {
+    // All are placed first. Then bodies jump for a while, or move a little, most of them or few.
+    const bool jumps = f / 40 % 3 != 2, few = f / 25 % 2 == 1;
+    std::vector<std::uint32_t> movers;
+    for (std::uint32_t i = 0; i < 6; ++i)
+      if (f == 0 || random() % (few ? 5 : 2) == 0) movers.push_back(i);
+    const PosesOfFrame next = random_frame(random, 6, 1.2, 0, {0, 0, 0});
+    for (const auto i : movers)
+      if (jumps)
+        poses[i] = next[i];
+      else
+        poses[i].translation[0] += 1e-3;
+    const bool was_paused = margins.paused();
+    ASSERT_EQ(margins.frame(movers, poses), from_roots.frame(movers, poses)) << f;
+    paused += margins.paused(), ended += was_paused && !margins.paused();
+  }
+  EXPECT_GT(paused, 300);
+  EXPECT_GT(ended, 20);
+}
+
 /// What rests, moves along together or is far from the rest is not tested again.
 TEST(Wide, RestIsNotTested) {
   for (const auto& [scene, truth] : scenes_with_truth()) {

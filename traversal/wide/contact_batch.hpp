@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The test of triangles where all hits are sought, in two phases. First one triangle of a against
-/// all of a leaf of b, by boxes and by the plane of the one, in forty operations: a lane in ten is
-/// left. The pairs left by many leaves are packed side by side, and the filter of triangles tests
-/// full registers of them. N_p counts the lanes of the first phase.
+/// The test of triangles where all hits are sought, in two phases. First a triangle of a against a
+/// leaf of b (or four against four), by boxes and by the plane of that of a, in forty operations: a
+/// lane in ten is left. The pairs left by many leaves are packed side by side, and the filter of
+/// triangles tests full registers of them. N_p counts the lanes of the first phase.
 ///
-/// Rounding in the first phase. Corners of a are within `off` of where they are, in each coordinate
-/// (CornerTransform), and off > 16 e (r_a + |t|) + 2 e r_b, with r the reaches and e the unit
-/// roundoff. Corners of b are off by e r_b < off / 2.
+/// Rounding in the first phase. Let d be CornerTransform::error_bound. Coordinates of a's corners
+/// have errors below d > 16 e (r_a + |t|) + 2 e r_b, with r the reaches and e the unit roundoff, so
+/// they are at most r_a + |t| + d. Corners of b have errors up to e r_b < d / 2: in all, 3/2 d.
 ///
-/// Boxes of a are grown by 9/4 off. A sum of a coordinate of a and 9/4 off is off by at most
-/// e (r_a + |t| + 4 off) < off / 8: it lies more than 2 off beyond the coordinate.
+/// Boxes of a are grown by 9/4 d. That product and its sum with a coordinate are rounded, with an
+/// error of at most e (r_a + |t| + 6 d) < d / 8: a face moves by more than 2 d, and 3/2 d suffice.
 ///
-/// Planes. Any vector n as computed separates two triangles whose products with n differ by more
-/// than the errors. With N = |n_x| + |n_y| + |n_z|: corners of a and b are off by 3/2 N off in all;
-/// a product is rounded three times, by 3.1 e N times the largest coordinate, which is
-/// 0.2 N off for a and 1.6 N off for b; and growing what a spans by N off / 8. That is less
-/// than 3.5 N off. It is grown by 4 N off, and by the least normal number, which covers underflow.
+/// Planes. Whatever n is, triangles are apart if their intervals of n.x are. Let N = |n_x| + |n_y|
+/// + |n_z|. The ends are off by 3/2 N d by the corners; by 3.1 e N times the largest coordinate by
+/// three roundings of each product, below 0.2 N d for a and 1.6 N d for b; and by less than
+/// N d / 8 by rounding N, 4 N d and the grown ends: 3.5 N d in all. The interval of a is grown by
+/// 4 N d, and by the least normal number, which covers six products that underflow gradually.
 ///
-/// Overflow. Nothing is apart by its plane unless 4 N off < 2^100; then N times any coordinate is
-/// less than 2^121. Where off is not below 2^100, it is taken to be infinite, and boxes and spans
-/// are. Comparisons with NaN are false.
+/// Overflow. Nothing is apart by its plane unless 4 N d < 2^100; then N times any coordinate, which
+/// is at most d / (2 e), is less than 2^121. Where d is not below 2^100 it is taken to be infinite,
+/// and so are boxes and intervals. Comparisons with NaN are false.
 #pragma once
 
 #include <algorithm>
@@ -29,6 +29,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "hierarchies/wide/lanes.hpp"
 #include "hierarchies/wide/triangle_lanes.hpp"
 #include "traversal/primitives/triangle_filter.hpp"
 #include "traversal/wide/relative_frame.hpp"
@@ -61,8 +62,8 @@ struct TriangleBoxes {
   }
 };
 
-/// The triangles of a leaf of a in the frame of b, with their boxes and what they span along their
-/// normals, both grown by the error bounds. Written lane by lane, read triangle by triangle.
+/// The triangles of a leaf of a in the frame of b, with their boxes and their intervals along their
+/// normals, both grown by the error bounds. Computed in lanes; read one triangle at a time.
 template <int F>
 class TransformedLeaf {
   using S = Batch<float, F>;
@@ -99,7 +100,7 @@ class TransformedLeaf {
             (filter::max(filter::max(p, q), r) < S(least_[k]));
     return ~bits(apart);
   }
-  /// Of each triangle, a vector across it, of any length, and what it spans along that, grown.
+  /// Of each triangle, its normal, of any length, and its interval along that, grown.
   const std::array<std::array<float, F>, 3>& normal() const { return normal_; }
   const std::array<float, F>& least() const { return least_; }
   const std::array<float, F>& most() const { return most_; }
@@ -149,7 +150,7 @@ class TransformedLeaf {
   float off_;
   TriangleLanes<float, F> transformed_;
   alignas(sizeof(float) * F) std::array<Lanes, 3> low_, high_;
-  // A vector, whatever its length, and what each triangle spans along it, grown.
+  // Of each triangle, its normal, of any length (0 if not usable), and its interval along it.
   alignas(sizeof(float) * F) std::array<Lanes, 3> normal_;
   alignas(sizeof(float) * F) Lanes least_, most_;
 };
@@ -222,9 +223,9 @@ class ContactBatch {
 #endif
   }
 
+  enum class Decide { full_registers, all };
   /// Tests full registers of pairs, or all that are left, and calls take(a, b, meeting) with the
   /// numbers of those that are not certainly apart until it returns true. Returns whether it has.
-  enum class Decide { full_registers, all };
   template <Batched S, class Take>
   [[gnu::always_inline]] bool decide(Decide which, float off, Take&& take) {
     constexpr std::size_t width = S::size();

@@ -7,7 +7,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include "hierarchies/wide/block_hierarchy.hpp"
 #include "hierarchies/wide/wide_hierarchy.hpp"
@@ -34,7 +33,7 @@ class SiblingsSieve {
     return leaf_of_a_;
   }
 
-  /// Takes the last pairs of the queue, those of one leaf of b.
+  /// Tests and takes the last pairs of the queue that have one leaf of b, until the batch is full.
   template <class Counter>
   [[gnu::noinline]] void sift(const Trees& trees, const CornerTransform& a_to_b,
                               WorkQueue& triangles, ContactBatch& batch, Counter& counter) {
@@ -85,7 +84,7 @@ class BlocksSieve {
  private:
   using Four = CornerTransform::Four;
 
-  /// As TransformedLeaf::near, for all of the leaf.
+  /// As TransformedLeaf::near, for all four of a: lane 4 i + j is of triangle i of a and j of b.
   [[gnu::always_inline]] std::uint64_t near(const TriangleLanes<float, 4>& others) const {
     const TriangleBoxes<Four> boxes(corners_in_lanes<Four>(others));
     alignas(16) std::array<std::array<float, 4>, 3> low, high;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The leaf stage of wide trees: tests the triangles of two leaves in float, a register of pairs at
-/// a time, with a derived bound on all rounding (triangle_filter.hpp). Pairs decided by this filter
-/// skip the exact test; the few others are held and go to the query, in the world.
+/// The leaf stage of wide trees: tests a leaf's triangles, or one of them, against a leaf in float,
+/// a register of pairs at a time, with a bound on all rounding (triangle_filter.hpp). Pairs that it
+/// leaves open, and all near ones if a distance is sought, go to the query in the world frame.
 #pragma once
 
 #include <algorithm>
@@ -111,7 +111,7 @@ class FilteredTriangles {
     (std::make_index_sequence<parts>());
   }
 
-  /// As test, where a distance is sought: holds pairs of triangles whose volumes are near enough.
+  /// As test, where a distance is sought: the query tests the pairs whose volumes are near enough.
   [[gnu::noinline]] bool measure(const NodePair& pair) {
     const auto triangles = frame_.triangles(pair);
     std::uint64_t remaining = triangles.lanes();

@@ -29,7 +29,7 @@ struct TraversalStart {
   std::optional<NodePair> touched = {};  ///< GapMeasure::touched of the last frame, tested first
   /// Null, or a front: if it is complete the traversal starts from it, else it is written anew.
   WideFront* front = nullptr;
-  double rotation = 0;  ///< bound on the rotation of both bodies since the first frame
+  double rotation = 0;  ///< sum of the bounds on both bodies' rotations since the first frame
 };
 
 /// Records nothing: the memory of a traversal (see traversal.hpp) that starts from the roots.
@@ -158,14 +158,14 @@ class GapMeasure {
     front_->set_gap(entry, gap, triangles.reference_sphere(), start_.rotation);
     if (!(gap > 0)) (*front_)[entry].rest = 8;
   }
-  /// Triangles touch, or may, where all hits are sought. Their numbers are not used: such bodies get
-  /// no front, since all contacts would be tested again.
+  /// Where all hits are sought: triangles touch, or may. Their numbers are not used: the pair keeps
+  /// no front, since a retest would test all its contacts again.
   void record_touching(const NodePair& pair) { touched_ = pair; }
   void record_crossing(const Crossing& found) { crossing_ = found; }
 
   /// Whether a front was kept; whether the traversal started from it, and how many of its entries
   /// were due.
-  bool front() const { return front_; }
+  bool keeps_front() const { return front_; }
   bool sweeps() const { return sweeps_; }
   std::size_t due() const { return due_; }
   const std::optional<Crossing>& crossing() const { return crossing_; }

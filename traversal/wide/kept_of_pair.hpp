@@ -14,8 +14,8 @@ namespace bvlab {
 struct PairAnswer {
   static constexpr double unknown = -1;
 
-  double until = unknown;  ///< valid below this displacement; negative: while nothing moves
-  std::uint32_t epochs = 0;
+  double until = unknown;  ///< valid while displacements sum to less; negative: none is known
+  std::uint32_t epochs = 0;  ///< sum of both bodies': a whole answer holds while it is the same
   bool touching = false;
   bool traversed = false;  ///< a traversal has found it, or a crossing that one has found
 };
@@ -23,12 +23,12 @@ struct PairAnswer {
 struct KeptOfPair {
   RelativeMotionBound clock;
   double deadline = 0;  ///< by the clock; 0: none
-  double distance = 0;
-  NodePair touched{};
+  double distance = 0;  ///< the last answer, where a distance is sought
+  NodePair touched{};   ///< GapMeasure::touched of the last traversal that had one
   WideFront front;
   FrontPause pause;
   std::optional<Crossing> crossing;
-  int rest = 0, next_rest = 1;  // number of traversals whose crossing is not kept
+  int rest = 0, next_rest = 1;  // traversals to come whose crossing is not kept; of the next time
   bool was_apart = false, touched_twice = false;
 };
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// When margins pause. Where bodies are fast, hardly any answer outlasts a frame, and what margins
 /// measure and keep is wasted: up to a seventh of the time. If in six frames less than one
-/// traversal in twenty was spared by what was kept, the next 32 or 64 frames start from the roots.
-/// A pause ends at once when the bodies have slowed down to half their motion, or when a quarter
-/// more of the pairs are decided before any tree is traversed.
+/// traversal in twenty was spared by what was kept, traversals start from the roots for 32 frames,
+/// or 64 if a full pause came before. A pause ends early when the bodies have slowed down to half
+/// their motion at its begin, or when a quarter more of the pairs are decided without a traversal.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 
 namespace bvlab {
@@ -19,6 +18,7 @@ struct FrameOfPairs {
                            ///< last one's answer was kept
   double motion = 0;       ///< mean motion of a moved body, in any measure; used in pauses alone
 
+  /// Adds the counts, not the motion.
   void add(const FrameOfPairs& other) {
     queried += other.queried, traversed += other.traversed, spared += other.spared;
   }
@@ -58,7 +58,7 @@ class MarginPause {
     if (age_ == 2) {
       first_ = last;
     } else if (2 * last.motion < first_.motion ||
-               4 * (last.traversed + last.queried / 4) < 4 * first_.traversed) {
+               last.traversed + last.queried / 4 < first_.traversed) {
       remaining_ = 0;
       length_ = shortest;
     }

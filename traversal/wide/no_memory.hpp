@@ -4,14 +4,14 @@
 /// A memory keeps state of pairs of bodies from frame to frame. WidePairs calls
 ///   add_body(sphere, reach), resize(pairs)  for the bodies and the number of pairs
 ///   forget(pair)                            when a pair parts
-///   begin_frame<Query>(last)                what became of the pairs in the last frame; another
-///   query
-///                                           than before starts without memory
+///   begin_frame<Query>(last)                begins a frame; `last` is what became of the pairs in
+///                                           the last one. Another query than before starts
+///                                           without memory
 ///   move(i, body, pose, culling, origin)    body i is at `pose`
-///   motion(i)                               how far it has moved, in any measure; used in pauses
+///   motion(i)                               how far body i has moved in this frame, in any
+///                                           measure; used in pauses
 ///   paused()                                whether this frame's traversals start from the roots
-///   and
-///                                           record nothing
+///                                           and record nothing
 ///   rest(i)                                 body i does not move
 ///   front_size(pair), front_size()          entries of the front of one pair, of all
 ///   require(body, pose)                     sets the pose of a body before it is traversed
@@ -27,7 +27,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>

@@ -10,9 +10,9 @@
 ///     begin(a, b), a_to_b()
 ///     roots()                          the pair to start with
 ///     retry(touched, nodes, triangles) queues the pair that touched in the last frame first
-///     step(pair, counter, sieve, test) calls test(step) with the volumes to test at once; `sieve`
-///     is
-///                                      a ContactSieve where all hits are sought, else of no use:
+///     step(pair, counter, sieve, test) calls test(step) with the volumes to test at once; where
+///                                      all hits are sought `sieve` is a ContactSieve, else it is
+///                                      not used. Members of a step:
 ///       lanes()                          the lanes in use, of `parts` registers S
 ///       overlap(part), separation(part), gaps(part)
 ///       push(nodes, triangles, lanes, order, next)
@@ -25,10 +25,14 @@
 ///       gaps(counter)                    the same for each lane, if triangles have volumes
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string_view>
+#include <type_traits>
 
 #include "traversal/primitives/triangle_filter.hpp"
 #include "traversal/wide/contact_sieve.hpp"

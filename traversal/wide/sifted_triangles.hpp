@@ -27,7 +27,7 @@ class SiftedTriangles : public FilteredTriangles<PairFrame, Body, Query, Counter
     batch_.clear(), sieve_.begin();
   }
 
-  /// Makes the first test of the queued triangles, and the second of full batches. Returns whether
+  /// Makes the first test of all queued triangles, and filters the batch if full. Returns whether
   /// the query is satisfied.
   [[gnu::always_inline]] bool test_due() {
     if constexpr (Memory::measures_gaps)

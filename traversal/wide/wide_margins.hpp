@@ -84,7 +84,8 @@ class WideMargins {
   template <class Query>
   void begin_frame(const FrameOfPairs& last) {
     if (last_query_ == &Query::name) {
-      if (pause_.next(last)) std::fill(front_sizes_.begin(), front_sizes_.end(), 0);
+      if (pause_.next(last))
+        for (std::size_t p = 0; p < kept_.size(); ++p) clear_front(p);
       return;
     }
     pause_.restart();
@@ -210,7 +211,7 @@ class WideMargins {
       clear_front(p);
       return;
     }
-    if (found.front()) {
+    if (found.keeps_front()) {
       WideFront& front = kept.front;
       // Retesting an entry costs as much as a step of a traversal; the saved ones must also pay for
       // writing fronts.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Two bodies over wide trees as the loop sees them (traversal.hpp), by any kernel that tests all
-/// lanes of a step in registers (siblings_kernel.hpp, mixed_kernel.hpp): an entry of a front, and
-/// an open pair, is a step's pair of nodes.
+/// lanes of a step in registers (siblings_kernel.hpp, mixed_kernel.hpp). An open pair, and an entry
+/// of a front that is not of triangles, is the pair of nodes of one step.
 ///
-/// Where one hit is enough or a distance is sought, the open pair that is likeliest to end the
-/// search is taken first (see WorkQueue).
+/// If a distance is sought, and in the first steps where one hit is expected, the open pair that is
+/// likeliest to end the search is taken first (see WorkQueue); else the last ones, four at a time.
 #pragma once
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 #include <utility>
 
 #include "traversal/traversal.hpp"
+#include "traversal/wide/contact_batch.hpp"
 #include "traversal/wide/filtered_triangles.hpp"
 #include "traversal/wide/gap_measure.hpp"
-#include "traversal/wide/siblings_kernel.hpp"
 #include "traversal/wide/sifted_triangles.hpp"
 #include "traversal/wide/work_queue.hpp"
 
@@ -62,7 +62,7 @@ class WidePair {
   void retry(const NodePair& touched) { frame_.retry(touched, nodes_, triangles_); }
 
   const PairFrame& frame() const { return frame_; }
-  /// What the first test of triangles keeps of a leaf, where all hits are sought.
+  /// The first test of triangles where all hits are sought; it keeps a leaf of a, transformed.
   typename PairFrame::ContactSieve& sieve() { return sieve_; }
   bool done() const { return nodes_.empty(); }
 
@@ -95,7 +95,7 @@ class WidePair {
     std::uint64_t lanes() const { return of.lanes(); }
   };
 
-  /// Makes the step of a pair.
+  /// Has the kernel make the step of a pair, and visits it.
   template <class Query, class Counter, class Visit>
   [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Visit&& visit) {
     const auto named = [&]<class KernelStep>(const KernelStep& step)

@@ -18,6 +18,7 @@
 
 #include "hierarchies/geometry/threads.hpp"
 #include "traversal/all_pairs.hpp"
+#include "traversal/wide/siblings_kernel.hpp"
 #include "traversal/wide/wide_margins.hpp"
 #include "traversal/wide/wide_pair.hpp"
 
@@ -86,7 +87,11 @@ class WidePairs {
              const Vec3<double>&, Threads& threads) {
     poses_ = poses;
     if (workers_.size() < threads.count()) workers_.resize(threads.count());
+    const bool was_paused = memory_.paused();
     memory_.template begin_frame<Query>(last_frame(moved_));
+    // In a pause a memory does not follow bodies: some have moved and rest now.
+    if (was_paused && !memory_.paused())
+      for (std::size_t i = 0; i < bodies_.size(); ++i) move(i);
     for (const auto i : moved_) memory_.rest(i);
     moved_.assign(movers.begin(), movers.end());
   }
