@@ -58,24 +58,23 @@ std::vector<Named> frames() {
 std::vector<Named> kernels() {
   // A front's entry is a step there. Retesting all entries repeats the steps of a recursion, so
   // that lists save no step; margins skip entries.
-  const std::string strategies =
-      ", --strategy recursive or margins (the entries of a list would be the steps that a "
-      "recursion "
-      "makes: nothing to save)";
-  return {
-      {"gathered",
-       "a register holds pairs of nodes from anywhere in both trees: every volume, strategy, "
-       "query, fan-out and frame"},
-      {"siblings", "a register holds the children of one node, against one volume: --volume " +
-                       text_of(wide_volumes("siblings")) + " (listed in wide_volumes.hpp)" +
-                       strategies + ", --fan-out " +
-                       std::to_string(wide_entries()[0]->fan_out("siblings")) +
-                       " (the lanes of a register), --frame body"},
-      {"mixed",
-       "four children against four where nodes are alike in size, else one against sixteen "
-       "grandchildren: --volume " +
-           text_of(wide_volumes("mixed")) + " (its sibling test can pose four volumes at once)" +
-           strategies + ", --fan-out 4, --frame body"}};
+  const std::string reasons =
+      ", --frame body; other volumes are not listed in wide_volumes.hpp, and a list would be of "
+      "the "
+      "steps that a recursion makes, with nothing to save";
+  return {{"gathered",
+           "a register holds pairs of nodes from anywhere in both trees: every volume, strategy, "
+           "query, fan-out and frame"},
+          {"siblings", "a register holds the children of one node, against one volume: --volume " +
+                           text_of(wide_volumes("siblings")) +
+                           ", --strategy recursive or margins, --fan-out " +
+                           std::to_string(wide_entries()[0]->fan_out("siblings")) +
+                           " (the lanes of a register)" + reasons},
+          {"mixed",
+           "four children against four where nodes are alike in size, else one against sixteen "
+           "grandchildren: --volume " +
+               text_of(wide_volumes("mixed")) + ", --strategy recursive or margins, --fan-out 4" +
+               reasons}};
 }
 
 std::vector<Named> strategies() {
