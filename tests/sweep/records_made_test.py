@@ -46,8 +46,7 @@ class Made(unittest.TestCase):
         self.root = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="of records ")))
         (self.root / "experiments/definitions").mkdir(parents=True)
         (self.root / "experiments/record").mkdir()
-        for name in ("records", "processor_time.c"):
-            shutil.copy(ROOT / "experiments" / name, self.root / "experiments")
+        shutil.copy(ROOT / "experiments/records", self.root / "experiments")
         self.program_of("b")
 
     def program_of(self, commit, changes=False):
@@ -84,7 +83,7 @@ class Made(unittest.TestCase):
         done = self.make()
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("left out: others (of several builds)", done.stderr)
-        self.assertEqual(self.machine("old"), {"commit": "b", "changes": False, "clock": "processor", "words": ["--counts"]})
+        self.assertEqual(self.machine("old"), {"commit": "b", "changes": False, "clock": "wall", "words": ["--counts"]})
         self.assertEqual(self.machine("study")["clock"], "wall")
         self.assertEqual(self.machine("new"), {"commit": "b"})
         command = (self.root / "experiments/record/old/command.txt").read_text()

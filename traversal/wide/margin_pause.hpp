@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// When margins pause. Where bodies are fast, hardly any answer outlasts a frame, and what margins
-/// measure and keep is wasted: up to a seventh of the time. If in six frames less than one
-/// traversal in twenty was spared by what was kept, traversals start from the roots for 32 frames,
-/// or 64 if a full pause came before. A pause ends early when the bodies have slowed down to half
-/// their motion at its begin, or when a quarter more of the pairs are decided without a traversal.
+/// measure and keep is wasted: up to a seventh of the time. If in six frames or more, and in a
+/// hundred traversals or more, less than one in twenty was spared by what was kept, traversals
+/// start from the roots for 32 frames, or 64 if a full pause came before. Few pairs therefore pause
+/// rarely: in a few frames nothing may be spared by chance. A pause ends early when the bodies have
+/// slowed down to half their motion at its begin, or when a quarter more of the pairs are decided
+/// without a traversal.
 #pragma once
 
 #include <cstddef>
@@ -37,7 +39,9 @@ class MarginPause {
     if (++age_ <= uncounted) return false;
     counted_.add(last);
     if (age_ < uncounted + counted) return false;
-    const bool useless = few * counted_.spared < counted_.traversed + counted_.spared;
+    const std::size_t traversals = counted_.traversed + counted_.spared;
+    const bool useless = few * counted_.spared < traversals;
+    if (useless && traversals < enough) return false;
     counted_ = {}, age_ = useless ? 0 : uncounted;
     remaining_ = useless ? length_ : 0;
     length_ = useless ? longest : shortest;
@@ -49,7 +53,7 @@ class MarginPause {
  private:
   static constexpr int uncounted = 2, counted = 6;  // frames
   static constexpr int shortest = 32, longest = 64;
-  static constexpr std::size_t few = 20;
+  static constexpr std::size_t few = 20, enough = 100;
 
   void watch_pause(const FrameOfPairs& last) {
     --remaining_;
