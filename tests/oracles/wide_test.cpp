@@ -322,11 +322,11 @@ template <class Query, class MakeQuery, class AnswerOf>
 std::array<std::size_t, 2> pauses_of(const MakeQuery& make_query, const AnswerOf& answer_of) {
   const TriangleMesh mesh = formula_mesh("star", 120);
   const WideHierarchy<SlabBox<float>, 16> hierarchy(mesh, builds::BottomUpLocal::topology(mesh, 1));
-  const std::vector<WideShape<SlabBox<float>, 16>> shapes(5, {&mesh, &hierarchy});
-  WidePairs<SlabBox<float>, 16, WideMargins> margins(shapes, all_object_pairs(5));
-  WidePairs<SlabBox<float>, 16> from_roots(shapes, all_object_pairs(5));
+  const std::vector<WideShape<SlabBox<float>, 16>> shapes(8, {&mesh, &hierarchy});
+  WidePairs<SlabBox<float>, 16, WideMargins> margins(shapes, all_object_pairs(8));
+  WidePairs<SlabBox<float>, 16> from_roots(shapes, all_object_pairs(8));
   std::size_t paused_slow = 0, paused_fast = 0;
-  const auto frames = jumping_and_slow(5);
+  const auto frames = jumping_and_slow(8);
   for (std::size_t f = 0; f < frames.size(); ++f) {
     std::vector<double> expected(margins.pairs().size(), -1), found = expected;
     Counting counter;
