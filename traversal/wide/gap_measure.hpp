@@ -44,7 +44,7 @@ class NoRecord {
     pair.start(expect_);
   }
   static constexpr bool sweep_is_due() { return false; }
-  static constexpr bool sweeps() { return false; }
+  static constexpr bool spared() { return false; }
   template <class Traversal>
   static bool sweep(Traversal&) {
     return false;
@@ -167,6 +167,11 @@ class GapMeasure {
   /// were due.
   bool keeps_front() const { return front_; }
   bool sweeps() const { return sweeps_; }
+  /// Whether what was kept shortened the traversal: a front, or the pair that touched before and
+  /// was tested first.
+  bool spared() const {
+    return sweeps_ || (start_.touched && touched_ && *touched_ == *start_.touched);
+  }
   std::size_t due() const { return due_; }
   const std::optional<Crossing>& crossing() const { return crossing_; }
   /// The pair whose triangles touched, or may have.

@@ -16,9 +16,10 @@ namespace bvlab {
 struct FrameOfPairs {
   std::size_t queried = 0;
   std::size_t traversed = 0;
-  std::size_t spared = 0;  ///< traversals that started from a front, or were not needed, since the
-                           ///< last one's answer was kept
-  double motion = 0;       ///< mean motion of a moved body, in any measure; used in pauses alone
+  std::size_t spared =
+      0;              ///< traversals that were shortened by what was kept (GapMeasure::spared),
+                      ///< or not needed, since the last one's answer was kept
+  double motion = 0;  ///< mean motion of a moved body, in any measure; used in pauses alone
 
   /// Adds the counts, not the motion.
   void add(const FrameOfPairs& other) {

@@ -246,7 +246,7 @@ class WidePairs {
         }
         counter.queried(before);
         const auto& recorded = now.traversal->memory();
-        worker.frame.spared += recorded.sweeps();
+        worker.frame.spared += recorded.spared();
         memory_.remember(now.pair, pairs_[now.pair], *now.query, recorded);
         take(now.pair, *now.query);
         if (next < near.size()) {
