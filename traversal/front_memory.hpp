@@ -74,10 +74,11 @@ class FrontSweep {
     }
     return satisfied;
   }
-  /// Tests one entry and its primitives at once: a witness mostly decides the query.
+  /// Tests one entry, and its primitives without delay: a witness decides most queries.
   bool test_entry(std::size_t slot) {
     return test_batch_of_entries(1, [slot](std::size_t) { return slot; }) || flush();
   }
+  /// Takes steps from the open pairs as long as each fills a batch.
   [[gnu::always_inline]] bool fill_batches() {
     bool satisfied = false;
     while (pair().open().size() >= W && !satisfied) satisfied = traversal_.next();

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The kernel that gathers: a step tests W pairs of nodes from anywhere in both trees, one per lane
-/// of a register, and replaces those that overlap by pairs of their children. It runs on any volume
+/// The kernel that gathers: a step tests up to W pairs of nodes from anywhere in both trees, a lane
+/// each, and replaces those that overlap by pairs of their children. It runs on any volume
 /// and fan-out. In the world frame a volume is posed when it is first needed; else that of a is
 /// posed into the frame of b in each test.
 ///
-/// See traversal.hpp for the members of a kernel. A step keeps its pairs and their gaps in memory,
+/// See traversal.hpp for the members of a pair. A step keeps its pairs and their gaps in memory,
 /// since the test itself is out of line: it is compiled once for all fronts and counters.
 #pragma once
 
@@ -74,13 +74,13 @@ class GatheredPair {
     visit(step);
   }
 
-  /// Has the two volumes posed where that is to be done before a test.
+  /// In the world frame, poses the two volumes unless that has been done since the last move.
   template <class Counter>
   void require(const NodePair& pair, Counter& counter) const {
     a_.require(pair.a, counter);
     b_.require(pair.b, counter);
   }
-  /// Which of the step's pairs the query culls. Their volumes have been required.
+  /// Which of the step's pairs the query culls. Their volumes must have been required.
   template <TestFor, bool kGaps, class Query, class Counter>
   [[gnu::always_inline]] LanesApart test(Step<kGaps>& step, Query& query, Counter& counter) const {
     count_posed(step.count, counter);
@@ -98,8 +98,8 @@ class GatheredPair {
     return posed_volumes().gap(pair);
   }
 
-  /// Replaces the pairs in lanes that are not apart by pairs of children; two leaves are held. Each
-  /// lane's entry is told which.
+  /// Replaces the pairs in `lanes` by pairs of their children; of two leaves, the primitives are
+  /// held for a test. Entries are told that they are replaced, or kept as near.
   template <bool kGaps, class Entries, class Memory, class Leaves, class Query, class Counter>
   [[gnu::always_inline]] void pass_on(const Step<kGaps>& step, LanesApart, std::uint64_t lanes,
                                       const Entries& entries, Memory& memory, Leaves& leaves,
@@ -155,7 +155,7 @@ class GatheredPair {
       });
     }
   }
-  /// A branch by body, not a choice of addresses: it is predicted, so that nothing waits for sizes.
+  /// Called for a or for b, in a branch each: a predicted branch does not wait for the sizes.
   template <class Counter, class WithChild>
   [[gnu::always_inline]] void open_one(Body<V>& body, const Node& node, Counter& counter,
                                        const WithChild& with_child) {

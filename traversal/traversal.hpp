@@ -6,32 +6,32 @@
 /// their triangles, and all others back to the queue of open pairs. A traversal from the two roots
 /// is the recursive algorithm. From a front, the steps of its entries come first.
 ///
-/// The parts do not know each other:
+/// The parts. GatheredPair goes with FrontMemory, WidePair with NoRecord and GapMeasure:
 ///   the pair    two bodies as a kernel sees them, and the open pairs: what a step tests, and what
 ///               comes next (GatheredPair, WidePair)
 ///   the memory  what is kept of tested pairs (FrontMemory; NoRecord and GapMeasure of wide trees)
-///   the leaves  the leaf stage (HeldPrimitives, FilteredTriangles)
+///   the leaves  the pair's leaf stage (HeldPrimitives; FilteredTriangles or SiftedTriangles)
 ///
 /// Members of a pair. `visit(step)` is the loop's; the lanes of a step are bits of a mask.
 ///   done()                            whether no pair is open
-///   next<wanted>(query, counter, visit)   visits the step that is next, or several
+///   next<wanted>(query, counter, visit)   visits the next step, several, or none
 ///   test<wanted>(step, query, counter)    what is apart: a LanesApart, or more in a derived class
 ///   pass_on(step, found, lanes, entries, memory, leaves, query, counter)
 ///                                     queues what a step has found near
 /// Members of a memory:
 ///   measures_gaps                     whether steps measure gaps for it
-///   begin(pair)                       queues where the traversal starts, unless a sweep does
-///   no_entries()                      the `entries` of a step that comes from none
+///   begin(pair)                       queues the first pairs, unless sweep() does that
+///   no_entries()                      what `entries` is for a step whose pairs are not yet entries
 ///   sweep_is_due(), sweep(traversal)  whether entries of a front come first; tests them, and
 ///                                     returns whether the query is satisfied
-///   record(pair, step, found, lanes, entries, query)
-///                                     keeps the lanes that are apart, and returns those to pass
-///                                     on; `entries` says which entries the step came from
+///   record(pair, step, found, near, entries, query)
+///                                     records what is apart; `near`: the other lanes. Returns the
+///                                     lanes to pass on. `entries`: the entries that are tested
 ///   finish(pair, leaves, satisfied)   the run is over
 /// Members of the leaves:
 ///   test_due(), finish()              test triangles that need not wait any longer, or all; return
 ///                                     whether the query is satisfied
-///   tested()                          pairs of triangles tested so far
+///   tested()                          pairs of triangles tested so far; called by run() alone
 #pragma once
 
 #include <bit>
@@ -63,7 +63,7 @@ class Traversal {
                                     : Memory::measures_gaps ? TestFor::margins
                                                             : TestFor::overlap;
 
-  /// The memory is constructed from `start`. All other arguments must outlive this.
+  /// The memory is constructed from `start`; a FrontMemory refers to it. All must outlive this.
   template <class Body, class Start>
   Traversal(Body& a, Body& b, Query& query, Counter& counter, typename Pair::Workspace& workspace,
             Start&& start)
@@ -78,9 +78,9 @@ class Traversal {
   Traversal(const Traversal&) = delete;
   Traversal& operator=(const Traversal&) = delete;
 
-  /// Makes one step; returns whether there is more to do.
+  /// Sweeps the front, or tests what comes next; returns whether there is more to do.
   [[gnu::noinline]] bool advance() { return step(); }
-  /// Makes all steps that are left.
+  /// Calls advance until the run is over. Not for wide trees, whose leaves have no tested().
   [[gnu::always_inline]] TraversalStatistics run() {
     while (step()) {
     }

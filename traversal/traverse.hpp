@@ -20,7 +20,7 @@ TraversalStatistics traverse(Body<V>& a, Body<V>& b, Query& query, Counter& coun
   using Memory = FrontMemory<std::remove_reference_t<Front>>;
   static_assert(
       !requires { front.stays(std::size_t(), EntryState::culled, 0.0); },
-      "TrackedFront::stays is named keep: as it is, nothing would call it");
+      "a front's `stays` is now named `keep`: `stays` would never be called");
   return Traversal<GatheredPair<B, V>, Query, Counter, Memory>(a, b, query, counter, workspace,
                                                                front)
       .run();

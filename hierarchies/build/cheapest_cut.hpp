@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The items that top-down builds sort, and the cut of least cost by the surface-area heuristic in
-/// 32 bins (goldsmith1987automatic, wald2007fast). O(n); for few items, which are most ranges of a
-/// build, less than going through all bins.
+/// The items that top-down builds partition, and the cut of least cost by the surface-area
+/// heuristic in 32 bins (goldsmith1987automatic, wald2007fast). O(n). Most ranges of a build have
+/// few items: for these only the bins that hold one are visited.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@
 
 namespace bvlab::detail {
 
-/// The sort item of a triangle: its centroid and its index in the mesh (exact in a double). A
+/// What is partitioned, of a triangle: its centroid and its index in the mesh (exact in double). A
 /// centroid is loaded as four numbers, of which the fourth is ignored.
 struct CentroidOf {
   static constexpr bool has_box = false;
@@ -66,8 +66,8 @@ class CheapestCut {
       constexpr std::size_t count = bin_count;
       const double per_unit = count / (high - low);
       const auto bin_of = [&](const Item& item) -> std::size_t {
-        // Where the range is so small or large that the quotient overflows, all are in the last
-        // bin.
+        // Where the range is so small that `per_unit` overflows, all are in the last bin: NaN and
+        // infinity are not below `count`. Where high - low overflows, per_unit is 0: the first bin.
         const double at = (key(item) - low) * per_unit;
         return at < count ? static_cast<std::size_t>(at) : count - 1;
       };
@@ -121,7 +121,7 @@ class CheapestCut {
     }
   };
 
-  /// As `of`, bit for bit: between the same bins, of which it looks at those with items.
+  /// The same cut as `of`, bit for bit: sorts the items by their bins, and skips empty bins.
   template <class BinOf>
   static double of_few(Items range, const BinOf& bin_of, double low, double per_unit) {
     struct Binned {

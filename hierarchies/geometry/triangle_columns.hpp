@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The corners of a mesh's triangles in the order of a topology, each coordinate of each corner in
-/// an array of its own: eight triangles are read into registers without a gather. Blocks of
+/// an array of its own: a register's width of triangles is read without a gather. Blocks of
 /// consecutive triangles have boxes.
 ///
-/// A maximum over many triangles is searched block by block: what is computed from a point by
-/// operations that are monotone in each coordinate, rounding included, is at most what the same
-/// operations give for a corner of the block's box. A block for which that is no larger than the
-/// maximum so far is skipped, and the result is that of a search of all, bit for bit.
+/// A maximum over many triangles is searched block by block: what is computed by operations that
+/// are monotone, rounding included, in each coordinate p_j or in each |p_j - c_j|, is at most what
+/// they give for the ends of the block's box that are largest in these. If that is no larger than
+/// the maximum so far the block is skipped, and the result is that of a search of all, bit for bit.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ class TriangleColumns {
  public:
   using Lanes = stdx::native_simd<double>;
   static constexpr std::size_t width = Lanes::size();
-  /// So many numbers may be read from any triangle on.
+  /// This many numbers of a column may be read from any triangle on, also beyond the last.
   static constexpr std::size_t readable = width > 16 ? width : 16;
   /// Triangles in a block.
   static constexpr std::size_t block = 64;

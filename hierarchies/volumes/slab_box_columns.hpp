@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Fits slab-boxes to ranges of triangles that lie in columns, eight triangles at a time: the same
+/// Fits slab-boxes to ranges of triangles in columns, a register of them at a time: the same
 /// operations as SlabBox::enclosing, and so the same boxes, but that the normals of a very large
 /// range are summed block by block. There only the sums' rounding differs, and the slab is measured
 /// for the direction that results.
 ///
-/// In a large range the slab is measured block by block (triangle_columns.hpp): n.(p - c) and
-/// |p - c|_1, as computed, are monotone in each coordinate of p.
+/// In a large range the slab is measured block by block (triangle_columns.hpp): n.(p - c), as
+/// computed, is monotone in each coordinate of p, and |p - c|_1 in each |p_j - c_j|.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -96,7 +96,7 @@ class SlabBoxColumns {
   }
 
  private:
-  /// Writes the lanes of x, as S, and returns them as numbers that were rounded.
+  /// Rounds the lanes of x to S, writes them, and returns what was written.
   static Lanes rounded_lanes(const Lanes& x, S* to) {
     double lane[width];
     x.copy_to(lane, stdx::element_aligned);
@@ -138,8 +138,8 @@ class SlabBoxColumns {
       n[j] = e[k] * f[l] - e[l] * f[k];
     }
     const Lanes length = stdx::sqrt((n[0] * n[0] + n[1] * n[1]) + n[2] * n[2]);
-    const auto flat = bits(length > Lanes(0.0));
-    for (auto& x : n) x = (x + 0.0) / length;
+    const auto with_area = bits(length > Lanes(0.0));
+    for (auto& x : n) x = (x + 0.0) / length;  // + 0.0: as a sum from 0, which is never -0
     // As `face`: the x axis where the direction is not a unit vector, nor finite.
     const Lanes squared = (n[0] * n[0] + n[1] * n[1]) + n[2] * n[2];
     const auto usual =
@@ -155,10 +155,10 @@ class SlabBoxColumns {
     }
     const Lanes middle = rounded_lanes(low / 2.0 + high / 2.0, to + 9 * stride);
     round_up((stdx::max(high - middle, middle - low) + 16 * u * farthest) + tiny, to + 10 * stride);
-    return ~flat & ((std::uint64_t{1} << width) - 1);
+    return ~with_area & ((std::uint64_t{1} << width) - 1);
   }
 
-  /// Of normals n, doubled areas long: the sum of n, and the lower half of that of nn' / |n|.
+  /// Sums over triangles of n, a normal of twice the area, and of nn' / |n|, the upper half.
   using Sums = std::array<double, 9>;
 
   void add(std::size_t begin, std::size_t end, Sums& sums) const {
