@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <type_traits>
 
 #include "traversal/first_bound.hpp"
 #include "traversal/tracked_front.hpp"

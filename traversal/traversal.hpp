@@ -35,6 +35,7 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #include "traversal/queries/query.hpp"
@@ -109,7 +110,8 @@ class Traversal {
   }
 
   void count_tests(std::size_t count) {
-    tests_ += count;
+    // For run() alone.
+    if constexpr (requires(const Leaves& leaves) { leaves.tested(); }) tests_ += count;
     counter_.tested(count);
   }
 

@@ -44,7 +44,6 @@ class NoRecord {
     pair.start(expect_);
   }
   static constexpr bool sweep_is_due() { return false; }
-  static constexpr bool spared() { return false; }
   template <class Traversal>
   static bool sweep(Traversal&) {
     return false;
@@ -76,12 +75,11 @@ class GapMeasure {
 
   explicit GapMeasure(const TraversalStart& start)
       : start_(start),
-        front_(start.front),
         least_(infinity),
         least_remaining_(infinity),
-        sweep_is_due_(front_ && front_->is_complete()),
+        sweep_is_due_(start.front && start.front->is_complete()),
         sweeps_(sweep_is_due_) {
-    if (front_ && !sweeps_) front_->clear();
+    if (start_.front && !sweeps_) start_.front->clear();
   }
 
   template <class Pair>
@@ -98,12 +96,12 @@ class GapMeasure {
   bool sweep(Traversal& traversal) {
     sweep_is_due_ = false;
     auto& pair = traversal.pair();
-    const std::size_t size = front_->size();  // added entries are not retested
+    const std::size_t size = start_.front->size();  // added entries are not retested
     for (std::size_t first = 0; first < size; first += WideFront::width)
       for (std::uint64_t rest = due(first, size - first, pair.frame().a_to_b()); rest;
            rest &= rest - 1) {
         const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(rest));
-        const WideFront::Entry entry = (*front_)[i];
+        const WideFront::Entry entry = (*start_.front)[i];
         if (!entry.triangle)
           pair.template step<typename Traversal::Query>(
               entry.pair, traversal.counter(), [&](auto&& step) __attribute__((always_inline)) {
@@ -122,16 +120,17 @@ class GapMeasure {
   [[gnu::always_inline]] std::uint64_t record(const Pair&, const Step& step, const Found& found,
                                               std::uint64_t near, std::size_t entry, Query&) {
     least_ = stdx::min(least_, found.least);
-    if (!front_) return near;
+    if (!start_.front) return near;
     std::uint64_t fresh = near;
     if (entry == WideFront::none) {
-      entry = front_->add({step.pair, static_cast<std::uint16_t>(near), 0, 0});
+      entry = start_.front->add({step.pair, static_cast<std::uint16_t>(near), 0, 0});
     } else {
-      auto& opened = (*front_)[entry].opened;
+      auto& opened = (*start_.front)[entry].opened;
       fresh = near & ~std::uint64_t{opened};
       opened = static_cast<std::uint16_t>(opened | fresh);
     }
-    front_->set_gap(entry, stdx::hmin(found.least), step.of.reference_sphere(), start_.rotation);
+    start_.front->set_gap(entry, stdx::hmin(found.least), step.of.reference_sphere(),
+                          start_.rotation);
     return fresh;
   }
   template <class Pair, class Leaves>
@@ -140,12 +139,12 @@ class GapMeasure {
   /// Records a test of triangles; `touching`: some may touch. Returns whether to measure their gap.
   bool record_triangles(const NodePair& pair, bool touching, std::size_t entry) {
     if (touching) touched_ = pair;
-    if (!front_ || entry == WideFront::none) {
+    if (!start_.front || entry == WideFront::none) {
       least_ = S(0.0f);
-      if (front_) front_->add({pair, 0, 1, 0});
+      if (start_.front) start_.front->add({pair, 0, 1, 0});
       return false;
     }
-    auto& rest = (*front_)[entry].rest;
+    auto& rest = (*start_.front)[entry].rest;
     if (rest > 0) --rest;
     if (!touching && rest == 0) return true;
     least_ = S(0.0f);
@@ -155,8 +154,8 @@ class GapMeasure {
   void set_triangle_gap(const Triangles& triangles, Counter& counter, std::size_t entry) {
     const float gap = triangles.gap(counter);
     least_ = stdx::min(least_, S(gap));
-    front_->set_gap(entry, gap, triangles.reference_sphere(), start_.rotation);
-    if (!(gap > 0)) (*front_)[entry].rest = 8;
+    start_.front->set_gap(entry, gap, triangles.reference_sphere(), start_.rotation);
+    if (!(gap > 0)) (*start_.front)[entry].rest = 8;
   }
   /// Where all hits are sought: triangles touch, or may. Their numbers are not used: the pair keeps
   /// no front, since a retest would test all its contacts again.
@@ -165,13 +164,8 @@ class GapMeasure {
 
   /// Whether a front was kept; whether the traversal started from it, and how many of its entries
   /// were due.
-  bool keeps_front() const { return front_; }
+  bool keeps_front() const { return start_.front; }
   bool sweeps() const { return sweeps_; }
-  /// Whether what was kept shortened the traversal: a front, or the pair that touched before and
-  /// was tested first.
-  bool spared() const {
-    return sweeps_ || (start_.touched && touched_ && *touched_ == *start_.touched);
-  }
   std::size_t due() const { return due_; }
   const std::optional<Crossing>& crossing() const { return crossing_; }
   /// The pair whose triangles touched, or may have.
@@ -190,7 +184,7 @@ class GapMeasure {
   /// closed their gaps.
   [[gnu::always_inline]] std::uint64_t due(std::size_t first, std::size_t entries,
                                            const CornerTransform& corners) {
-    const WideFront::S remaining = front_->remaining_gaps(first, corners, start_.rotation);
+    const WideFront::S remaining = start_.front->remaining_gaps(first, corners, start_.rotation);
     const std::size_t lanes = std::min<std::size_t>(entries, WideFront::width);
     const auto apart = remaining > WideFront::S(0.0f);
     stdx::where(apart, least_remaining_) = stdx::min(least_remaining_, remaining);
@@ -200,7 +194,6 @@ class GapMeasure {
   }
 
   TraversalStart start_;
-  WideFront* front_;
   S least_;
   WideFront::S least_remaining_;
   std::optional<NodePair> touched_;

@@ -14,10 +14,9 @@ namespace bvlab {
 struct PairAnswer {
   static constexpr double unknown = -1;
 
-  double until = unknown;  ///< valid while displacements sum to less; negative: none is known
+  double until = unknown;    ///< valid while displacements sum to less; negative: none is known
   std::uint32_t epochs = 0;  ///< sum of both bodies': a whole answer holds while it is the same
   bool touching = false;
-  bool traversed = false;  ///< a traversal has found it, or a crossing that one has found
 };
 /// All else that is kept, read where the answer's deadline has passed.
 struct KeptOfPair {

@@ -4,19 +4,12 @@
 /// A memory keeps state of pairs of bodies from frame to frame. WidePairs calls
 ///   add_body(sphere, reach), resize(pairs)  for the bodies and the number of pairs
 ///   forget(pair)                            when a pair parts
-///   begin_frame<Query>(last)                begins a frame; `last` is what became of the pairs in
-///                                           the last one. Another query than before starts
-///                                           without memory
+///   begin_frame<Query>()                    another query than before starts without memory
 ///   move(i, body, pose, culling, origin)    body i is at `pose`
-///   motion(i)                               how far body i has moved in this frame, in any
-///                                           measure; used in pauses
-///   paused()                                whether this frame's traversals start from the roots
-///                                           and record nothing
 ///   rest(i)                                 body i does not move
 ///   front_size(pair), front_size()          entries of the front of one pair, of all
 ///   require(body, pose)                     sets the pose of a body before it is traversed
 ///   answer_valid<Query>(pair, bodies)       whether the last answer holds, by one comparison
-///   spares_traversal(pair)                  whether a kept answer was that of a traversal
 ///   repeat(pair, query)                     gives a query the last answer
 ///   cull<Query>(sieve, scene, counter, make_query)  decides pairs by what it has kept
 ///   skips_directions(pair)                  see EarlyCulling::cull_by_directions
@@ -34,7 +27,6 @@
 #include "hierarchies/wide/fitting.hpp"
 #include "traversal/wide/early_culling.hpp"
 #include "traversal/wide/gap_measure.hpp"
-#include "traversal/wide/margin_pause.hpp"
 
 namespace bvlab {
 
@@ -56,9 +48,7 @@ class NoMemory {
   void resize(std::size_t pairs) { touched_.resize(pairs); }
   static void forget(std::size_t) {}
   template <class Query>
-  static void begin_frame(const FrameOfPairs&) {}
-  static constexpr bool paused() { return true; }
-  static constexpr double motion(std::size_t) { return 0; }
+  static void begin_frame() {}
 
   template <class Body>
   void move(std::size_t i, Body& body, const Pose& pose, EarlyCulling& culling,
@@ -76,7 +66,6 @@ class NoMemory {
   static constexpr bool answer_valid(std::size_t, const ObjectPair&) {
     return false;
   }
-  static constexpr bool spares_traversal(std::size_t) { return false; }
   template <class Query>
   static void repeat(std::size_t, Query&) {}
   template <class Query, class Counter, class MakeQuery>

@@ -18,15 +18,15 @@
 /// whose gaps may have closed. Where that is most of them the pair keeps no front for sixteen
 /// traversals, and for four times as many each time this recurs, at most 256.
 ///
-/// Where hardly any answer lasts, margins pause (margin_pause.hpp) and frames are those of
-/// NoMemory. What was kept stays, and is valid afterwards: deadlines are compared with poses,
-/// whatever lies between.
-///
-/// Tried and not kept. Volumes with a small gap can be opened so that the least gap grows. But
-/// triangles of two surfaces are close in many places, the closest ones are at the distance itself,
-/// and opening costs five times as much. Nor does it pay to measure gaps of triangles, exactly or
-/// not: a third of the tests remains, each gap costs as much as four, and of 8000 polygons many are
-/// within a step or two of each other.
+/// Tried and not kept. Where bodies are fast, hardly any answer outlasts a frame, and some frames
+/// could start from the roots without a measurement. A rule by the share of traversals that were
+/// spared gains a tenth there, but costs single pairs up to half, since what is spared comes in
+/// phases; counted over so many traversals that it costs them nothing, it gains nothing. Volumes
+/// with a small gap can be opened so that the least gap grows. But triangles of two surfaces are
+/// close in many places, the closest ones are at the distance itself, and opening costs five times
+/// as much. Nor does it pay to measure gaps of triangles, exactly or not: a third of the tests
+/// remains, each gap costs as much as four, and of 8000 polygons many are within a step or two of
+/// each other.
 #pragma once
 
 #include <algorithm>
@@ -57,11 +57,8 @@ class WideMargins {
   void add_body(const MeshSphere& sphere, double reach) {
     bodies_.emplace_back(HierarchyExtent{sphere.centre, sphere.radius, reach, 0});
     displacements_.push_back(0), steps_.push_back(0), rotations_.push_back(0), epochs_.push_back(0);
-    motions_.push_back(0);
-    plain_.add_body(sphere, reach);
   }
   void resize(std::size_t pairs) {
-    plain_.resize(pairs);
     answers_.resize(pairs), kept_.resize(pairs), front_sizes_.resize(pairs);
   }
 
@@ -82,13 +79,8 @@ class WideMargins {
 
   /// Another query than in the last frame starts without memory.
   template <class Query>
-  void begin_frame(const FrameOfPairs& last) {
-    if (last_query_ == &Query::name) {
-      if (pause_.next(last))
-        for (std::size_t p = 0; p < kept_.size(); ++p) clear_front(p);
-      return;
-    }
-    pause_.restart();
+  void begin_frame() {
+    if (last_query_ == &Query::name) return;
     std::fill(answers_.begin(), answers_.end(), Answer{});
     std::fill(kept_.begin(), kept_.end(), Kept{});
     std::fill(front_sizes_.begin(), front_sizes_.end(), 0);
@@ -96,13 +88,9 @@ class WideMargins {
   }
   /// Body i is at `pose` in this frame. The pose of `Body` itself is set when a traversal needs it.
   template <class Body>
-  void move(std::size_t i, Body& traversed, const Pose& pose, EarlyCulling& culling,
+  void move(std::size_t i, Body&, const Pose& pose, EarlyCulling& culling,
             const Vec3<double>& origin) {
     Followed& body = bodies_[i];
-    if (paused()) {
-      motions_[i] = motion_between(traversed.pose(), pose, body.extent().radius);
-      return plain_.move(i, traversed, pose, culling, origin);
-    }
     steps_[i] = 0;
     if (!body.set_pose(pose)) return;
     const double displacement = body.displacement_bound();
@@ -120,9 +108,6 @@ class WideMargins {
   /// Body i has not moved since the last frame.
   void rest(std::size_t i) { steps_[i] = 0; }
 
-  bool paused() const { return pause_.active(); }
-  double motion(std::size_t i) const { return motions_[i]; }
-
   /// Whether the last answer still holds, by one comparison.
   template <class Query>
   bool answer_valid(std::size_t p, const ObjectPair& pair) const {
@@ -130,22 +115,19 @@ class WideMargins {
     return displacements_[pair.i] + displacements_[pair.j] < answer.until ||
            (keeps_answer<Query> && epochs(pair) == answer.epochs);
   }
-  bool spares_traversal(std::size_t p) const { return answers_[p].traversed; }
   /// Decides the pairs whose answers are valid by the bound between reference poses and, where one
   /// hit is enough, those whose last crossing still exists.
   template <class Query, class Counter, class MakeQuery>
   void cull(PairSieve& sieve, const PairScene& scene, Counter& counter, MakeQuery&& make_query) {
-    if (paused()) return plain_.cull<Query>(sieve, scene, counter, make_query);
     sieve.sift([&](std::size_t p) { return answer_valid_by_reference_pose(p, scene.pairs[p]); });
     if constexpr (Query::one_hit_is_enough) cull_by_crossings(sieve, scene, counter, make_query);
   }
   /// Pairs with a front, or that touched twice in a row, are not tested by directions.
   bool skips_directions(std::size_t p) const {
-    return !paused() && (kept_[p].front.is_complete() || kept_[p].touched_twice);
+    return kept_[p].front.is_complete() || kept_[p].touched_twice;
   }
   /// The bodies are `gap` apart at their present poses.
   void apart(std::size_t p, const ObjectPair& pair, double gap) {
-    if (paused()) return;
     Kept& kept = kept_[p];
     answers_[p] = {unknown, epochs(pair), false};
     kept.crossing.reset(), clear_front(p);
@@ -158,7 +140,6 @@ class WideMargins {
     if constexpr (wants_bound<Query>()) {
       return {};
     } else {
-      if (paused()) return plain_.start<Query>(p, pair);
       Kept& kept = kept_[p];
       TraversalStart start;
       start.expect = answers_[p].touching ? Expect::touching : Expect::apart;
@@ -174,7 +155,6 @@ class WideMargins {
   /// Gives a query the last answer.
   template <class Query>
   void repeat(std::size_t p, Query& query) const {
-    if (paused()) return;
     if constexpr (requires { query.repeat(0.0); })
       query.repeat(kept_[p].distance);
     else if (answers_[p].touching)
@@ -183,20 +163,16 @@ class WideMargins {
 
   /// A distance holds while neither body moves.
   template <class Query>
-  void remember(std::size_t p, const ObjectPair& pair, const Query& query,
-                const NoRecord& recorded) {
-    if (paused()) return plain_.remember(p, pair, query, recorded);
-    if constexpr (wants_bound<Query>()) {
-      answers_[p] = {unknown, epochs(pair), false, true};
-      kept_[p].distance = query.distance();
-    }
+  void remember(std::size_t p, const ObjectPair& pair, const Query& query, const NoRecord&) {
+    answers_[p] = {unknown, epochs(pair), false};
+    kept_[p].distance = query.distance();
   }
   template <class Query, class S>
   void remember(std::size_t p, const ObjectPair& pair, const Query& query,
                 const GapMeasure<S>& found) {
     Answer& answer = answers_[p];
     Kept& kept = kept_[p];
-    answer = {unknown, epochs(pair), found.touched().has_value(), true};
+    answer = {unknown, epochs(pair), found.touched().has_value()};
     if constexpr (keeps_answer<Query>) answer.touching = query.touching();
     kept.deadline = 0;
     kept.crossing.reset();
@@ -234,11 +210,6 @@ class WideMargins {
     using MovingBody::MovingBody;
     bool set_pose(const Pose& pose) { return MovingBody::set_pose(pose, Vec3<double>::Zero()); }
   };
-
-  static double motion_between(const Pose& from, const Pose& to, double radius) {
-    return (to.translation - from.translation).lpNorm<1>() +
-           radius * (to.rotation - from.rotation).lpNorm<1>();
-  }
 
   static constexpr int longest_rest = 64;  // traversals without a crossing
 
@@ -294,7 +265,7 @@ class WideMargins {
   }
   /// The triangles still cross, and will until the bodies have moved by `margin`.
   void still_crossing(std::size_t p, const ObjectPair& pair, double margin) {
-    answers_[p] = {unknown, epochs(pair), true, true};
+    answers_[p] = {unknown, epochs(pair), true};
     kept_[p].deadline = 0, kept_[p].touched_twice = true;
     kept_[p].next_rest = std::max(1, kept_[p].next_rest / 2);
     if (margin > steps_[pair.i] + steps_[pair.j]) extend_validity(p, pair, margin);
@@ -328,9 +299,7 @@ class WideMargins {
   }
 
   std::vector<Followed> bodies_;
-  NoMemory plain_;  // of frames in a pause
-  MarginPause pause_;
-  std::vector<double> displacements_, steps_, rotations_, motions_;
+  std::vector<double> displacements_, steps_, rotations_;
   std::vector<std::uint32_t> epochs_;
   std::vector<Answer> answers_;
   std::vector<Kept> kept_;

@@ -60,8 +60,7 @@ class WidePairs {
     using Query = std::remove_cvref_t<decltype(make_query(0))>;
     if (!has_origin_) origin_ = centre_of(poses), has_origin_ = true;
     poses_ = poses;
-    const auto all = std::views::iota(std::size_t{0}, bodies_.size());
-    memory_.template begin_frame<Query>(last_frame(all));
+    memory_.template begin_frame<Query>();
     if (threads_.count() > 1) return frame_on_threads<Query>(counter, make_query, take);
     for (std::size_t i = 0; i < bodies_.size(); ++i) move(i);
     query_pairs<Query>(
@@ -87,11 +86,7 @@ class WidePairs {
              const Vec3<double>&, Threads& threads) {
     poses_ = poses;
     if (workers_.size() < threads.count()) workers_.resize(threads.count());
-    const bool was_paused = memory_.paused();
-    memory_.template begin_frame<Query>(last_frame(moved_));
-    // In a pause a memory does not follow bodies: some have moved and rest now.
-    if (was_paused && !memory_.paused())
-      for (std::size_t i = 0; i < bodies_.size(); ++i) move(i);
+    memory_.template begin_frame<Query>();
     for (const auto i : moved_) memory_.rest(i);
     moved_.assign(movers.begin(), movers.end());
   }
@@ -117,7 +112,6 @@ class WidePairs {
   }
 
   const std::vector<ObjectPair>& pairs() const { return pairs_; }
-  const Memory& memory() const { return memory_; }
   /// Entries of all fronts, or of one pair's. An entry is a step's pair of nodes with the lanes it
   /// closed, or a triangle with a leaf.
   std::size_t front_size() const { return memory_.front_size(); }
@@ -130,20 +124,7 @@ class WidePairs {
   struct alignas(128) Worker {
     std::array<WideWorkspace, at_once> workspaces;
     PairSieve sieve;
-    FrameOfPairs frame;
   };
-
-  /// What became of the pairs in the last frame, in which these bodies moved.
-  template <class Moved>
-  FrameOfPairs last_frame(const Moved& moved) {
-    FrameOfPairs last;
-    for (auto& worker : workers_) last.add(worker.frame), worker.frame = {};
-    if (memory_.paused() && std::size(moved) > 0) {
-      for (const auto i : moved) last.motion += memory_.motion(i);
-      last.motion /= static_cast<double>(std::size(moved));
-    }
-    return last;
-  }
 
   void move(std::size_t i) { memory_.move(i, bodies_[i], poses_[i], culling_, origin_); }
 
@@ -173,22 +154,15 @@ class WidePairs {
       memory_.repeat(p, query);
       take(p, query);
     };
-    if (memory_.paused()) {
-      for (const std::uint32_t p : slots) sieve.add(p);
-    } else {
-      for (const std::uint32_t p : slots)
-        if (memory_.template answer_valid<Query>(p, pairs_[p]))
-          worker.frame.spared += memory_.spares_traversal(p), repeat(p);
-        else
-          sieve.add(p);
-    }
+    for (const std::uint32_t p : slots)
+      if (memory_.template answer_valid<Query>(p, pairs_[p]))
+        repeat(p);
+      else
+        sieve.add(p);
     const std::uint64_t before = counter.n_v + counter.n_p;
     counter.tested(sieve.undecided().size());
-    worker.frame.queried += slots.size();
     if constexpr (!wants_bound<Query>()) {
       memory_.template cull<Query>(sieve, {pairs_, poses_, meshes_, culling_}, counter, make_query);
-      for (const std::int32_t p : sieve.decided())
-        worker.frame.spared += memory_.spares_traversal(static_cast<std::size_t>(p));
       counter.tested(culling_.cull_by_directions(
           sieve, pairs_, [&](std::size_t p) { return memory_.skips_directions(p); },
           [&](std::size_t p, double gap) { memory_.apart(p, pairs_[p], gap); }));
@@ -197,23 +171,17 @@ class WidePairs {
         repeat(static_cast<std::size_t>(p));
       }
     }
-    if (sieve.undecided().empty()) return;
-    worker.frame.traversed += sieve.undecided().size();
-    using Lanes = typename Kernel::template PairFrame<V, F>::S;
-    using Measure = typename Memory::template Measure<Lanes>;
-    if constexpr (!wants_bound<Query>() && !std::is_same_v<Measure, NoRecord>)
-      if (!memory_.paused())
-        return traverse_interleaved<Query, Measure>(sieve.undecided(), worker, before, counter,
-                                                    make_query, take);
-    traverse_interleaved<Query, NoRecord>(sieve.undecided(), worker, before, counter, make_query,
-                                          take);
+    traverse_interleaved<Query>(sieve.undecided(), worker, before, counter, make_query, take);
   }
 
   /// `before`: n_v + n_p when the frame began.
-  template <class Query, class Measure, class Counter, class MakeQuery, class Take>
+  template <class Query, class Counter, class MakeQuery, class Take>
   void traverse_interleaved(std::span<const std::int32_t> near, Worker& worker,
                             std::uint64_t before, Counter& counter, MakeQuery& make_query,
                             Take& take) {
+    using Lanes = typename Kernel::template PairFrame<V, F>::S;
+    using Measure = std::conditional_t<wants_bound<Query>(), NoRecord,
+                                       typename Memory::template Measure<Lanes>>;
     struct Running {
       std::uint32_t pair;
       std::optional<Query> query;
@@ -245,9 +213,7 @@ class WidePairs {
           continue;
         }
         counter.queried(before);
-        const auto& recorded = now.traversal->memory();
-        worker.frame.spared += recorded.spared();
-        memory_.remember(now.pair, pairs_[now.pair], *now.query, recorded);
+        memory_.remember(now.pair, pairs_[now.pair], *now.query, now.traversal->memory());
         take(now.pair, *now.query);
         if (next < near.size()) {
           begin(k++);
