@@ -4,6 +4,7 @@
 import csv
 import os
 import random
+import signal
 import subprocess
 import time
 import unittest
@@ -51,13 +52,14 @@ class Results(ProgramTest):
         return subprocess.Popen([BVLAB, *map(str, arguments)], cwd=self.folder, **quiet)
 
     def is_writing(self, process):
-        """Whether it holds a file open that lies in the folder, under whatever name."""
+        """Whether it holds a file open that lies in the folder, under whatever name: not the mesh it reads."""
         try:
             folder = f"/proc/{process.pid}/fd"
             held = [os.readlink(f"{folder}/{number}") for number in os.listdir(folder)]
         except OSError:
             return False
-        return any(name.startswith(str(self.folder)) for name in held)
+        mesh = str(self.folder / "mesh.off")
+        return any(name.startswith(str(self.folder)) and name != mesh for name in held)
 
     def kill_in_mid_write(self, attempt, *arguments):
         """Whether it was killed with a result half written."""
@@ -66,6 +68,7 @@ class Results(ProgramTest):
             while process.poll() is None and not self.is_writing(process):
                 self.assertLess(time.monotonic(), end)
             time.sleep(0.002 * attempt)
+            process.send_signal(signal.SIGSTOP)  # it cannot finish between the look and the kill
             was_writing = self.is_writing(process)
             process.kill()
         return was_writing
