@@ -2,7 +2,7 @@
 /// The recommended configuration for the queries touching and contacts, where triangles are about
 /// as long as wide, as in scans and simulations: slab-boxes in wide trees, as many children per
 /// node as a register has lanes, tested in the bodies' own frames, with margins from frame to
-/// frame. recommended_for.hpp has two others and chooses, as `bvlab replay --recommended` does. For
+/// frame. recommended_for.hpp has others and chooses, as `bvlab replay --recommended` does. For
 /// distances, swept rectangles in binary trees are best (see rss.hpp).
 #pragma once
 
@@ -41,11 +41,10 @@ inline double elongation(std::span<const TriangleMesh> meshes) {
 /// The elongation above which triangles count as long.
 inline constexpr double long_triangles = 3.5;
 
-/// Margins over wide trees of one volume. Build is an entry of builds.hpp; at most `leaf_size`
-/// triangles a leaf.
+/// Wide trees of one volume. Build is an entry of builds.hpp; at most `leaf_size` triangles a leaf.
 template <BoundingVolume V, int F, class KernelType, class BuildType, Fit kFit,
           std::uint32_t kLeafSize>
-struct MarginsOver {
+struct WideTrees {
   using Volume = V;
   using Kernel = KernelType;
   using Build = BuildType;
@@ -54,7 +53,6 @@ struct MarginsOver {
   static constexpr std::uint32_t leaf_size = kLeafSize;
   using Hierarchy = typename Kernel::template Hierarchy<Volume, fan_out>;
   using Shape = WideShape<Volume, fan_out, Kernel>;
-  using Pairs = WidePairs<Volume, fan_out, WideMargins, Kernel>;
 
   /// The hierarchy of a mesh. One serves all bodies of that mesh.
   static Hierarchy hierarchy(const TriangleMesh& mesh, int threads = 1) {
@@ -63,10 +61,24 @@ struct MarginsOver {
   }
 };
 
+/// A configuration: these trees, and what pairs keep from frame to frame. NoMemory is recursion
+/// from the roots.
+template <class TreesType, class MemoryType>
+struct WideConfiguration : TreesType {
+  using Trees = TreesType;
+  using Memory = MemoryType;
+  using Pairs = WidePairs<typename Trees::Volume, Trees::fan_out, Memory, typename Trees::Kernel>;
+};
+template <class Trees>
+using MarginsOver = WideConfiguration<Trees, WideMargins>;
+template <class Trees>
+using RootsOf = WideConfiguration<Trees, NoMemory>;
+
 /// A wider node would be tested in several steps; none is narrower than two.
 inline constexpr int recommended_fan_out = std::clamp(native_width<float>, 2, 16);
 
-using Recommended = MarginsOver<SlabBox<float>, recommended_fan_out, SiblingsKernel,
-                                builds::TopDownSurfaceArea, Fit::published, recommended_fan_out>;
+using Recommended =
+    MarginsOver<WideTrees<SlabBox<float>, recommended_fan_out, SiblingsKernel,
+                          builds::TopDownSurfaceArea, Fit::published, recommended_fan_out>>;
 
 }  // namespace bvlab

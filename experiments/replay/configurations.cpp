@@ -22,7 +22,7 @@ struct Configuration {
 template <class Best>
 Variant as(Variant variant) {
   set_kernel(variant, Best::Kernel::name);
-  variant.volume = Best::Volume::name, variant.strategy = "margins";
+  variant.volume = Best::Volume::name, variant.strategy = Best::Memory::name;
   variant.build = Best::Build::name, variant.leaf_size = Best::leaf_size;
   variant.fit = Best::fit == Fit::tight ? "tight" : "published";
   return variant;
@@ -51,10 +51,11 @@ void set_as_published(Variant& variant) {
 
 constexpr Configuration list[] = {
     {"recommended",
-     "touching and contacts, with margins: slab-box under the kernel siblings, built "
-     "top-down-surface-area, 16 triangles a leaf; or the same built bottom-up, 4 a leaf; or obb "
-     "under mixed, built bottom-up, fit tight, 4 a leaf: what costs least in counted samples of "
-     "the motion, or suits the meshes where the motion is not known; distance: rss in binary "
+     "touching and contacts: slab-box under the kernel siblings, built top-down-surface-area, 16 "
+     "triangles a leaf; or obb under mixed, built bottom-up, fit tight, 4 a leaf; either with "
+     "margins or recursive; or slab-box with margins, built bottom-up, 4 a leaf: what costs least "
+     "in counted samples of the motion; where the motion is not known, the first or the second "
+     "with margins, as suits the meshes; distance: rss in binary "
      "trees, built bottom-up, fit tight, one a leaf, recursive",
      set_recommended},
     {"as-published",

@@ -18,7 +18,7 @@ namespace {
 TEST(SampledFrames, LieInTheMotionAndAreAtMostAQuarterOfIt) {
   for (std::size_t length = 0; length < 3000; length += 1 + length / 7) {
     const SampledFrames samples(length);
-    EXPECT_EQ(samples.frames.empty(), length < 24) << length;
+    EXPECT_EQ(samples.frames.empty(), length < 40) << length;
     EXPECT_LE(4 * samples.frames.size(), length);
     std::size_t counted = 0;
     for (std::size_t k = 0; k < samples.frames.size(); ++k) {
@@ -41,7 +41,7 @@ std::vector<std::vector<Pose>> frames_of(const Trace& trace) {
   return frames;
 }
 
-/// The volume, the build and the leaf size of what the library recommends.
+/// The volume, the build, the leaf size and the strategy of what the library recommends.
 template <class MakeQuery>
 Variant by_library(const Played& scene, MakeQuery&& make_query) {
   const auto frames = frames_of(scene.trace);
@@ -50,6 +50,7 @@ Variant by_library(const Played& scene, MakeQuery&& make_query) {
                             Variant variant;
                             variant.volume = Best::Volume::name, variant.build = Best::Build::name;
                             variant.leaf_size = Best::leaf_size;
+                            variant.strategy = Best::Memory::name;
                             return variant;
                           });
 }
@@ -64,7 +65,7 @@ std::vector<Played> scenes() {
 }
 
 TEST(Recommended, ProgramAndLibraryChooseAlikeAndAnswersStay) {
-  std::set<std::string> chosen_volumes;
+  std::set<std::string> volumes, strategies;
   for (const auto& scene : scenes())
     for (const char* query : {"touching", "contacts"}) {
       Variant variant;
@@ -80,13 +81,15 @@ TEST(Recommended, ProgramAndLibraryChooseAlikeAndAnswersStay) {
       EXPECT_EQ(chosen.variant.volume, library.volume);
       EXPECT_EQ(chosen.variant.build, library.build);
       EXPECT_EQ(chosen.variant.leaf_size, library.leaf_size);
+      EXPECT_EQ(chosen.variant.strategy, library.strategy);
       const auto truth = replay(scene.meshes, scene.trace, variant, {});
       const auto result = replay(scene.meshes, scene.trace, chosen.variant, {});
       EXPECT_EQ(result.touching, truth.touching);
       EXPECT_EQ(result.contacts, truth.contacts);
-      chosen_volumes.insert(chosen.variant.volume);
+      volumes.insert(chosen.variant.volume), strategies.insert(chosen.variant.strategy);
     }
-  EXPECT_GT(chosen_volumes.size(), 1u) << "the scenes are to differ in what suits them";
+  EXPECT_GT(volumes.size(), 1u) << "the scenes are to differ in what suits them";
+  EXPECT_GT(strategies.size(), 1u) << "the scenes are to differ in what suits them";
 }
 
 /// Without enough frames to sample the meshes decide, as where no motion is given.
