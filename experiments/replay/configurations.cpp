@@ -86,6 +86,8 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
   if (variant.query == "distance" || samples.frames.empty() || trace.pairs() == 0)
     return recommended(variant, meshes);
   const Trace sampled = part_of(trace, samples.frames);
+  std::vector<std::vector<Pose>> poses(sampled.frames, std::vector<Pose>(sampled.objects));
+  for (std::size_t k = 0; k < sampled.frames; ++k) sampled.poses(k, poses[k]);
   ReplayOptions options;
   options.count = Count::on, options.keep_answers = false, options.keep_series = true;
   Chosen best;
@@ -100,7 +102,8 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
     double cost = 0;
     for (std::size_t k = 0; k < series.size(); ++k)
       if (SampledFrames::counted(k))
-        cost += unit(trace.pairs(), series[k].front, series[k].n_v, series[k].n_p);
+        cost += unit(pairs_of_moved(poses[k - 1], poses[k]), series[k].front, series[k].n_v,
+                     series[k].n_p);
     cost /= static_cast<double>(samples.size() * trace.pairs());
     costs << (costs.tellp() > 0 ? ", " : "") << candidate.name << ' ' << std::setprecision(3)
           << cost;

@@ -35,6 +35,21 @@ TEST(SampledFrames, LieInTheMotionAndAreAtMostAQuarterOfIt) {
   }
 }
 
+TEST(PairsOfMoved, AreThoseOfBodiesThatMovedAtMostFourEach) {
+  const auto pairs = [](std::size_t bodies, std::size_t moved) {
+    std::vector<Pose> before(bodies), now(bodies);
+    for (std::size_t i = 0; i < moved; ++i) now[i].translation[0] += 1;
+    return pairs_of_moved(before, now);
+  };
+  EXPECT_EQ(pairs(9, 0), 0u);
+  EXPECT_EQ(pairs(9, 1), 4u);
+  EXPECT_EQ(pairs(9, 9), 36u);
+  EXPECT_EQ(pairs(4, 2), 5u);
+  EXPECT_EQ(pairs(2, 1), 1u);
+  EXPECT_EQ(pairs(2, 2), 1u);
+  EXPECT_EQ(pairs(100, 100), 400u);
+}
+
 std::vector<std::vector<Pose>> frames_of(const Trace& trace) {
   std::vector<std::vector<Pose>> frames(trace.frames, std::vector<Pose>(trace.objects));
   for (std::size_t k = 0; k < trace.frames; ++k) trace.poses(k, frames[k]);
@@ -90,6 +105,13 @@ TEST(Recommended, ProgramAndLibraryChooseAlikeAndAnswersStay) {
     }
   EXPECT_GT(volumes.size(), 1u) << "the scenes are to differ in what suits them";
   EXPECT_GT(strategies.size(), 1u) << "the scenes are to differ in what suits them";
+}
+
+/// Where one body of nine moves, most pairs keep their answers, and recursion would repeat them.
+TEST(Recommended, MarginsAreChosenWhereFewBodiesMove) {
+  const Played scene = played({"one mover", {{"torus", 500}}, walk(9, 400, 3, 0.03, 5, 0, 1)});
+  const Chosen chosen = configured({}, "recommended", scene.meshes, &scene.trace);
+  EXPECT_EQ(chosen.variant.strategy, "margins") << chosen.reason;
 }
 
 /// Without enough frames to sample the meshes decide, as where no motion is given.
