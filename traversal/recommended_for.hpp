@@ -22,6 +22,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -71,12 +72,13 @@ inline std::size_t pairs_of_moved(std::span<const Pose> before, std::span<const 
   std::size_t moved = 0;
   for (std::size_t i = 0; i < now.size(); ++i) moved += !(now[i] == before[i]);
   const std::size_t still = now.size() - moved;
-  return std::min(moved * still + moved * (moved - (moved > 0)) / 2, 4 * moved);
+  return std::min(moved * still + moved * (moved - 1) / 2, 4 * moved);
 }
 
 /// A configuration that may be recommended, and its unit costs.
 template <class Best>
 struct RecommendedCandidate {
+  using Configuration = Best;
   std::string_view name;
   UnitCosts touching, contacts;
 
@@ -86,8 +88,8 @@ struct RecommendedCandidate {
   }
 };
 
-/// Calls `what` with each candidate; one from the roots follows the one with the same trees. Small
-/// leaves from the roots never cost least.
+/// The candidates; one from the roots follows the one with the same trees. Small leaves from the
+/// roots never cost least.
 ///
 /// Unit costs of touching were fitted to 54 motions (planning problems, five meshes, bunnies of 500
 /// and 8000 polygons), those of contacts to 30 of the five meshes, by least squares of logarithms:
@@ -96,18 +98,32 @@ struct RecommendedCandidate {
 /// slab-boxes and 10 % for oriented boxes, since samples have more new fronts than whole motions.
 /// On other seeds the choice took 1.02 times as long as the best candidate in the mean, and at most
 /// 1.13 times.
+inline constexpr std::tuple recommended_candidates{
+    RecommendedCandidate<Recommended>{"slab-boxes", {36.6, 1.6, 6.5, 1.5}, {17.3, 4.0, 4.8, 3.4}},
+    RecommendedCandidate<RecommendedRoots>{
+        "slab-boxes from the roots", {3.4, 0, 5.8, 1.5}, {10.7, 0, 4.6, 3.2}},
+    RecommendedCandidate<RecommendedSmallLeaves>{
+        "slab-boxes in small leaves", {37.6, 1.5, 6.9, 8.0}, {79.6, 8.0, 9.1, 2.3}},
+    RecommendedCandidate<RecommendedOriented>{
+        "oriented boxes", {40.3, 2.3, 6.9, 6.7}, {20.8, 8.0, 9.1, 4.7}},
+    RecommendedCandidate<RecommendedOrientedRoots>{
+        "oriented boxes from the roots", {3.3, 0, 8.0, 1.6}, {75.0, 0, 9.1, 3.7}}};
+
+/// Calls `what` with each candidate, in order.
 template <class Do>
 void for_each_candidate(Do&& what) {
-  what(RecommendedCandidate<Recommended>{
-      "slab-boxes", {36.6, 1.6, 6.5, 1.5}, {17.3, 4.0, 4.8, 3.4}});
-  what(RecommendedCandidate<RecommendedRoots>{
-      "slab-boxes from the roots", {3.4, 0, 5.8, 1.5}, {10.7, 0, 4.6, 3.2}});
-  what(RecommendedCandidate<RecommendedSmallLeaves>{
-      "slab-boxes in small leaves", {37.6, 1.5, 6.9, 8.0}, {79.6, 8.0, 9.1, 2.3}});
-  what(RecommendedCandidate<RecommendedOriented>{
-      "oriented boxes", {40.3, 2.3, 6.9, 6.7}, {20.8, 8.0, 9.1, 4.7}});
-  what(RecommendedCandidate<RecommendedOrientedRoots>{
-      "oriented boxes from the roots", {3.3, 0, 8.0, 1.6}, {75.0, 0, 9.1, 3.7}});
+  std::apply([&](const auto&... candidate) { (what(candidate), ...); }, recommended_candidates);
+}
+
+/// Calls `visit` with std::type_identity of the configuration of candidate `k`, and returns what it
+/// returns.
+template <std::size_t first = 0, class Visit>
+decltype(auto) with_candidate(std::size_t k, Visit&& visit) {
+  using Candidates = std::remove_const_t<decltype(recommended_candidates)>;
+  if constexpr (first + 1 < std::tuple_size_v<Candidates>)
+    if (k != first) return with_candidate<first + 1>(k, visit);
+  return visit(
+      std::type_identity<typename std::tuple_element_t<first, Candidates>::Configuration>());
 }
 
 /// The frames of a motion that are replayed for the choice: up to ten runs of `run` consecutive
@@ -150,21 +166,14 @@ decltype(auto) with_recommended(std::span<const TriangleMesh> meshes, Visit&& vi
   return visit(std::type_identity<RecommendedOriented>());
 }
 
-/// The hierarchies of meshes, for some WideTrees.
+/// One hierarchy for each mesh. A type for each kind of trees: two kinds may have the same
+/// Hierarchy.
 template <class Trees>
-struct TreesOfMeshes {
+struct HierarchiesBy {
   std::vector<typename Trees::Hierarchy> of_mesh;
 
-  explicit TreesOfMeshes(std::span<const TriangleMesh> meshes) {
+  explicit HierarchiesBy(std::span<const TriangleMesh> meshes) {
     for (const auto& mesh : meshes) of_mesh.push_back(Trees::hierarchy(mesh));
-  }
-  /// Body i has mesh i modulo the number of meshes.
-  std::vector<typename Trees::Shape> shapes(std::span<const TriangleMesh> meshes,
-                                            std::size_t bodies) const {
-    std::vector<typename Trees::Shape> all;
-    for (std::size_t i = 0; i < bodies; ++i)
-      all.push_back({&meshes[i % meshes.size()], &of_mesh[i % meshes.size()]});
-    return all;
   }
 };
 
@@ -201,23 +210,14 @@ decltype(auto) with_recommended(std::span<const TriangleMesh> meshes,
   std::vector<double> cost;
   std::any built;  // of the last candidate
   for_each_candidate([&]<class Best>(const RecommendedCandidate<Best>& candidate) {
-    using Hierarchies = TreesOfMeshes<typename Best::Trees>;
+    using Hierarchies = HierarchiesBy<typename Best::Trees>;
     if (!std::any_cast<Hierarchies>(&built)) built.emplace<Hierarchies>(meshes);
-    const auto shapes = std::any_cast<Hierarchies>(&built)->shapes(meshes, samples[0].size());
+    const auto shapes =
+        shapes_over(meshes, std::any_cast<Hierarchies>(&built)->of_mesh, samples[0].size());
     cost.push_back(expected_cost<Best>(shapes, samples, candidate.costs(Query::name), make_query));
   });
-  switch (std::min_element(cost.begin(), cost.end()) - cost.begin()) {  // as they are listed
-    case 0:
-      return visit(std::type_identity<Recommended>());
-    case 1:
-      return visit(std::type_identity<RecommendedRoots>());
-    case 2:
-      return visit(std::type_identity<RecommendedSmallLeaves>());
-    case 3:
-      return visit(std::type_identity<RecommendedOriented>());
-    default:
-      return visit(std::type_identity<RecommendedOrientedRoots>());
-  }
+  const auto least = std::min_element(cost.begin(), cost.end()) - cost.begin();
+  return with_candidate(static_cast<std::size_t>(least), visit);
 }
 
 }  // namespace bvlab

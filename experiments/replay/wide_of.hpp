@@ -43,17 +43,6 @@ std::vector<Hierarchy> wide_hierarchies(std::span<const TriangleMesh> meshes,
   return hierarchies;
 }
 
-/// Object i uses mesh i mod the number of meshes.
-template <class Hierarchy>
-std::vector<ShapeOver<Hierarchy>> wide_shapes(std::span<const TriangleMesh> meshes,
-                                              const std::vector<Hierarchy>& hierarchies,
-                                              std::size_t objects) {
-  std::vector<ShapeOver<Hierarchy>> shapes;
-  for (std::size_t i = 0; i < objects; ++i)
-    shapes.push_back({&meshes[i % meshes.size()], &hierarchies[i % meshes.size()]});
-  return shapes;
-}
-
 template <class V>
 using KernelsOf = std::conditional_t<MixedKernel::takes<V>, TypeList<SiblingsKernel, MixedKernel>,
                                      TypeList<SiblingsKernel>>;
@@ -81,7 +70,7 @@ void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const V
     const auto hierarchies = wide_hierarchies<typename Kernel::template Hierarchy<V, fan_out>>(
         meshes, variant, static_cast<int>(options.threads));
     result.build_seconds = seconds_since(start);
-    const auto shapes = wide_shapes(meshes, hierarchies, trace.objects);
+    const auto shapes = shapes_over(meshes, hierarchies, trace.objects);
     with_memory(variant, [&]<class Memory>(std::type_identity<Memory>) {
       const auto engine = [&](auto) {
         return WidePairs<V, fan_out, Memory, Kernel>(
@@ -104,7 +93,7 @@ std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, st
       auto hierarchies = wide_hierarchies<typename Kernel::template Hierarchy<V, fan_out>>(
           meshes, variant, threads);
       // Shapes point to what the vector holds, wherever that is moved.
-      const auto shapes = wide_shapes(meshes, hierarchies, objects);
+      const auto shapes = shapes_over(meshes, hierarchies, objects);
       with_memory(variant, [&]<class Memory>(std::type_identity<Memory>) {
         using Pairs = WidePairs<V, fan_out, Memory, Kernel>;
         world = std::make_unique<TouchingWorld<Pairs, Query, decltype(hierarchies)>>(
