@@ -9,7 +9,6 @@
 /// siblings_kernel.hpp for the members of a kernel.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -17,8 +16,7 @@
 #include <string_view>
 
 #include "hierarchies/wide/block_hierarchy.hpp"
-#include "traversal/primitives/triangle_filter.hpp"
-#include "traversal/primitives/triangle_gap.hpp"
+#include "traversal/wide/block_triangles.hpp"
 #include "traversal/wide/contact_sieve.hpp"
 #include "traversal/wide/relative_frame.hpp"
 #include "traversal/wide/sixteen_lanes.hpp"
@@ -118,7 +116,9 @@ struct MixedKernel {
         push_nodes(nodes, triangles, remaining, each_of_four(row_a.name.data()),
                    four_repeated(row_b.name.data()), order, next);
       }
-      ReferenceSphere reference_sphere() const { return pair_frame.reference_sphere(node); }
+      ReferenceSphere reference_sphere() const {
+        return reference_sphere_of_smaller(pair_frame.trees_, node, pair_frame.transforms_);
+      }
     };
 
     /// One volume, posed into the other body's frame, against the sixteen lanes of a block.
@@ -203,62 +203,10 @@ struct MixedKernel {
         lines(trees_[1]->block(b.first));
     }
 
-    /// Up to four triangles of a against up to four of b.
-    class Triangles {
-     public:
-      [[gnu::always_inline]] Triangles(const PairFrame& pair_frame, const NodePair& pair)
-          : pair_frame_(pair_frame),
-            node_{Tree::number_of(pair.a), Tree::number_of(pair.b)},
-            a_(pair_frame.trees_[0]->node(node_.a)),
-            b_(pair_frame.trees_[1]->node(node_.b)) {
-        using Four = CornerTransform::Four;
-        const auto& own = pair_frame_.trees_[0]->corners(a_.first).corner;
-        const auto from = [](const auto& p) { return Four(p.data(), stdx::vector_aligned); };
-        for (std::size_t i = 0; i < 3; ++i) {
-          const auto transformed =
-              pair_frame.transforms_[0](from(own[i][0]), from(own[i][1]), from(own[i][2]));
-          for (std::size_t k = 0; k < 3; ++k)
-            transformed[k].copy_to(transformed_[i][k].data(), stdx::vector_aligned);
-        }
-      }
-
-      std::uint64_t lanes() const { return every_fourth(a_.children) * 15 & b_.children * 0x1111u; }
-      std::uint32_t of_a(int lane) const {
-        return pair_frame_.trees_[0]->triangle(a_.first + static_cast<std::uint32_t>(lane / 4));
-      }
-      std::uint32_t of_b(int lane) const {
-        return pair_frame_.trees_[1]->triangle(b_.first + static_cast<std::uint32_t>(lane % 4));
-      }
-      [[gnu::always_inline]] std::array<Corners<S>, 2> corners(std::size_t part) const {
-        const auto& lanes = pair_frame_.trees_[1]->corners(b_.first).corner;
-        std::array<Corners<S>, 2> of;
-        for (std::size_t i = 0; i < 3; ++i)
-          for (std::size_t k = 0; k < 3; ++k) {
-            of[0][i][k] = each_of_four(transformed_[i][k].data(), part);
-            of[1][i][k] = four_repeated(lanes[i][k].data(), part);
-          }
-        return of;
-      }
-      /// A lower bound on the distance of any pair; not positive where none is known.
-      template <class Counter>
-      [[gnu::noinline]] float gap(Counter&) const {
-        float least = std::numeric_limits<float>::infinity();
-        for (std::size_t part = 0; part < parts; ++part) {
-          const auto [x, y] = corners(part);
-          least = std::min(
-              least, stdx::hmin(triangle_gap<S>(x, y, S(pair_frame_.a_to_b().error_bound()))));
-        }
-        return least;
-      }
-      ReferenceSphere reference_sphere() const { return pair_frame_.reference_sphere(node_); }
-
-     private:
-      const PairFrame& pair_frame_;
-      NodePair node_;
-      const Node &a_, &b_;
-      alignas(16) std::array<std::array<std::array<float, 4>, 3>, 3> transformed_;
-    };
-    [[gnu::always_inline]] Triangles triangles(const NodePair& pair) const { return {*this, pair}; }
+    using Triangles = BlockTriangles<V>;
+    [[gnu::always_inline]] Triangles triangles(const NodePair& pair) const {
+      return {trees_, transforms_, pair};
+    }
 
     template <class Counter>
     [[gnu::always_inline]] void sift(ContactSieve& sieve, WorkQueue& triangles, ContactBatch& batch,
@@ -270,13 +218,6 @@ struct MixedKernel {
     }
 
    private:
-    /// The sphere of the smaller of two nodes.
-    ReferenceSphere reference_sphere(const NodePair& node) const {
-      const auto &a = trees_[0]->node_sphere(node.a), &b = trees_[1]->node_sphere(node.b);
-      return a.radius < b.radius ? reference_sphere_of(a, 0, transforms_)
-                                 : reference_sphere_of(b, 1, transforms_);
-    }
-
     /// A batch of volumes, filled field by field.
     template <class Field>
     [[gnu::always_inline]] static Over<V, S> volumes(const Field& field) {

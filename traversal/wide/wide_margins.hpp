@@ -41,6 +41,7 @@
 
 #include "traversal/relative_motion_bound.hpp"
 #include "traversal/wide/crossing_batch.hpp"
+#include "traversal/wide/followed_bodies.hpp"
 #include "traversal/wide/gap_measure.hpp"
 #include "traversal/wide/kept_of_pair.hpp"
 #include "traversal/wide/no_memory.hpp"
@@ -55,8 +56,7 @@ class WideMargins {
   using Measure = GapMeasure<S>;
 
   void add_body(const MeshSphere& sphere, double reach) {
-    bodies_.emplace_back(HierarchyExtent{sphere.centre, sphere.radius, reach, 0});
-    displacements_.push_back(0), steps_.push_back(0), rotations_.push_back(0), epochs_.push_back(0);
+    bodies_.add({sphere.centre, sphere.radius, reach, 0});
   }
   void resize(std::size_t pairs) {
     answers_.resize(pairs), kept_.resize(pairs), front_sizes_.resize(pairs);
@@ -90,15 +90,9 @@ class WideMargins {
   template <class Body>
   void move(std::size_t i, Body&, const Pose& pose, EarlyCulling& culling,
             const Vec3<double>& origin) {
-    Followed& body = bodies_[i];
-    steps_[i] = 0;
-    if (!body.set_pose(pose)) return;
-    const double displacement = body.displacement_bound();
-    steps_[i] = displacement - displacements_[i];
-    displacements_[i] = displacement, rotations_[i] = body.rotation_bound();
-    epochs_[i] = body.epoch();
-    const ReferencePose& at = body.reference_pose();
-    culling.set_pose(i, at.rotation, at.centre - origin, body.extent().radius,
+    if (!bodies_.set_pose(i, pose)) return;
+    const ReferencePose& at = bodies_[i].reference_pose();
+    culling.set_pose(i, at.rotation, at.centre - origin, bodies_[i].extent().radius,
                      at.defect < 0.1 ? at.error_bound : std::numeric_limits<double>::infinity());
   }
   template <class Body>
@@ -106,14 +100,14 @@ class WideMargins {
     body.set_pose(pose);
   }
   /// Body i has not moved since the last frame.
-  void rest(std::size_t i) { steps_[i] = 0; }
+  void rest(std::size_t i) { bodies_.rest(i); }
 
   /// Whether the last answer still holds, by one comparison.
   template <class Query>
   bool answer_valid(std::size_t p, const ObjectPair& pair) const {
     const Answer& answer = answers_[p];
-    return displacements_[pair.i] + displacements_[pair.j] < answer.until ||
-           (keeps_answer<Query> && epochs(pair) == answer.epochs);
+    return bodies_.displacement(pair) < answer.until ||
+           (keeps_answer<Query> && bodies_.epochs(pair) == answer.epochs);
   }
   /// Decides the pairs whose answers are valid by the bound between reference poses and, where one
   /// hit is enough, those whose last crossing still exists.
@@ -129,7 +123,7 @@ class WideMargins {
   /// The bodies are `gap` apart at their present poses.
   void apart(std::size_t p, const ObjectPair& pair, double gap) {
     Kept& kept = kept_[p];
-    answers_[p] = {unknown, epochs(pair), false};
+    answers_[p] = {unknown, bodies_.epochs(pair), false};
     kept.crossing.reset(), clear_front(p);
     kept.was_apart = true, kept.touched_twice = false;
     extend_validity(p, pair, gap);
@@ -147,7 +141,7 @@ class WideMargins {
       // A front pays where the bodies have been apart before and their fronts did not wear out at
       // once.
       if (kept.pause.over() && kept.was_apart) start.front = &kept.front;
-      start.rotation = rotations_[pair.i] + rotations_[pair.j];
+      start.rotation = bodies_.rotation(pair);
       return start;
     }
   }
@@ -164,7 +158,7 @@ class WideMargins {
   /// A distance holds while neither body moves.
   template <class Query>
   void remember(std::size_t p, const ObjectPair& pair, const Query& query, const NoRecord&) {
-    answers_[p] = {unknown, epochs(pair), false};
+    answers_[p] = {unknown, bodies_.epochs(pair), false};
     kept_[p].distance = query.distance();
   }
   template <class Query, class S>
@@ -172,7 +166,7 @@ class WideMargins {
                 const GapMeasure<S>& found) {
     Answer& answer = answers_[p];
     Kept& kept = kept_[p];
-    answer = {unknown, epochs(pair), found.touched().has_value()};
+    answer = {unknown, bodies_.epochs(pair), found.touched().has_value()};
     if constexpr (keeps_answer<Query>) answer.touching = query.touching();
     kept.deadline = 0;
     kept.crossing.reset();
@@ -201,16 +195,10 @@ class WideMargins {
     }
     // A smaller gap would hardly last until the next frame.
     const double gap = found.gap();
-    if (gap > steps_[pair.i] + steps_[pair.j]) extend_validity(p, pair, gap);
+    if (gap > bodies_.step(pair)) extend_validity(p, pair, gap);
   }
 
  private:
-  class Followed : public MovingBody {
-   public:
-    using MovingBody::MovingBody;
-    bool set_pose(const Pose& pose) { return MovingBody::set_pose(pose, Vec3<double>::Zero()); }
-  };
-
   static constexpr int longest_rest = 64;  // traversals without a crossing
 
   using Answer = PairAnswer;
@@ -265,10 +253,10 @@ class WideMargins {
   }
   /// The triangles still cross, and will until the bodies have moved by `margin`.
   void still_crossing(std::size_t p, const ObjectPair& pair, double margin) {
-    answers_[p] = {unknown, epochs(pair), true};
+    answers_[p] = {unknown, bodies_.epochs(pair), true};
     kept_[p].deadline = 0, kept_[p].touched_twice = true;
     kept_[p].next_rest = std::max(1, kept_[p].next_rest / 2);
-    if (margin > steps_[pair.i] + steps_[pair.j]) extend_validity(p, pair, margin);
+    if (margin > bodies_.step(pair)) extend_validity(p, pair, margin);
   }
   /// The triangles no longer cross for certain. In such motion, testing the next crossing first
   /// does not pay.
@@ -279,9 +267,6 @@ class WideMargins {
   }
 
   void clear_front(std::size_t p) { kept_[p].front.clear(), front_sizes_[p] = 0; }
-
-  /// Changes whenever one of the bodies moves.
-  std::uint32_t epochs(const ObjectPair& pair) const { return epochs_[pair.i] + epochs_[pair.j]; }
 
   /// Makes the answer valid until the bodies have come nearer by `gap`.
   void extend_validity(std::size_t p, const ObjectPair& pair, double gap) {
@@ -294,13 +279,10 @@ class WideMargins {
   /// Sets the deadline: the bodies are `gap` apart. Covers the rounding of sums of displacements,
   /// here and where they are compared.
   void hold(std::size_t p, const ObjectPair& pair, double gap) {
-    const double displacement = displacements_[pair.i] + displacements_[pair.j];
-    answers_[p].until = (displacement + gap) * (1 - 8 * unit_roundoff<double>);
+    answers_[p].until = (bodies_.displacement(pair) + gap) * (1 - 8 * unit_roundoff<double>);
   }
 
-  std::vector<Followed> bodies_;
-  std::vector<double> displacements_, steps_, rotations_;
-  std::vector<std::uint32_t> epochs_;
+  FollowedBodies bodies_;
   std::vector<Answer> answers_;
   std::vector<Kept> kept_;
   std::vector<std::uint32_t> front_sizes_;  // of kept_, apart from it, to be summed quickly

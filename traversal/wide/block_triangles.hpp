@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// The triangles of two leaves of block hierarchies, all pairs in sixteen lanes: lane 4 i + j holds
+/// the i-th triangle of a and the j-th of b. Those of a are transformed into the frame of b, once.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "hierarchies/wide/block_hierarchy.hpp"
+#include "traversal/node_pair.hpp"
+#include "traversal/primitives/triangle_filter.hpp"
+#include "traversal/primitives/triangle_gap.hpp"
+#include "traversal/wide/relative_frame.hpp"
+#include "traversal/wide/sixteen_lanes.hpp"
+
+namespace bvlab {
+
+/// The reference sphere of the smaller of two nodes, by their numbers.
+template <class Tree>
+ReferenceSphere reference_sphere_of_smaller(const std::array<const Tree*, 2>& trees,
+                                            const NodePair& node,
+                                            const std::array<CornerTransform, 2>& transforms) {
+  const auto &a = trees[0]->node_sphere(node.a), &b = trees[1]->node_sphere(node.b);
+  return a.radius < b.radius ? reference_sphere_of(a, 0, transforms)
+                             : reference_sphere_of(b, 1, transforms);
+}
+
+template <BoundingVolume V>
+class BlockTriangles {
+  using Tree = BlockHierarchy<V>;
+  using S = SixteenLanes;
+  static constexpr std::size_t parts = 16 / S::size();
+
+ public:
+  /// transforms[0] takes points of a to b, transforms[1] back. Both arrays must outlive this.
+  [[gnu::always_inline]] BlockTriangles(const std::array<const Tree*, 2>& trees,
+                                        const std::array<CornerTransform, 2>& transforms,
+                                        const NodePair& leaves)
+      : trees_(trees),
+        transforms_(transforms),
+        node_{Tree::number_of(leaves.a), Tree::number_of(leaves.b)},
+        a_(trees[0]->node(node_.a)),
+        b_(trees[1]->node(node_.b)) {
+    using Four = CornerTransform::Four;
+    const auto& own = trees_[0]->corners(a_.first).corner;
+    const auto from = [](const auto& p) { return Four(p.data(), stdx::vector_aligned); };
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto transformed = transforms_[0](from(own[i][0]), from(own[i][1]), from(own[i][2]));
+      for (std::size_t k = 0; k < 3; ++k)
+        transformed[k].copy_to(transformed_[i][k].data(), stdx::vector_aligned);
+    }
+  }
+
+  std::uint64_t lanes() const { return every_fourth(a_.children) * 15 & b_.children * 0x1111u; }
+  std::uint32_t of_a(int lane) const {
+    return trees_[0]->triangle(a_.first + static_cast<std::uint32_t>(lane / 4));
+  }
+  std::uint32_t of_b(int lane) const {
+    return trees_[1]->triangle(b_.first + static_cast<std::uint32_t>(lane % 4));
+  }
+  [[gnu::always_inline]] std::array<Corners<S>, 2> corners(std::size_t part) const {
+    const auto& lanes = trees_[1]->corners(b_.first).corner;
+    std::array<Corners<S>, 2> of;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        of[0][i][k] = each_of_four(transformed_[i][k].data(), part);
+        of[1][i][k] = four_repeated(lanes[i][k].data(), part);
+      }
+    return of;
+  }
+  /// A lower bound on the distance of any pair; not positive where none is known.
+  template <class Counter>
+  [[gnu::noinline]] float gap(Counter&) const {
+    float least = std::numeric_limits<float>::infinity();
+    for (std::size_t part = 0; part < parts; ++part) {
+      const auto [x, y] = corners(part);
+      least = std::min(least, stdx::hmin(triangle_gap<S>(x, y, S(transforms_[0].error_bound()))));
+    }
+    return least;
+  }
+  ReferenceSphere reference_sphere() const {
+    return reference_sphere_of_smaller(trees_, node_, transforms_);
+  }
+
+ private:
+  const std::array<const Tree*, 2>& trees_;
+  const std::array<CornerTransform, 2>& transforms_;
+  NodePair node_;
+  const typename Tree::Node &a_, &b_;
+  alignas(16) std::array<std::array<std::array<float, 4>, 3>, 3> transformed_;
+};
+
+}  // namespace bvlab
