@@ -17,6 +17,7 @@ stands with the reason: <<500 polygons|what the definition sets>>.
 
 import contextlib
 import io
+import math
 import re
 from functools import cache
 from pathlib import Path
@@ -117,6 +118,13 @@ def written(value, spec):
     if spec == "s":
         return short(value)
     return format(value, spec)
+
+
+def two_digits(value):
+    """At least two significant digits, zeros included, and no exponent: 0.20, 1.0, 36, 1043; "" where there is no value."""
+    if value != value:
+        return ""
+    return f"{value:.{max(0, 1 - math.floor(math.log10(float(f'{value:.1e}'))))}f}"
 
 
 def short(count):

@@ -3,14 +3,10 @@
 
 from bvlab_plots import records
 from bvlab_plots.intervals import bootstrap
-from quoting import Interval, claim, quotes
+from quoting import Interval, claim, quotes, two_digits
 
 OURS = ["recommended", "wide, from the roots"]
 TARGETS = {"touching": 5, "contacts, near": 6, "distance": 8}
-
-
-def written_us(us):
-    return f"{us:.0f}" if us >= 9.95 else f"{us:.2g}"
 
 
 def query_of(work):
@@ -32,8 +28,8 @@ def peers_meshes(record):
         at = libraries.loc[place]
         low, high = bootstrap(of.to_numpy(), "median")
         leads[query_of(place[1])].append(of.median())
-        lines.append(["" if place[0] == last else place[0], place[1], written_us(us.recommended.loc[place].median()), at.median().idxmin(),
-                      written_us(at.median().min()), f"{of.median():.1f} ({low:.1f} to {high:.1f})"])
+        lines.append(["" if place[0] == last else place[0], place[1], two_digits(us.recommended.loc[place].median()), at.median().idxmin(),
+                      two_digits(at.median().min()), f"{of.median():.1f} ({low:.1f} to {high:.1f})"])
         last = place[0]
     alike = {query: [value for (_, work), of in lead.groupby(["mesh", "work"]) if query_of(work) == query
                      for value in [of.median() / lead["bunny", work].median()]] for query in ("touching", "contacts, near")}

@@ -3,18 +3,15 @@
 
 from functools import cache
 
-import quoting
 from bvlab_plots import records
 from bvlab_scripts import tournament
-from quoting import Interval, claim, quotes
+from quoting import Interval, claim, quotes, two_digits
 
 SOURCE, SHIPPED, EIGHT, ONE = "from-source", "as-shipped", "eight-lanes", "one-lane"
 OURS = "recommended"
 
-
 def called(method, program):
     return f"{method}, {program}"
-
 
 @cache
 def cells(record):
@@ -33,10 +30,8 @@ def cells(record):
         "fcl": beside(called("FCL, obb", SOURCE), [called("FCL, obb", SHIPPED)]),
         "cold": beside(called(OURS, SOURCE), fresh, "cold_ns"), "tail": beside(called(OURS, SOURCE), fresh, "tail_ns")}
 
-
 def written(line):
     return f"{line.ratio:.1f} ({line.low:.1f} to {line.high:.1f})"
-
 
 @quotes("tournament")
 def tournament_table(record):
@@ -50,7 +45,6 @@ def tournament_table(record):
                       *(f"{found[column].loc[place].ratio:.1f}" for column in ("cold", "tail"))])
         last = place[0]
     return {"rows": lines}
-
 
 @quotes("tournament")
 def tournament_headline(record):
@@ -70,14 +64,12 @@ def tournament_headline(record):
             "roots": Interval(found["roots"].ratio), "roots_one": Interval(found["roots, one"].ratio),
             "width": Interval(found["one"].ours_ns / found["sixteen"].ours_ns), "fcl": Interval(1 / found["fcl"].ratio)}
 
-
 def libraries(rows):
     """The methods of other libraries, those compiled from source with our flags where several programs ran them."""
     rows = rows[rows.peer != ""]
     if "program" in rows:
         rows = rows[rows.program == SOURCE]
     return list(dict.fromkeys(rows.method))
-
 
 @cache
 def beside_all(record):
@@ -86,9 +78,7 @@ def beside_all(record):
     ours = called(OURS, SOURCE) if "program" in rows else OURS
     return tournament.tournament(rows, ours, libraries(rows)).set_index(tournament.PLACES)
 
-
 SHOWN = ["recommended", "wide, from the roots", "OPCODE", "OPCODE, coherent", "PhysX", "FCL, obb", "Coal, obb"]
-
 
 @quotes("tournament-peers")
 def scenes(record):
@@ -101,7 +91,8 @@ def scenes(record):
         texts = []
         for name in SHOWN:
             key, mark = (*place, name), "*" if tournament.differences(rows, place, name) else ""
-            texts.append(f"{quoting.written(middle.ns[key], '.2g')}, {quoting.written(middle.tail_ns[key], '.2g')}{mark}" if key in middle.index else "")
+            mean_and_tail = (two_digits(float(f"{middle[column][key]:.1e}")) for column in ("ns", "tail_ns") if key in middle.index)
+            texts.append(", ".join(mean_and_tail) + mark)
         lines.append(["" if place[0] == last else place[0], str(place[1]), *texts, written(line) + ("*" if line.differing else "")])
         last = place[0]
     claim(set(libraries(rows)) == {"OPCODE", "OPCODE, coherent", "PhysX", "FCL, obb", "Coal, obb", "Coal, obbrss"}, "the libraries are OPCODE, PhysX, FCL and Coal")
@@ -118,12 +109,6 @@ def scenes(record):
     return {"rows": lines, "lead": Interval(beside.ratio), "seeds": rows.seed.nunique(), "repetitions": rows.repetition.nunique(),
             "cells": len(beside), "roots_faster": int((mean[roots] < mean[OURS]).sum()), "roots_tails": int((tails[roots] < tails[OURS]).sum()),
             "contact_frames": rows[contacts].frames.max()}
-
-
-def short_us(us):
-    """Two digits, "" where there is no time."""
-    return "" if us != us else f"{us:.0f}" if us >= 10 else f"{us:.2g}"
-
 
 @quotes("tournament-peers")
 def tournament_peers(record):
@@ -154,7 +139,7 @@ def tournament_peers(record):
     claim(set(rows[rows.differing > 0].work) == {"contacts, near"} and set(wrong.index) == {"Coal, obb", "Coal, obbrss", "OPCODE", "PhysX"}, "Coal, OPCODE and PhysX differ, in contacts alone")
     lines, last = [], None
     for (work, polygons), line in us.iterrows():
-        cells = [short_us(line[method]) for method in ("recommended", "wide, from the roots", *libraries)]
+        cells = [two_digits(line[method]) for method in ("recommended", "wide, from the roots", *libraries)]
         lines.append(["" if work == last else work, str(polygons), *cells, f"{times[work, polygons]:.1f}"])
         last = work
     return {"rows": lines, "touching": Interval(touching), "five": int((touching >= 5).sum()), "cells": len(touching), "roots": Interval(roots),
