@@ -22,14 +22,14 @@ struct PlacementOf {
   using type = Placement<Element<typename V::scalar>>;
 };
 template <class V>
-requires requires { typename V::placement; }
+  requires requires { typename V::placement; }
 struct PlacementOf<V> {
   using type = typename V::placement;
 };
 }  // namespace detail
 
-/// The pose type that `posed` takes for V. A volume that needs more of a pose than `Placement`
-/// declares a `placement` of its own, with the same constructor, called at most once per move.
+/// The pose type that `posed` takes for V. A volume for which `Placement` is not enough declares a
+/// type `placement` of its own with the same constructor, which is called at most once per move.
 template <class V>
 using PlacementOf = typename detail::PlacementOf<V>::type;
 
@@ -40,17 +40,17 @@ using Posed = decltype(posed(std::declval<const V&>(), std::declval<const Placem
 /// A volume that can be fitted to the surface, not only to points. `points` contains all corners of
 /// the triangles.
 template <class V>
-concept FittedToTriangles = requires(std::span<const Vec3<double>> points,
-                                     std::span<const Triangle> triangles) {
-  { V::enclosing(points, triangles) } -> std::same_as<V>;
-};
+concept FittedToTriangles =
+    requires(std::span<const Vec3<double>> points, std::span<const Triangle> triangles) {
+      { V::enclosing(points, triangles) } -> std::same_as<V>;
+    };
 
 /// A volume with a second construction, which is slower and gives a tighter volume.
 template <class V>
-concept FittedTightly = requires(std::span<const Vec3<double>> points,
-                                 std::span<const Triangle> triangles) {
-  { V::tight(points, triangles) } -> std::same_as<V>;
-};
+concept FittedTightly =
+    requires(std::span<const Vec3<double>> points, std::span<const Triangle> triangles) {
+      { V::tight(points, triangles) } -> std::same_as<V>;
+    };
 
 /// Which construction fits volumes: the published one, or the tighter one where the volume has
 /// one.
@@ -67,20 +67,22 @@ enum class Fit { published, tight };
 ///   gap           `gap` never exceeds the true distance, and is 0 where a point lies in both;
 ///   batches       each lane of a batch gives what the scalar gives.
 template <class V>
-concept BoundingVolume = requires(const V a, const V b, std::span<const Vec3<double>> points,
-                                  const PlacementOf<V> placement, const Posed<V> p,
-                                  const Posed<V> q) {
-  { V::name } -> std::convertible_to<std::string_view>;
-  { V::description } -> std::convertible_to<std::string_view>;
-  { V::enclosing(points) } -> std::same_as<V>;  // one point or more
-  { merge(a, b) } -> std::same_as<V>;
-  {posed(a, placement)};                     // one N_u
-  { disjoint(p, q) } -> std::same_as<bool>;  // one N_v; a mask where S is a batch
-  { gap(p, q) } -> std::same_as<typename V::scalar>;
-  { contains(p, Vec3<long double>{}) } -> std::same_as<bool>;  // for tests: slow and careful
-  { size(a) } -> std::same_as<typename V::scalar>;             // the larger one is descended
-  { reach(a) } -> std::same_as<typename V::scalar>;  // how far from the frame's origin it extends
-};
+concept BoundingVolume =
+    requires(const V a, const V b, std::span<const Vec3<double>> points,
+             const PlacementOf<V> placement, const Posed<V> p, const Posed<V> q) {
+      { V::name } -> std::convertible_to<std::string_view>;
+      { V::description } -> std::convertible_to<std::string_view>;
+      { V::enclosing(points) } -> std::same_as<V>;  // one point or more
+      { merge(a, b) } -> std::same_as<V>;
+      { posed(a, placement) };                   // one N_u
+      { disjoint(p, q) } -> std::same_as<bool>;  // one N_v; a mask where S is a batch
+      { gap(p, q) } -> std::same_as<typename V::scalar>;
+      { contains(p, Vec3<long double>{}) } -> std::same_as<bool>;  // for tests: slow and careful
+      { size(a) } -> std::same_as<typename V::scalar>;             // the larger one is descended
+      {
+        reach(a)
+      } -> std::same_as<typename V::scalar>;  // how far from the frame's origin it extends
+    };
 
 /// `size(volume)` and `reach(volume)`, for scopes in which a member of the same name hides them.
 template <BoundingVolume V>

@@ -18,7 +18,8 @@ struct Counting {
   void posed(std::uint64_t volumes) { n_u += volumes; }
   void tested(std::uint64_t pairs) { n_v += pairs; }
   void primitives(std::uint64_t pairs) { n_p += pairs; }
-  /// One pair's query is done; `before` is n_v + n_p when it began.
+  /// One pair's query is done; `before` is n_v + n_p before its first test. For pairs that are
+  /// tested together it is the same for all.
   void queried(std::uint64_t before) { considered += n_v + n_p != before; }
   /// Adds the counts of another thread.
   void add(const Counting& other) {

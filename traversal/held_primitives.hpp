@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A buffer of primitive pairs from leaves whose volumes overlap, held until there are enough to be
-/// tested together. Two leaves with more than `portion` pairs are not buffered but tested at once,
-/// `portion` pairs at a time.
+/// tested together. Two leaves with more than `portion` pairs are not buffered but tested
+/// immediately, `portion` pairs at a time.
 #pragma once
 
 #include <algorithm>

@@ -33,7 +33,8 @@ class NoFront : public FrontDefaults {
   Start start_;
 };
 
-/// The same, but a pair of inner nodes is replaced by the four pairs of their children.
+/// The same, but a pair of inner nodes is replaced by all pairs of their children (four on binary
+/// trees).
 class NoFrontBoth : public NoFront {
  public:
   using NoFront::NoFront;

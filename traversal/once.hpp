@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Work that is done on first request, once per stamp, even if several threads request it: one
-/// thread does it, the others wait. The work must be short and must not request work that could
-/// wait for it.
+/// thread does it, the others wait. A stamp is a number for the state that the work is done for,
+/// such as the epoch of a body. The work must be short and must not request work that could wait
+/// for it.
 #pragma once
 
 #include <algorithm>

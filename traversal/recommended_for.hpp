@@ -65,9 +65,9 @@ struct UnitCosts {
   }
 };
 
-/// The pairs that cost C in a frame: those of which a body has moved, but at most four for each
-/// body that has. Most of C is spent on bodies, and it was fitted where nine of them, or two, make
-/// all pairs: 36 and one.
+/// How many pairs are charged with C in a frame: those with a moved body, but at most four for each
+/// moved body. Most of C is spent on bodies; it was fitted to scenes of nine bodies (36 pairs) and
+/// of two (one pair).
 inline std::size_t pairs_of_moved(std::span<const Pose> before, std::span<const Pose> now) {
   std::size_t moved = 0;
   for (std::size_t i = 0; i < now.size(); ++i) moved += !(now[i] == before[i]);
@@ -92,12 +92,12 @@ struct RecommendedCandidate {
 /// roots never cost least.
 ///
 /// Unit costs of touching were fitted to 54 motions (planning problems, five meshes, bunnies of 500
-/// and 8000 polygons), those of contacts to 30 of the five meshes, by least squares of logarithms:
-/// foremost of how the candidates near the best compare in each motion, less of the times as such,
-/// so they are not what one test costs. Costs from the roots were then raised, by 3 % for
-/// slab-boxes and 10 % for oriented boxes, since samples have more new fronts than whole motions.
-/// On other seeds the choice took 1.02 times as long as the best candidate in the mean, and at most
-/// 1.13 times.
+/// and 8000 polygons), those of contacts to 30 of the five meshes, by least squares of logarithms.
+/// The fit weights the ratios between the best candidates of each motion more than the times
+/// themselves, so these are not the costs of single tests. Costs from the roots were then raised,
+/// by 3 % for slab-boxes and 10 % for oriented boxes, since samples have more new fronts than whole
+/// motions. On other seeds the choice took 1.02 times as long as the best candidate in the mean,
+/// and at most 1.13 times.
 inline constexpr std::tuple recommended_candidates{
     RecommendedCandidate<Recommended>{"slab-boxes", {36.6, 1.6, 6.5, 1.5}, {17.3, 4.0, 4.8, 3.4}},
     RecommendedCandidate<RecommendedRoots>{

@@ -25,9 +25,10 @@
 /// both poses. The sums of squares and their roots are off by less than 16 roundings in relative
 /// terms, those of the whole by 16 more: a factor of 1 + 32u covers all.
 ///
-/// Range. A square that underflows hides a motion below 2^-511, which is less than 2^-500 of what a
-/// deadline loses when it becomes a float (`just_below`): no query relies on so small a margin. An
-/// overflow makes the clock infinite or NaN, and every comparison treats that as expired.
+/// Range. A square that underflows hides a motion below 2^-511, in each of at most three terms.
+/// Every bound on motion includes `error_bound` of both poses, 2^-48 (reach + |t|) each, which is
+/// more for any mesh larger than 2^-460. An overflow makes the bound infinite or NaN, and every
+/// comparison treats that as expired.
 #pragma once
 
 #include <algorithm>

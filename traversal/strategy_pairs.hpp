@@ -2,8 +2,8 @@
 /// The pairs of a World over binary trees or any fan-out, each with a strategy of its own (see
 /// world_of.hpp).
 ///
-/// Threads share the pairs. The first thread that needs a body moves it and poses its volumes: what
-/// is posed and tested is the same for any number of threads.
+/// The pairs are divided among the threads. The first thread that needs a body moves it and poses
+/// its volumes: what is posed and tested is the same for any number of threads.
 #pragma once
 
 #include <cstdint>

@@ -51,13 +51,13 @@ enum class EntryState {
 ///   witnessed()              whether the last run left a witness, which is tested first (else a
 ///                            query that wants a bound gets it from one descent from the roots)
 ///   opens(query, a, b, gap)  whether two nodes are opened although the query culls them
-///   descent(a, b)            which of two opened nodes is replaced by its children
+///   descent(a, b)            which node of an opened pair is replaced, or both
 ///   primitives(query, pending, workspace)
 ///                            passes candidates to the query; their slots name their entries, and
 ///                            those of one entry are consecutive
 ///   measures_gaps            whether the front uses `gap`: a lower bound on the distance of the
 ///                            volumes of culled pairs, in units of the meshes; else 0
-///   held_at_least            so many candidates may wait for a test, to fill a batch
+///   held_at_least            as many candidates are held, to be tested together
 template <class F, class Traversal>
 concept TrackedFront = requires(F front, Traversal& traversal, typename Traversal::Query& query,
                                 const typename Traversal::Node& node, const NodePair& pair,

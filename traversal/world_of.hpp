@@ -5,10 +5,10 @@
 ///
 /// Bodies that do not move cost nothing. Nothing is built for a body that no other has come near.
 ///
-/// With several threads the broad phase, the bodies that moved and the pairs are shared; answers,
-/// contacts and counts are the same for any number of threads. Serial are moves, pairs that begin
-/// and end, the list of pairs to query, and the calls of `take`: together a twentieth of a frame in
-/// which ten thousand bodies move.
+/// With several threads the broad phase, the bodies that moved and the pairs are divided among
+/// them; answers, contacts and counts are the same for any number of threads. Serial are moves,
+/// pairs that begin and end, the list of pairs to query, and the calls of `take`: together a
+/// twentieth of a frame in which ten thousand bodies move.
 #pragma once
 
 #include <algorithm>

@@ -249,7 +249,7 @@ class Blocks {
     return motion;
   }
   /// The best horizon in frames; 0 where starting over costs less. `ahead`: the number of frames in
-  /// which its candidates are found, each of which must cost less than starting over.
+  /// which its candidates are found; each of these frames must cost less than starting over.
   int best_horizon(const Motion& motion, int ahead = 0) const {
     using Cost = BlockCosts;
     const double n = static_cast<double>(count_), k = static_cast<double>(pairs_.all.size());
@@ -269,7 +269,8 @@ class Blocks {
                        Cost::fat_box * n + (1 + growth) / 2 * join + Cost::candidate * candidates,
                    cost = follow + begin / frames;
       if (ahead > 0 && follow + begin / ahead > cost_of_starting_over()) continue;
-      // With the shortest margins there is no time to prepare the next candidates.
+      // The shortest horizon leaves no frames to prepare the next candidates in, so any longer one
+      // that is affordable is preferred.
       const bool rather = followed_.margins_exceeded() && horizon == shortest;
       if (cost < (rather ? most : best)) best = cost, horizon = frames;
     }

@@ -27,7 +27,7 @@ class Grid {
     pairs_.clear();
     if (boxes.empty()) return pairs_.view();
     voxels_ = Voxels<T>(boxes, {true, true, true});
-    // More than about one cell a box would be empty; so cells share table entries.
+    // A table with many more entries than boxes would be mostly empty, so cells share entries.
     bits_ = std::bit_width(boxes.size());
     fill(boxes);
     for (std::size_t c = 0; c + 1 < starts_.size(); ++c)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Incremental sweep and prune on three axes (BibTeX: cohen1995icollide): the ends of all boxes are
-/// kept sorted on every axis and repaired by insertion sort; a swap of a lower with an upper end is
-/// a pair that may begin or that ends. O(n + swaps) a frame; a frame may need O(n^2) swaps, so
-/// beyond 64 swaps a box everything is sorted and swept again.
+/// kept sorted on every axis and repaired by insertion sort; each swap of a lower with an upper end
+/// marks a pair that may begin or that ends. O(n + swaps) a frame; a frame may need O(n^2) swaps,
+/// so beyond 64 swaps a box everything is sorted and swept again.
 #pragma once
 
 #include "broadphase/methods/sort_and_sweep.hpp"

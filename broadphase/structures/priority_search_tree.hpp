@@ -21,7 +21,8 @@ struct Interval {
 template <class T>
 class PrioritySearchTrees {
  public:
-  /// Tree b may hold the seats [starts[b], starts[b + 1]); interval(seat) gives a seat's interval.
+  /// A seat is a place for one rectangle in one tree (rectangle_store.hpp). Tree b may hold the
+  /// seats [starts[b], starts[b + 1]); interval(seat) gives a seat's interval.
   template <class IntervalOf>
   void prepare(std::span<const std::uint32_t> starts, IntervalOf&& interval) {
     const std::uint32_t seats = starts.back();

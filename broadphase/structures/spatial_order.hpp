@@ -104,8 +104,8 @@ class SpatialOrder {
     visit(block, first, end - first);
   }
 
+  static constexpr std::size_t stretch = 4096;  ///< boxes in a range of for_stretches
   /// Calls work(begin, end, worker) for ranges of the boxes, on all threads.
-  static constexpr std::size_t stretch = 4096;
   template <class Work>
   static void for_stretches(Boxes<T> boxes, Threads& threads, const Work& work) {
     threads.share((boxes.size() + stretch - 1) / stretch,

@@ -44,7 +44,7 @@ std::string lines(const Rows& rows, const char* format) {
 std::string verdict(const Rows& rows) {
   if (rows.back().windows == 0) return "unknown: there are no frames";
   if (!can_tell(rows))
-    return "cannot be told: " + std::to_string(rows.back().windows) + " of the " +
+    return "unknown: " + std::to_string(rows.back().windows) + " of the " +
            std::to_string(least_windows) +
            " windows that are needed; a smaller --stride gives more";
   const auto names = candidates(rows);
@@ -128,10 +128,11 @@ void add_predict(CLI::App& app) {
                                          "Predicts the cost of each strategy on a "
                                          "trace, from windows of it");
   command->footer(
-      "Intervals are wide and mostly right: on 40 motions of 600 frames 312 of 320 contained what\n"
-      "a strategy took (of recursion's, the narrowest, 35 of 40). Half a width is 56 % of the\n"
-      "predicted time (median), so that 7.3 of eight strategies were candidates; the fastest was\n"
-      "one of them in all 40. To find which candidate is the fastest, replay them.\n"
+      "On 40 motions of 600 frames, 312 of 320 intervals contained the measured time (of\n"
+      "recursion's, the narrowest, 35 of 40). Intervals are wide: +-56 % of the predicted time in\n"
+      "the median, so that on average 7.3 of eight strategies remained candidates. The fastest "
+      "one\n"
+      "was among them in all 40. To find out which candidate is the fastest, replay them.\n"
       "experiments/replay/predict_coverage repeats this measurement.");
   auto arguments = std::make_shared<Arguments>();
   command
@@ -157,7 +158,8 @@ void add_predict(CLI::App& app) {
       ->check(whole_number(2, 1u << 16));
   command->add_option("--csv", arguments->csv, "the table as CSV, one row for each strategy");
   command->add_option("--json", arguments->json,
-                      "the table and the survival of the front, as JSON");
+                      "the table, and the survival (the share of a front that the next frame "
+                      "finds again), as JSON");
   command->callback([arguments] { run(*arguments); });
 }
 

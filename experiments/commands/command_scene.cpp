@@ -165,7 +165,7 @@ void add_public(CLI::App& parent) {
       "were fetched before)");
   command
       ->add_option("--frames", arguments->frames,
-                   "number of frames; for boxes, parts of a simulation step")
+                   "number of frames; for boxes, the equal parts of a simulation step")
       ->check(whole_number())
       ->capture_default_str();
   command->add_option("--out", arguments->out, "the trace of bodies or of boxes, as .npy")
@@ -185,7 +185,7 @@ void add_scene(CLI::App& app) {
     if (!command->get_subcommands().empty()) return;
     const auto words = command->remaining();
     throw Unusable((words.empty() ? "scene: a name is needed" : "no scene '" + words[0] + "'") +
-                   "; there are " + Scenes::names());
+                   "; available: " + Scenes::names());
   });
 }
 

@@ -24,7 +24,7 @@ struct Arguments {
 
 TriangleTest named_test(const std::string& name) {
   if (const TriangleTest test = triangle_test(name)) return test;
-  throw Unusable("--precision", "unknown name '" + name + "'; there are " + Precisions::names());
+  throw Unusable("--precision", "unknown name '" + name + "'; available: " + Precisions::names());
 }
 
 void triangles(const Arguments& arguments) {

@@ -100,7 +100,7 @@ const Kind& kind_of(std::string_view name) {
     if (kind.name == name) return kind;
     names += (names.empty() ? "" : ", ") + std::string(kind.name);
   }
-  throw Unusable("list " + std::string(name) + ": unknown; there are " + names);
+  throw Unusable("list " + std::string(name) + ": unknown; available: " + names);
 }
 
 }  // namespace bvlab

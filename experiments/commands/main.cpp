@@ -30,8 +30,8 @@ std::string shown(const CLI::App& app, const CLI::ParseError& error, const std::
   std::string names;
   for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; }))
     names += (names.empty() ? "" : ", ") + command->get_name();
-  return (word.empty() ? "a command is needed" : "no command '" + word + "'") + "; there are " +
-         names;
+  return (word.empty() ? "a command is needed" : "no command '" + word + "'") +
+         "; available: " + names;
 }
 
 /// Standard output may be a full disk.

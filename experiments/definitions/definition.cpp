@@ -169,7 +169,7 @@ class Reader {
     for (const auto& axis : definition.axes)
       if (!axis.is_parameter) offer(axis.name);
     for (const auto& [name, ignored] : default_parameters()) offer(name);
-    if (!known) throw Unusable(name_, "series: unknown '" + key + "'; there are " + names);
+    if (!known) throw Unusable(name_, "series: unknown '" + key + "'; available: " + names);
   }
 
   std::string string(const toml::node& node, const std::string& key) const {
@@ -224,7 +224,7 @@ class Reader {
       if (name == parameter) return;
       names += (names.empty() ? "" : ", ") + name;
     }
-    fail(where, "unknown parameter '" + parameter + "'; there are " + names);
+    fail(where, "unknown parameter '" + parameter + "'; available: " + names);
   }
 
   const toml::table& table(const toml::node& node, const char* what) const {
@@ -353,8 +353,8 @@ const std::vector<Parameter>& parameters() {
     std::vector<Parameter> all{
         {"scene", std::string(Scenes::at<0>::name), "how bodies move; see `bvlab list scenes`"},
         {"mesh", "bunny",
-         "what they are: NAME[:POLYGONS[:SCALE]] or a file, several with commas between; object i "
-         "is mesh i mod their number"},
+         "meshes: NAME[:POLYGONS[:SCALE]] or files, separated by commas; object i has mesh i mod "
+         "their number"},
         {"polygons", "500", "triangles of each mesh given by name; of a file's, what it has"}};
     Scenes::for_each(
         [&]<class S>(std::type_identity<S>) { S{}.visit_options(AddingParameter{all}); });
@@ -364,10 +364,12 @@ const std::vector<Parameter>& parameters() {
              {"query", "touching", "see `bvlab list queries`"},
              {"build", "top-down-principal", "how trees are built; see `bvlab list builds`"},
              {"leaf_size", "1", "triangles in a leaf, at most"},
-             {"fit", "published", "how volumes are fitted: published, or tight where they have such a fit"},
+             {"fit", "published",
+              "how volumes are fitted: published, or tight where they have such a fit"},
              {"precision", "exact", "of triangle tests; see `bvlab list precisions`"},
              {"relative_error", "0", "distances may be above the truth by this part of it"},
-             {"fan_out", "2", "children a node, at most: 2, 4, 8, 16; or native, a register's lanes"},
+             {"fan_out", "2",
+              "children a node, at most: 2, 4, 8, 16; or native, a register's lanes"},
              {"frame", "world", "where volumes are compared; see `bvlab list frames`"},
              {"kernel", "gathered", "how lanes are filled; see `bvlab list kernels`"},
              {"configuration", "", "chooses volume, tree, build and all else; see `bvlab list`"},

@@ -94,7 +94,7 @@ class FigureCheck {
     if (key == keys().end()) {
       std::string names;
       for (const Key& each : keys()) names += (names.empty() ? "" : ", ") + std::string(each.name);
-      fail(where, "unknown key '" + name + "' of a figure; there are " + names);
+      fail(where, "unknown key '" + name + "' of a figure; available: " + names);
     }
     if (name == "where") return check_conditions(value);
     const auto given = value.value_exact<std::string>();
@@ -103,7 +103,7 @@ class FigureCheck {
     if (allowed.empty() || std::count(allowed.begin(), allowed.end(), *given)) return;
     std::string names;
     for (const auto each : allowed) names += (names.empty() ? "" : ", ") + std::string(each);
-    fail(value.source(), "unknown " + name + " '" + *given + "' of a figure; there are " + names);
+    fail(value.source(), "unknown " + name + " '" + *given + "' of a figure; available: " + names);
   }
 
   void check_conditions(const toml::node& value) const {
@@ -191,7 +191,7 @@ class ColumnCheck {
     if (known_.contains(name)) return;
     std::string names;
     for (const auto& each : known_) names += (names.empty() ? "" : ", ") + each;
-    fail(key + ": no column '" + name + "'; there are " + names);
+    fail(key + ": no column '" + name + "'; available: " + names);
   }
 
   void check_over(const std::string& over) {
@@ -221,8 +221,8 @@ class ColumnCheck {
       if (same_value(each, asked)) return;
       there += (there.empty() ? "'" : ", '") + each + "'";
     }
-    fail(key + " " + text + ": " + std::string(match[1]) + " has no '" + asked + "'; there are " +
-         there);
+    fail(key + " " + text + ": " + std::string(match[1]) + " has no '" + asked +
+         "'; available: " + there);
   }
 
   void check_axes() const {

@@ -26,7 +26,7 @@ std::unique_ptr<AnyMethod<T>> make_method(std::string_view name, const MethodSet
     }
     names += (names.empty() ? "" : ", ") + std::string(entry->name);
   }
-  throw Unusable("--method " + std::string(name) + ": unknown; there are " + names);
+  throw Unusable("--method " + std::string(name) + ": unknown; available: " + names);
 }
 template std::unique_ptr<AnyMethod<float>> make_method(std::string_view, const MethodSettings&);
 template std::unique_ptr<AnyMethod<double>> make_method(std::string_view, const MethodSettings&);

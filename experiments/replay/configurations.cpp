@@ -50,12 +50,12 @@ void set_as_published(Variant& variant) {
 
 constexpr Configuration list[] = {
     {"recommended",
-     "touching and contacts: slab-box under the kernel siblings, built top-down-surface-area, 16 "
-     "triangles a leaf; or obb under mixed, built bottom-up, fit tight, 4 a leaf; either with "
-     "margins or recursive; or slab-box with margins, built bottom-up, 4 a leaf: what costs least "
-     "in counted samples of the motion; where the motion is not known, the first or the second "
-     "with margins, as suits the meshes; distance: rss in binary "
-     "trees, built bottom-up, fit tight, one a leaf, recursive",
+     "touching and contacts: the cheapest, in counted samples of the motion, of (1) slab-box, "
+     "kernel siblings, built top-down-surface-area, leaves as large as a register; (2) obb, kernel "
+     "mixed, built bottom-up, fit tight, leaves of 4; either of them with margins or recursive; "
+     "(3) slab-box with margins, built bottom-up, leaves of 4. Where the motion is not known, (1) "
+     "or (2) with margins, by the shape of the triangles. distance: rss in binary trees, built "
+     "bottom-up, fit tight, leaves of 1, recursive",
      set_recommended},
     {"as-published",
      "the talk's (Li and Chen 1998): spheres in binary trees, one triangle a leaf, and a "
@@ -68,7 +68,8 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes) {
   set_recommended(variant);
   if (variant.query == "distance")
     return {variant,
-            "distances are sought by the volumes of triangles, which swept rectangles bound best"};
+            "distance queries cull by the volumes of single triangles, which swept rectangles "
+            "bound best"};
   const double elongated = elongation(meshes);
   std::ostringstream measured;
   measured << std::setprecision(3) << elongated;
@@ -133,7 +134,8 @@ Variant configured(Variant variant, std::string_view configuration) {
     }
     names += (names.empty() ? "" : ", ") + std::string(each.name);
   }
-  throw Unusable("--configuration " + std::string(configuration) + ": unknown; there are " + names);
+  throw Unusable("--configuration " + std::string(configuration) +
+                 ": unknown; available: " + names);
 }
 
 Chosen configured(Variant variant, std::string_view configuration,

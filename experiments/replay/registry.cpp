@@ -22,8 +22,8 @@ void add(std::vector<Named>& all, std::string_view name, std::string_view descri
 }
 
 [[noreturn]] void refuse(const char* option, std::string_view name, const std::vector<Named>& all) {
-  throw Unusable(std::string(option) + " " + std::string(name) + ": unknown; there are " +
-                 text_of(all));
+  throw Unusable(std::string(option) + " " + std::string(name) +
+                 ": unknown; available: " + text_of(all));
 }
 
 }  // namespace
@@ -56,12 +56,10 @@ std::vector<Named> frames() {
 }
 
 std::vector<Named> kernels() {
-  // A front's entry is a step there. Retesting all entries repeats the steps of a recursion, so
-  // that lists save no step; margins skip entries.
   const std::string reasons =
-      ", --frame body; other volumes are not listed in wide_volumes.hpp, and a list would be of "
-      "the "
-      "steps that a recursion makes, with nothing to save";
+      ", --frame body; other volumes are not compiled for it (wide_volumes.hpp). Lists are not "
+      "offered: an entry of a front is a step, so retesting all entries repeats the recursion's "
+      "steps; margins skip entries";
   return {{"gathered",
            "a register holds pairs of nodes from anywhere in both trees: every volume, strategy, "
            "query, fan-out and frame"},

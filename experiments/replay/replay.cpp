@@ -21,19 +21,18 @@ namespace {
 template <class List>
 void check_name(std::string_view option, std::string_view name) {
   if (!List::with(name, [](auto) {}))
-    throw Unusable(std::string(option) + " " + std::string(name) + ": unknown; there are " +
-                   List::names());
+    throw Unusable(std::string(option) + " " + std::string(name) +
+                   ": unknown; available: " + List::names());
 }
 
-/// The fan-outs that there are.
 constexpr std::uint32_t fan_outs[] = {2, 4, 8, 16};
 
 void check_gathered(const Variant& variant) {
   const VolumeEntry& volume = volume_entry(variant.volume);
   play_entry(name_of(variant.strategy), variant.query).check(variant.strategy);
   if (frame_of(variant) == Frame::body && !volume.has_body_frame)
-    throw Unusable("--frame body: not with --volume " + variant.volume +
-                   ", whose placement takes no error bound of a relative pose; there is world");
+    throw Unusable("--frame body: not available for --volume " + variant.volume +
+                   "; use --frame world");
 }
 
 /// Kernels of sixteen lanes are each compiled for one fan-out, one frame and two strategies.
@@ -60,15 +59,15 @@ void check_wide(const Variant& variant) {
 void check_engine(const Variant& variant) {
   if (std::find(std::begin(fan_outs), std::end(fan_outs), variant.fan_out) == std::end(fan_outs))
     throw Unusable("--fan-out " + std::to_string(variant.fan_out) +
-                   ": unknown; there are 2, 4, 8, 16");
+                   ": unknown; available: 2, 4, 8, 16");
   if (variant.frame != name_of(Frame::world) && variant.frame != name_of(Frame::body))
-    throw Unusable("--frame " + variant.frame + ": unknown; there are world, body");
+    throw Unusable("--frame " + variant.frame + ": unknown; available: world, body");
   if (variant.kernel == "gathered")
     check_gathered(variant);
   else if (Kernels::with(variant.kernel, [](auto) {}))
     check_wide(variant);
   else
-    throw Unusable("--kernel " + variant.kernel + ": unknown; there are gathered, " +
+    throw Unusable("--kernel " + variant.kernel + ": unknown; available: gathered, " +
                    Kernels::names());
 }
 
@@ -98,7 +97,7 @@ void check(const Variant& variant) {
   check_name<Precisions>("--precision", variant.precision);
   check_name<Builds>("--build", variant.build);
   if (variant.fit != "published" && variant.fit != "tight")
-    throw Unusable("--fit " + variant.fit + ": unknown; there are published, tight");
+    throw Unusable("--fit " + variant.fit + ": unknown; available: published, tight");
   if (variant.leaf_size < 1 || variant.leaf_size > 1u << 16)
     throw Unusable("--leaf-size " + std::to_string(variant.leaf_size) + ": must be 1 to 65536");
   if (!(variant.relative_error >= 0) || !std::isfinite(variant.relative_error))

@@ -81,7 +81,7 @@ void check(const BoxReplayOptions& options) {
   make_method<float>(options.method, MethodSettings{});
   if (!Precisions::with(options.precision, [](auto) {}))
     throw Unusable("--precision",
-                   "unknown name '" + options.precision + "'; there are " + Precisions::names());
+                   "unknown name '" + options.precision + "'; available: " + Precisions::names());
 }
 
 template <class T>

@@ -245,7 +245,7 @@ std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count,
     }
     std::string known;
     for (const auto& set : box_set_names()) known += (known.empty() ? "" : ", ") + set;
-    throw Unusable("set " + name + ": unknown; there are " + known);
+    throw Unusable("set " + name + ": unknown; available: " + known);
   };
   std::vector<Box<float>> boxes;
   boxes.reserve(count);

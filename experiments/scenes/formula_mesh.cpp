@@ -299,7 +299,7 @@ TriangleMesh formula_mesh(std::string_view name, std::size_t polygons) {
                    std::to_string(most_polygons));
   for (const FormulaMesh& entry : list)
     if (entry.name == name) return entry.make(polygons);
-  throw Unusable("no mesh '" + std::string(name) + "'; there are " + formula_mesh_names());
+  throw Unusable("no mesh '" + std::string(name) + "'; available: " + formula_mesh_names());
 }
 
 }  // namespace bvlab

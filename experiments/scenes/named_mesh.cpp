@@ -101,7 +101,7 @@ NamedMesh named_mesh(const std::string& name, std::size_t polygons,
     return result;
   }
   if (name != "bunny")
-    throw Unusable("no mesh '" + name + "'; there are bunny, " + formula_mesh_names() +
+    throw Unusable("no mesh '" + name + "'; available: bunny, " + formula_mesh_names() +
                    ", and the files of " + directory.string());
   std::fprintf(stderr, "bvlab: no %s: a %s stands in for the bunny\n", source.c_str(), stand_in);
   return {stand_in, formula_mesh(stand_in, polygons)};

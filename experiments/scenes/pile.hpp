@@ -34,7 +34,8 @@ struct Pile {
     visit("objects", objects, "number of bodies");
     visit("frames", frames, "number of frames, the start included");
     visit("side", side, "side of the floor");
-    visit("core", core, "radius of the ball that a body collides as, in its own radius");
+    visit("core", core,
+          "radius of the ball that stands for a body in collisions, in radii of the body");
     visit("seed", seed, "of the random numbers");
   }
 

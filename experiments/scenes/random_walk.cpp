@@ -186,9 +186,9 @@ class Walk {
 }  // namespace
 
 void RandomWalk::check() const {
-  need(freedoms == "one" || freedoms == "all", "freedoms '" + freedoms + "': there are one, all");
+  need(freedoms == "one" || freedoms == "all", "freedoms '" + freedoms + "'; available: one, all");
   need(contact == "pass" || contact == "reject",
-       "contact '" + contact + "': there are pass, reject");
+       "contact '" + contact + "'; available: pass, reject");
   need(moving <= objects,
        "moving: " + std::to_string(moving) + " of " + std::to_string(objects) + " bodies");
   need(degrees >= 0 && degrees <= 180, "degrees: must be 0 to 180");

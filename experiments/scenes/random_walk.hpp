@@ -50,7 +50,7 @@ struct RandomWalk {
     visit("moving", moving, "how many bodies make a step in a frame; 0: all");
     visit("freedoms", freedoms, "what a step changes: one degree of freedom, or all [one|all]");
     visit("persistence", persistence, "probability that a body repeats its last step");
-    visit("contact", contact, "what a step into contact does: happen, or not [pass|reject]");
+    visit("contact", contact, "whether a step into contact is made or undone [pass|reject]");
     visit("teleport", teleport, "probability, per frame, that one body is put somewhere else");
     visit("seed", seed, "of the random numbers");
   }

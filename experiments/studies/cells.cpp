@@ -90,7 +90,7 @@ void with_scene(const Cell& cell, Use&& use) {
     use(scene);
   });
   if (is_public_scene(cell["scene"])) return require_public_scene(cell["scene"]);
-  if (!known) throw Unusable("no scene '" + cell["scene"] + "'; there are " + Scenes::names());
+  if (!known) throw Unusable("no scene '" + cell["scene"] + "'; available: " + Scenes::names());
 }
 
 /// A public scene's meshes and motion, by name.
@@ -214,7 +214,7 @@ void check(const Cell& cell) {
   // Of other scenes, too: what is no number is a slip of the pen.
   Scenes::for_each([&]<class S>(std::type_identity<S>) { S{}.visit_options(SettingOption{cell}); });
   if (!cell["peer"].empty() && !peer(cell["peer"]) && !is_absent_peer(cell["peer"]))
-    throw Unusable("no peer '" + cell["peer"] + "'; there are " + peer_names());
+    throw Unusable("no peer '" + cell["peer"] + "'; available: " + peer_names());
 }
 
 bool has_answer(const Cell& cell) {

@@ -631,7 +631,7 @@ void check_some_cell_has(const std::string& name, const std::string& value,
   if (there.contains(value)) return;
   std::string names;
   for (const auto& each : there) names += (names.empty() ? "'" : ", '") + each + "'";
-  throw Unusable("series: " + name + " has no '" + value + "'; there are " + names);
+  throw Unusable("series: " + name + " has no '" + value + "'; available: " + names);
 }
 
 /// A series that matches nothing would be noticed after the last cell.
@@ -679,7 +679,8 @@ void check(const Definition& definition) {
 void check_extends(const Definition& held, const Definition& definition) {
   if (held.name != definition.name) throw Unusable("it is named " + held.name);
   if (held.repetitions > definition.repetitions)
-    throw Unusable("it has " + std::to_string(held.repetitions) + " repetitions");
+    throw Unusable("it has " + std::to_string(held.repetitions) + " repetitions, the definition " +
+                   std::to_string(definition.repetitions));
   const auto cells = cells_with_answers(definition), before = cells_with_answers(held);
   const auto labels = [](const Cell& cell) {
     Row names;
@@ -695,13 +696,14 @@ void check_extends(const Definition& held, const Definition& definition) {
       std::string what;
       for (const auto& axis : held.axes)
         what += (what.empty() ? "" : ", ") + axis.name + " = " + cell[axis.name];
-      throw Unusable("its cell " + (what.empty() ? "" : what + " ") + "is none of this one");
+      throw Unusable("its cell " + (what.empty() ? "" : what + " ") + "is not in the definition");
     }
   if (held.has_series && (!definition.has_series || held.series != definition.series ||
                           held.series_until != definition.series_until))
     throw Unusable("its series differ");
   for (const auto& measure : held.measures)
-    if (!definition.measures.contains(measure)) throw Unusable("it measures " + measure);
+    if (!definition.measures.contains(measure))
+      throw Unusable("it measures " + measure + ", the definition does not");
 }
 
 DefinitionSize size_of(const Definition& definition) {

@@ -24,7 +24,7 @@ const StudyKind& kind_of(const StudyDefinition& definition) {
     if (kind->name == definition.kind) return *kind;
     names += (names.empty() ? "" : ", ") + std::string(kind->name);
   }
-  throw Unusable(definition.file, "unknown kind '" + definition.kind + "'; there are " + names);
+  throw Unusable(definition.file, "unknown kind '" + definition.kind + "'; available: " + names);
 }
 
 [[noreturn]] void fail(const std::string& file, const toml::node& node, const std::string& what) {
@@ -50,7 +50,7 @@ const StudyParameter& parameter_named(const std::string& key, const StudyParamet
   std::string names;
   for (const auto& each : all) names += (names.empty() ? "" : ", ") + each.name;
   throw Unusable(definition.file, "unknown parameter '" + key + "' of kind " + definition.kind +
-                                      "; there are " + names);
+                                      "; available: " + names);
 }
 
 }  // namespace
@@ -143,7 +143,7 @@ void check_extends(const StudyDefinition& held, const StudyDefinition& definitio
   if (held.name != definition.name) throw Unusable("it is named " + held.name);
   if (held.kind != definition.kind) throw Unusable("it is of kind " + held.kind);
   if (held.repetitions != definition.repetitions || held.parameters != definition.parameters)
-    throw Unusable("a study goes on with the same parameters and repetitions alone");
+    throw Unusable("a study can be continued only with the same parameters and repetitions");
 }
 
 void run_study(const StudyDefinition& definition, const std::filesystem::path& folder,

@@ -68,12 +68,12 @@ void StudyParameter::check(const std::vector<std::string>& values, const std::st
   if (!is_list && values.size() != 1) throw Unusable(file, name + " must be one " + thing);
   // Lists that are empty unless something is written may be written so.
   if (values.empty() && !fallback.empty())
-    throw Unusable(file, name + " must be one " + thing + " at least");
+    throw Unusable(file, name + " needs at least one " + thing);
   for (const auto& text : values) {
     if (type == Type::word) {
       const bool known = names.empty() || (takes_files && text.ends_with(".npy")) ||
                          std::find(names.begin(), names.end(), text) != names.end();
-      if (!known) throw Unusable(file, name + ": no '" + text + "'; there are " + joined(names));
+      if (!known) throw Unusable(file, name + ": no '" + text + "'; available: " + joined(names));
       continue;
     }
     const double value = number_of(text, name, file);

@@ -79,7 +79,7 @@ Settings settings_of(const StudyDefinition& definition) {
                     {}};
   const auto steps = definition.numbers("steps"), degrees = definition.numbers("degrees");
   if (steps.size() != degrees.size())
-    throw Unusable(definition.file, "steps and degrees must be as many");
+    throw Unusable(definition.file, "steps and degrees must have equally many values");
   for (const std::size_t objects : definition.wholes("objects"))
     for (const double room : definition.numbers("rooms"))
       for (const double moving : definition.numbers("moving"))
@@ -88,7 +88,8 @@ Settings settings_of(const StudyDefinition& definition) {
   std::vector<int> threads;
   for (const std::size_t each : definition.wholes("threads")) {
     if (each > 1 && !Threads::available)
-      throw Unusable(definition.file, "threads: there is one, for TBB was not found");
+      throw Unusable(definition.file,
+                     "threads: only 1 is available: TBB was not found when bvlab was built");
     threads.push_back(static_cast<int>(each));
   }
   for (const auto& volume : definition.words("volumes"))
@@ -107,7 +108,7 @@ Settings settings_of(const StudyDefinition& definition) {
   }
   for (const auto& peer : definition.words("peers")) {
     if (!is_world_peer(peer))
-      throw Unusable(definition.file, "peers: no '" + peer + "'; there are " + world_peer_names());
+      throw Unusable(definition.file, "peers: no '" + peer + "'; available: " + world_peer_names());
     settings.contestants.push_back({{}, "", peer, 1});
   }
   return settings;

@@ -14,7 +14,7 @@
 
 namespace bvlab::detail {
 
-/// What is partitioned, of a triangle: its centroid and its index in the mesh (exact in double). A
+/// An item of a partition: a triangle's centroid and its index in the mesh (exact in double). A
 /// centroid is loaded as four numbers, of which the fourth is ignored.
 struct CentroidOf {
   static constexpr bool has_box = false;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Builds a topology top down, by splitting triangles by their centroids along an axis. O(n log n).
-/// Threads share subtrees but not the first splits: the 13 levels over 8000 triangles take two
-/// threads as long as 7 take one. The topology does not depend on the number of threads.
+/// Threads share subtrees but not the first splits: on two threads, the 13 levels over 8000
+/// triangles take as long as 7 levels on one. The topology does not depend on the number of
+/// threads.
 #pragma once
 
 #include <Eigen/Eigenvalues>

@@ -50,8 +50,9 @@ int wide_orientation(const double* a, const double* b, const double* c, int i, i
       .sign();
 }
 
-/// Float64 coordinates as 60-bit integers of one common unit, if they are that (`exact`). Costs a
-/// scaling, a conversion and a comparison each, and holds for most calls that the filter leaves.
+/// Float64 coordinates as 60-bit integers of one common unit; `exact`: whether they can be
+/// represented so. Costs a scaling, a conversion and a comparison each, and holds for most calls
+/// that the filter leaves.
 template <int N>
 struct FixedPoint {
   std::int64_t at[N];

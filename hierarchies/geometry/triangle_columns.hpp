@@ -3,10 +3,11 @@
 /// an array of its own: a register's width of triangles is read without a gather. Blocks of
 /// consecutive triangles have boxes.
 ///
-/// A maximum over many triangles is searched block by block: what is computed by operations that
-/// are monotone, rounding included, in each coordinate p_j or in each |p_j - c_j|, is at most what
-/// they give for the ends of the block's box that are largest in these. If that is no larger than
-/// the maximum so far the block is skipped, and the result is that of a search of all, bit for bit.
+/// The maximum of a value over many triangles is searched block by block. If the value is computed
+/// by operations that are monotone, rounding included, in each coordinate p_j or in each |p_j -
+/// c_j|, then its value at the corner of the block's box where these are largest bounds the block.
+/// A block whose bound does not exceed the maximum so far is skipped. The result is that of a
+/// search of all, bit for bit.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +26,7 @@ class TriangleColumns {
  public:
   using Lanes = stdx::native_simd<double>;
   static constexpr std::size_t width = Lanes::size();
-  /// This many numbers of a column may be read from any triangle on, also beyond the last.
+  /// Columns are padded: this many numbers may be read from any triangle on, also beyond the last.
   static constexpr std::size_t readable = width > 16 ? width : 16;
   /// Triangles in a block.
   static constexpr std::size_t block = 64;

@@ -5,7 +5,7 @@
 /// Stored as K support values bounds[m] >= n_m.x, where n_{2k} is a direction and n_{2k+1} its
 /// opposite. A rotated K-DOP is bounded again in the same directions; how is a policy: Realigned,
 /// the default, or ByCorners. Under either policy, tests are made on plain bounds: Kdop<S, K>. One
-/// N_v is K additions and comparisons.
+/// A test (C_v) takes K additions and comparisons.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,9 @@ struct Kdop {
 
   std::array<S, K> bounds;
 
-  static Kdop enclosing(std::span<const Vec3<double>> points) requires(!Batched<S>) {
+  static Kdop enclosing(std::span<const Vec3<double>> points)
+    requires(!Batched<S>)
+  {
     std::array<double, K> most;
     most.fill(-std::numeric_limits<double>::infinity());
     for (const auto& p : points)

@@ -5,8 +5,8 @@
 ///
 /// Vertices are enumerated once, when a volume is fitted (kdop_vertices.hpp). Posing rotates the
 /// directions instead of the vertices, so that one vertex is projected on all of them in SIMD
-/// lanes. One N_u is 3 K/2 multiplications and 4 K/2 additions and comparisons for each vertex, of
-/// which there are at most 2K - 4; a volume takes K + 3(2K - 4) + 2 numbers.
+/// lanes. Posing (C_u) takes 3 K/2 multiplications and 4 K/2 additions and comparisons for each
+/// vertex, of which there are at most 2K - 4; a volume takes K + 3(2K - 4) + 2 numbers.
 #pragma once
 
 #include <algorithm>
@@ -126,7 +126,7 @@ Kdop<S, K, ByCorners> merge(const Kdop<S, K, ByCorners>& a, const Kdop<S, K, ByC
   return Kdop<S, K, ByCorners>::around(merge(Kdop<S, K>{a.bounds}, Kdop<S, K>{b.bounds}).bounds);
 }
 
-/// One N_u, computed in batches of directions.
+/// Posed (one N_u), computed in batches of directions.
 template <class S, int K>
   requires(!Batched<S>)
 Kdop<S, K> posed(const Kdop<S, K, ByCorners>& volume, const RotatedDirections<S, K>& pose) {

@@ -109,7 +109,7 @@ struct Realignment {
 };
 
 /// The policy that bounds a rotated K-DOP again by one dual basis per direction, see Realignment.
-/// One N_u is 3K multiplications and as many additions.
+/// Posing (C_u) takes 3K multiplications and as many additions.
 struct Realigned {
   template <class T, int K>
   using placement = Realignment<T, K>;

@@ -13,7 +13,7 @@
 ///   of the float64 check, and rounds:
 ///   7e an axis (see Placement), 12.2e the matrix, 25e its product.
 ///
-/// One N_u is 33 multiplications and additions, one N_v about 200.
+/// Posing (C_u) takes 33 multiplications and additions, a test (C_v) about 200.
 #pragma once
 
 #include <array>

@@ -4,7 +4,8 @@
 /// edges: the usual choice for distance queries.
 ///
 /// The set is defined by the sides exactly as stored; correctness does not need them orthonormal,
-/// only tightness does. One N_u is 33 multiplications and additions, one N_v about 150.
+/// only tightness does. Posing (C_u) takes 33 multiplications and additions, a test (C_v) about
+/// 150.
 #pragma once
 
 #include <algorithm>
@@ -34,29 +35,35 @@ struct Rss {
   std::array<S, 2> half;
   S radius;
 
-  static Rss enclosing(std::span<const Vec3<double>> points) requires(!Batched<S>) {
+  static Rss enclosing(std::span<const Vec3<double>> points)
+    requires(!Batched<S>)
+  {
     return along(principal_axes(points), points);
   }
-  static Rss enclosing(std::span<const Vec3<double>> points,
-                       std::span<const Triangle> triangles) requires(!Batched<S>) {
+  static Rss enclosing(std::span<const Vec3<double>> points, std::span<const Triangle> triangles)
+    requires(!Batched<S>)
+  {
     return along(principal_axes(points, triangles), points);
   }
-  /// The volume around the points with the least surface found from the principal axes on: four to
-  /// five times as expensive to fit.
-  static Rss tight(std::span<const Vec3<double>> points,
-                   std::span<const Triangle> triangles) requires(!Batched<S>) {
+  /// The volume around the points with the least surface that a search from the principal axes
+  /// finds: four to five times as expensive to fit.
+  static Rss tight(std::span<const Vec3<double>> points, std::span<const Triangle> triangles)
+    requires(!Batched<S>)
+  {
     return of(tight_swept_rectangle(principal_axes(points, triangles), points), points);
   }
 
   /// The volume with its rectangle in the plane of the first two directions (orthonormal rows).
-  static Rss along(const Mat3<double>& directions,
-                   std::span<const Vec3<double>> points) requires(!Batched<S>) {
+  static Rss along(const Mat3<double>& directions, std::span<const Vec3<double>> points)
+    requires(!Batched<S>)
+  {
     return of(swept_rectangle(directions, points), points);
   }
 
   /// The rounded rectangle, with the radius that the points then need.
-  static Rss of(const SweptRectangle& rectangle,
-                std::span<const Vec3<double>> points) requires(!Batched<S>) {
+  static Rss of(const SweptRectangle& rectangle, std::span<const Vec3<double>> points)
+    requires(!Batched<S>)
+  {
     Rss rss;
     rss.centre = rounded<S>(rectangle.centre());
     for (int k = 0; k < 2; ++k) {
@@ -71,7 +78,9 @@ struct Rss {
   /// A bound on the farthest point's distance from the stored rectangle: the distance to any point
   /// of the rectangle is one. Sums and squares take fewer than ten roundings, each less than u of
   /// the lengths in the sum.
-  static S radius_for(const Rss& rss, std::span<const Vec3<double>> points) requires(!Batched<S>) {
+  static S radius_for(const Rss& rss, std::span<const Vec3<double>> points)
+    requires(!Batched<S>)
+  {
     constexpr double u = unit_roundoff<double>;
     const Vec3<double> centre = rss.centre.template cast<double>();
     double radius = 0, farthest = 0;

@@ -2,9 +2,9 @@
 /// A spherical shell: all points between an inner and an outer radius from the centre, within an
 /// angle of the axis (krishnan1998spherical). It stays thin on curved surfaces, unlike any box.
 ///
-/// The shell is the set of points centre + y with inner <= |y| <= outer and
-/// y.axis >= cosine |y| |axis|; all directions where the cosine is not positive. The axis is of
-/// unit length up to 16e. One N_u is about 40 operations, one N_v about 250.
+/// The shell is the set of points centre + y with inner <= |y| <= outer and y.axis >= cosine |y|
+/// |axis|; all directions where the cosine is not positive. The axis is of unit length up to 16e.
+/// Posing (C_u) takes about 40 operations, a test (C_v) about 250.
 #pragma once
 
 #include <algorithm>
@@ -205,7 +205,7 @@ namespace detail {
 
 /// A shell seen along a direction that is given by the cosine and sine of its angle with the axis:
 /// the cosines of the angles between that direction and the nearest and the farthest direction in
-/// the shell's cone.
+/// the shell's cone. Below, f is the angle to the axis and t the cone's half angle.
 ///
 /// Given values off by 24e (16e for the axis' length, 8e for the rest) the sums are off by 28e.
 /// Where f passes t on the wrong side of the comparison, the cosines differ by 24e at most, and so
@@ -227,9 +227,10 @@ struct ShellAngles {
 
 /// A lower bound on the distance of two shells; 0 where they may overlap. The largest of these
 /// bounds, each of which holds by itself:
-/// - the points of one shell are at distances from the other's centre that miss what the other
-///   spans: from a point p at distance d from the centre, at angle f from the axis, a shell of half
-///   angle t is no nearer than |r, c| = sqrt(r^2 + d^2 + 2 r d c) with c = cos min(pi, f + t) and
+/// - the distances of one shell's points from the other's centre form an interval; where it misses
+///   the interval between the other's radii, the shells are as far apart as the intervals: from a
+///   point p at distance d from the centre, at angle f from the axis, a shell of half angle t is
+///   no nearer than |r, c| = sqrt(r^2 + d^2 + 2 r d c) with c = cos min(pi, f + t) and
 ///   r = -d c clamped to the radii, and no farther than the larger |r, c| of both radii with
 ///   c = cos max(0, f - t), f being measured from p through the centre;
 /// - along a unit vector n a shell ends at n.centre + c (outer or, where c < 0, inner), with

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Fits slab-boxes to ranges of triangles in columns, a register of them at a time: the same
-/// operations as SlabBox::enclosing, and so the same boxes, but that the normals of a very large
-/// range are summed block by block. There only the sums' rounding differs, and the slab is measured
-/// for the direction that results.
+/// operations as SlabBox::enclosing, and so the same boxes, except in a very large range. There
+/// normals are summed block by block and round differently, and the slab is measured for the
+/// direction that results.
 ///
 /// In a large range the slab is measured block by block (triangle_columns.hpp): n.(p - c), as
 /// computed, is monotone in each coordinate of p, and |p - c|_1 in each |p_j - c_j|.

@@ -9,8 +9,8 @@
 ///   gaps(one, ...)              a lower bound on its distance to each lane
 ///   separation(one, ...)        optional and cheaper: the same, negative where they may overlap
 ///
-/// A volume whose posed form has its own type gets all of this from `posed` (PosedSiblingTest). A
-/// volume with a better test declares a `sibling_test` of its own.
+/// A volume V whose posed form is again a V gets the required members from `posed`
+/// (PosedSiblingTest). A volume with a better test declares a `sibling_test` of its own.
 #pragma once
 
 #include <type_traits>
@@ -21,13 +21,14 @@
 
 namespace bvlab {
 
+/// For each lane, whether it is disjoint, and its order: the least is tested first.
 template <Scalar S>
 struct OverlapLanes {
   Mask<S> apart;
   S order;
 };
 
-/// The same, with gaps instead of a mask.
+/// For each lane, a lower bound on its distance, and its order as in OverlapLanes.
 template <Scalar S>
 struct GapLanes {
   S gap, order;
@@ -60,7 +61,7 @@ template <Scalar S, class P>
 
 }  // namespace detail
 
-/// The default sibling test, for volumes whose posed form has their own type.
+/// The default sibling test, for volumes V whose posed form is again a V.
 template <class V>
 struct PosedSiblingTest {
   using T = typename V::scalar;

@@ -129,7 +129,7 @@ class SupportMap {
     const std::size_t blocks = points_[0].size() / block;
     const auto end = bounds.begin() + static_cast<std::ptrdiff_t>(blocks);
     auto best = static_cast<std::size_t>(std::max_element(bounds.begin(), end) - bounds.begin());
-    // The first block that has a highest point: others cannot have a higher one.
+    // The block with the highest bound is searched first, then those whose bound is not lower.
     double most = highest(g, best);
     for (std::size_t b = 0; b < blocks; ++b)
       if (bounds[b] > most || (bounds[b] == most && b < best))

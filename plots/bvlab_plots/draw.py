@@ -32,7 +32,7 @@ def formats_of(text):
     formats = [each.strip() for each in text.split(",")]
     for each in formats:
         if each not in OUTPUTS:
-            raise Refused(f"--formats: no '{each}'; there are {', '.join(OUTPUTS)}")
+            raise Refused(f"--formats: no '{each}'; available: {', '.join(OUTPUTS)}")
     return formats
 
 

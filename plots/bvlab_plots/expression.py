@@ -34,7 +34,7 @@ class Expression:
         """`names`: whether a column of names may stand there, and a name."""
         if isinstance(node, ast.Name):
             if node.id not in rows:
-                raise Refused(f"'{self.text}': no column '{node.id}'; there are {', '.join(self.units)}")
+                raise Refused(f"'{self.text}': no column '{node.id}'; available: {', '.join(self.units)}")
             if not pd.api.types.is_numeric_dtype(rows[node.id]) and node is not self.tree and not names:
                 blank = rows[node.id].eq("").all()
                 raise Refused(f"'{self.text}': column '{node.id}' " +

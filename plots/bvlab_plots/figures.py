@@ -58,7 +58,7 @@ def figure_from(table):
     """One [[figure]] table, or what the command line says. `bvlab run` refuses the same."""
     unknown = set(table) - set(Figure.__dataclass_fields__)
     if unknown:
-        raise Refused(f"figure: unknown key '{min(unknown)}'; there are {', '.join(Figure.__dataclass_fields__)}")
+        raise Refused(f"figure: unknown key '{min(unknown)}'; available: {', '.join(Figure.__dataclass_fields__)}")
     for key, value in table.items():
         strings = value if key == "where" and isinstance(value, list) else [value]
         if (key == "where") != isinstance(value, list) or not all(isinstance(each, str) for each in strings):
@@ -71,7 +71,7 @@ def figure_from(table):
         raise Refused(f"figure {figure.name}: a name without '/'")
     for key, allowed in CHOICES.items():
         if getattr(figure, key) and getattr(figure, key) not in allowed:
-            raise Refused(f"figure {figure.name}: unknown {key} '{getattr(figure, key)}'; there are "
+            raise Refused(f"figure {figure.name}: unknown {key} '{getattr(figure, key)}'; available: "
                           + ", ".join(allowed))
     if figure.kind in ("map", "scatter") and not figure.y:
         raise Refused(f"figure {figure.name}: a {figure.kind} needs a y")

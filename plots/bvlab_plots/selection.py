@@ -22,7 +22,7 @@ def columns_of(rows, text, what):
     names = [name.strip() for name in text.split(",")] if text else []
     for name in names:
         if name not in rows:
-            raise Refused(f"{what}: no column '{name}'; there are {', '.join(rows.attrs['units'])}")
+            raise Refused(f"{what}: no column '{name}'; available: {', '.join(rows.attrs['units'])}")
     return names
 
 
@@ -38,7 +38,7 @@ def has_value(rows, column, text, what):
             found = pd.Series(False, rows.index)
     if not np.any(found):
         there = dict.fromkeys(value if isinstance(value, str) else f"{value:g}" for value in values)
-        raise Refused(f"{what}: {column} has no '{text.strip()}'; there are {', '.join(map(repr, there))}")
+        raise Refused(f"{what}: {column} has no '{text.strip()}'; available: {', '.join(map(repr, there))}")
     return pd.Series(found, rows.index)
 
 

@@ -21,7 +21,8 @@ class PatientFront : public Front {
   /// How far the bodies have moved in all.
   void move(double displacement) { displacement_ = displacement; }
 
-  /// What rests is farther apart than what the query asks for.
+  /// Tests the entries that may be within the query's limit; the others are known to be farther
+  /// apart.
   template <class Traversal>
   bool sweep(Traversal& traversal) {
     auto& due = traversal.workspace().template scratch<std::vector<std::size_t>>();

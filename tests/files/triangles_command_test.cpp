@@ -120,7 +120,7 @@ TEST_F(TrianglesCommand, EachFaultIsNamed) {
   expect_refused("--pairs " + pairs + rest, pairs + ": holds '<f4' where '<f8' is needed");
   write("pairs.npy", 1, 18, std::vector<double>(18));
   expect_refused("--pairs " + pairs + rest + " --precision float16",
-                 "--precision: unknown name 'float16'; there are exact, float64, float32");
+                 "--precision: unknown name 'float16'; available: exact, float64, float32");
   fs::resize_file(pairs, fs::file_size(pairs) - 1);
   expect_refused("--pairs " + pairs + rest, pairs + ": truncated: holds 17 of 18 values");
 }

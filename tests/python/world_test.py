@@ -43,7 +43,7 @@ class Worlds(unittest.TestCase):
                 try:
                     world = bvlab.World(self.meshes, objects=7, **options)
                 except ValueError as fault:
-                    self.assertRegex(str(fault), "unknown; there are")
+                    self.assertRegex(str(fault), "unknown; available")
                     continue
                 for frame, poses in enumerate(self.poses):
                     for i in range(7):

@@ -118,7 +118,7 @@ TEST(FormulaMesh, FaultsAreNamed) {
   } catch (const Unusable& error) {
     EXPECT_STREQ(
         error.what(),
-        "no mesh 'teapot'; there are icosphere, torus, ring, knot, bumpy-sphere, box, star");
+        "no mesh 'teapot'; available: icosphere, torus, ring, knot, bumpy-sphere, box, star");
   }
 }
 

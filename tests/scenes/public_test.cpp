@@ -169,7 +169,7 @@ TEST(Public, WhatIsAbsentOrAnotherFileIsRefusedInALine) {
   EXPECT_NE(refused().find("its SHA-256 is another"), std::string::npos);
   EXPECT_NE(what_is_refused([] {
               require_public_scene("public:nothing");
-            }).find("no scene 'public:nothing'; there are public:alpha-1.1"),
+            }).find("no scene 'public:nothing'; available: public:alpha-1.1"),
             std::string::npos);
   std::filesystem::remove_all(folder);
 }

@@ -226,8 +226,8 @@ TEST(RandomWalk, FaultsAreNamed) {
     return refusal(walk);
   };
   EXPECT_EQ(with([](auto&) {}), "");
-  EXPECT_EQ(with([](auto& w) { w.freedoms = "two"; }), "freedoms 'two': there are one, all");
-  EXPECT_EQ(with([](auto& w) { w.contact = "x"; }), "contact 'x': there are pass, reject");
+  EXPECT_EQ(with([](auto& w) { w.freedoms = "two"; }), "freedoms 'two'; available: one, all");
+  EXPECT_EQ(with([](auto& w) { w.contact = "x"; }), "contact 'x'; available: pass, reject");
   EXPECT_EQ(with([](auto& w) { w.moving = 6; }), "moving: 6 of 5 bodies");
   EXPECT_EQ(with([](auto& w) { w.degrees = std::nan(""); }), "degrees: must be 0 to 180");
   EXPECT_EQ(with([](auto& w) { w.persistence = 1.5; }), "persistence: must be 0 to 1");

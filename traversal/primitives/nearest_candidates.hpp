@@ -37,8 +37,8 @@ T dot(const Vector<T>& u, const Vector<T>& v) {
   return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
-/// Whether float64 is reliable on where, or whether, a candidate exists. `parallel`: two edges, or
-/// a face's own, at an angle below 2^-48. Then an end or another edge is as near up to second
+/// Whether float64 can tell whether a candidate exists, and where it lies. `parallel`: two edges,
+/// or a face's own, at an angle below 2^-48. Then an end or another edge is as near up to second
 /// order, (2^-48 L)^2 / 2d, which matters only where d is much smaller than L. `open`: an angle
 /// below 2^-20, or points so near the limits of the candidate that rounding may have put them
 /// outside, and that would matter.

@@ -20,7 +20,8 @@
 ///
 /// Range: `apart` is for pairs in which no number is above 2^100 and L is not below 2^-100. What
 /// underflows is then an edge, or a difference, too short by 2^-300 to matter beside 2^-90 L; all
-/// other pairs are moved and scaled there first, without error as far as that matters.
+/// other pairs are first translated and scaled into that range, with an error that is negligible
+/// beside the bound above.
 #pragma once
 
 #include <algorithm>

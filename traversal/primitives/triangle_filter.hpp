@@ -6,18 +6,18 @@
 /// one error bound, computed once per pair from the box of all six corners, serves them all.
 ///
 /// The bound. Let W_x, W_y, W_z be the sides of that box, u the unit roundoff, and D_x the largest
-/// error of a computed difference of x coordinates: u W_x for its own rounding, and 2 u M_x
-/// more where the corners themselves were rounded to S first (M_x their largest |x|).
-/// A determinant is the sum of six products of a difference along each axis. Errors of differences
-/// change it by at most 6 (D_x W_y W_z + W_x D_y W_z + W_x W_y D_z) to first order. On its way to
-/// the result each product is rounded at most five times (twice multiplied, thrice added):
-/// 6 * 5 u W_x W_y W_z. Without rounded corners that is 48 u W_x W_y W_z. The factors of 49 / 48,
-/// and of 1 + 64 u, below cover the terms of higher order, the roundings of W and of the bound
-/// itself. Underflow: a product is off by at most half the least positive number, h; the six of the
-/// minors are then multiplied by at most W; so do the products in the bound itself: 32 h max(W, 1)
-/// is more than their sum. Overflow: nothing is certain unless every W is below a reach R with 6
-/// R^3 still finite. A corner beyond S is infinite when it has been rounded: then the bound is
-/// infinite or NaN, and only boxes decide, since rounding keeps order.
+/// error of a computed difference of x coordinates: u W_x for its own rounding, and 2 u M_x more
+/// where the corners themselves were rounded to S first (M_x their largest |x|). A determinant is
+/// the sum of six products of a difference along each axis. Errors of differences change it by at
+/// most 6 (D_x W_y W_z + W_x D_y W_z + W_x W_y D_z) to first order. On its way to the result each
+/// product is rounded at most five times (twice multiplied, thrice added): 6 * 5 u W_x W_y W_z.
+/// Without rounded corners that is 48 u W_x W_y W_z. The factors of 49 / 48, and of 1 + 64 u, below
+/// cover the terms of higher order, the roundings of W and of the bound itself. Underflow: a
+/// product is off by at most half the least positive number, h; those of the six products in the
+/// minors are then multiplied by at most W, and the products in the bound itself err likewise. All
+/// together are below 32 h max(W, 1). Overflow: nothing is certain unless every W is below a reach
+/// R with 6 R^3 still finite. A corner beyond S is infinite when it has been rounded: then the
+/// bound is infinite or NaN, and only boxes decide, since rounding keeps order.
 #pragma once
 
 #include <array>

@@ -32,9 +32,9 @@
 /// the rounded corners and for the roots and quotients, which are off by a factor of 1 - 8u. What
 /// divides has a square above 2^-40, so that it is a normal number and known to a few hundred u.
 ///
-/// Range: the largest coordinate is a normal number from 2^-959 to 2^957 before it is scaled, of
-/// which the rest is a fraction; what of that underflows, in double or in float, is below 2^-149,
-/// and a margin is above 8u. Other pairs have no margin, and are decided exactly.
+/// Range: the largest coordinate is a normal number from 2^-959 to 2^957 before it is scaled, and
+/// all others are at most as large; what of them underflows, in double or in float, is below
+/// 2^-149, and a margin is above 8u. Other pairs have no margin, and are decided exactly.
 #pragma once
 
 #include <bit>

@@ -2,11 +2,12 @@
 /// Chooses per pair what is expected to be cheapest: recursion (descending both nodes of a pair at
 /// once), a separation list, or margins.
 ///
-/// Costs are counted, not timed, so that runs repeat: volume tests and triangle tests, each at its
-/// price in that way (adaptive_prices.hpp). Each way keeps a balance of its cost minus that of the
-/// alternative. It is given up when it has lost as much as a return to it would cost, and tried
-/// again once 32 times that has been spent, or when the step has halved. So failed trials cost one
-/// part in thirty-two. What the other ways would cost is mostly known without a trial:
+/// Costs are counted, not timed, so that runs repeat: volume tests and triangle tests, each at a
+/// price that depends on which of the three is in use (adaptive_prices.hpp). Each keeps a balance
+/// of its cost minus that of the alternative. A list is given up when it has lost as much as three
+/// rebuilds cost; margins, when they have lost two tests of all entries. Either is tried again once
+/// 32 times its last loss has been spent, or when the step has halved, so failed trials add about a
+/// thirty-second. What the alternatives would cost is mostly known without a trial:
 ///
 /// - A rebuild of a list costs what a recursion costs.
 /// - Margins start from a list's entries, at one test each, not from the roots. The gaps found
@@ -82,9 +83,10 @@ class Adaptive : public AdaptivePrices {
     return !in_batches_;
   }
 
-  /// Measures the bodies' last step; one so large that nothing can be reused ends the way in use.
-  /// As it costs as much as some tests, unless margins need it anyway only two successive runs of
-  /// eight do it: the same ones for all pairs of bodies that move together.
+  /// Measures how far the bodies have moved since the last run; where that is too far for anything
+  /// to be reused, the list is given up. Measuring costs as much as a few tests. Unless margins
+  /// need it, only two of eight successive runs do it, the same two for all pairs of bodies that
+  /// move together.
   template <class Pair>
   void follow(const Pair& pair) {
     MovingBody &a = pair.a(), &b = pair.b();
@@ -96,7 +98,7 @@ class Adaptive : public AdaptivePrices {
     const double displacement = a.displacement_bound() + b.displacement_bound();
     if (leaf_ == 0) {
       leaf_ = (leaf_size(a.extent()) + leaf_size(b.extent())) / 2;
-      // Not less than a mean of both bodies' moves, some of which are net of several.
+      // At least the mean displacement per move of both bodies; a move may combine several frames.
       step_ =
           std::max(leaf_, a.displacement_bound() / a.epoch() + b.displacement_bound() / b.epoch());
     } else if ((watched_ || unseen_ == 0) && displacement != displacement_) {
@@ -276,11 +278,11 @@ class Adaptive : public AdaptivePrices {
   // Members that every run reads are next to each other.
   Use use_ = Use::roots;
   bool in_batches_ = false;
-  bool watched_ = false;                // there are margins, of all entries or of the witness
-  bool rebuild_due_ = false;            // the list is due for a rebuild
-  bool everything_ = true;              // the list's last run was complete
-  int unseen_ = 0;                      // runs since the bodies were followed
-  int swept_ = 0;                       // complete runs of the list since its rebuild
+  bool watched_ = false;      // there are margins, of all entries or of the witness
+  bool rebuild_due_ = false;  // the list is due for a rebuild
+  bool everything_ = true;    // the list's last run was complete
+  int unseen_ = 0;            // runs since the bodies were followed
+  int swept_ = 0;             // complete runs of the list since its rebuild
   double cost_before_retry_ = 0, failed_at_ = 0;  // to spend before the next trial; step at failure
   double displacement_ = 0, step_ = 0;            // bound of both bodies; motion in the last run
   SphereTest spheres_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The prices of tests in each of `Adaptive`'s three ways, and the thresholds for changing ways.
+/// The prices of tests for each of `Adaptive`'s three alternatives (recursion, list, margins), and
+/// the thresholds for changing between them.
 #pragma once
 
 #include <cmath>
@@ -15,8 +16,7 @@ class AdaptivePrices {
   /// Prices in nanoseconds: of a run, of a volume test (with its posing) and of a triangle test,
   /// from least squares over replays of all volumes; of a first test with margins and of a first
   /// batch of triangles, from single pairs of bodies. Spheres cost two thirds of this, rectangle
-  /// swept spheres half as much again, in each of the three ways. Only the ratios between the ways
-  /// matter here.
+  /// swept spheres half as much again, in all three. Only the ratios between the three matter here.
   struct Prices {
     double run, volumes, triangles, first_test, batch;
   };
@@ -32,19 +32,21 @@ class AdaptivePrices {
   static constexpr double both_over_rebuild = 0.85;
   /// Motion per frame in sizes of leaves. Above `jump` no part of a front can be reused, and lists
   /// are not tried (record coherence). Below `small` margins are tried: gaps are about half a leaf
-  /// wide, so after steps of m leaves an entry is due in 2m of the runs. With two triangles to
-  /// three volumes it then costs three times what it costs a list: that pays up to m = 0.15.
+  /// wide, so after steps of m leaves an entry is due in 2m of the runs. A due entry, with two
+  /// triangle tests per three volume tests, costs three times as much as an entry of a list:
+  /// margins pay up to m = 0.15.
   static constexpr double jump = 4, small = 0.15;
-  /// The share of the expected entries that are really due: bodies that wander return, and depart
-  /// from half of what they pass.
+  /// The share of the entries predicted to be due that are due: a wandering body moves away from
+  /// half of what it passes.
   static constexpr double toward = 0.5;
-  /// Chosen, as is `patience`: larger values lose more in failed trials, smaller give up too early.
+  /// The rebuilds that a list may lose. Set by hand, as are the next two: larger values lose more
+  /// in failed trials, smaller ones give up too early.
   static constexpr double recursions_to_lose = 3;
-  /// In tests of all entries of a front with margins: that of a rebuild, which is no loss if it
-  /// lasts, and one more. Chosen, too.
+  /// The tests of all its entries that a front with margins may lose: one for the rebuild, which is
+  /// no loss if the front lasts, and one more.
   static constexpr double tests_to_lose = 2;
-  /// A failed trial, and the rebuild of a list that remains long because bodies part, may cost at
-  /// most one part in this many.
+  /// A failed trial may cost at most 1 / patience of the runs that follow it. A list that remains
+  /// long because the bodies part is rebuilt after at most `patience` complete runs.
   static constexpr double patience = 32;
 
   /// The size of a leaf, in units of the mesh, for leaves about as wide as long.

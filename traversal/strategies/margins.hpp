@@ -7,9 +7,9 @@
 /// two children with wide gaps cost less than a parent with a narrow one (MarginSweep::opens).
 ///
 /// Motion is bounded between reference poses rather than along the path (see
-/// relative_motion_bound.hpp), so a body that jitters about a pose is nearly free. What was
-/// measured at a distance r + d counts 2d less than at r: once d passes four times the last motion,
-/// the reference poses are moved up.
+/// relative_motion_bound.hpp), so a body that jitters about a pose is nearly free. A gap that is
+/// measured when the bodies are d away from their reference poses loses up to 2d. Once d exceeds
+/// four times the last motion, the current poses become the reference poses.
 ///
 /// The front is rebuilt from the roots by the rule for replacing a machine whose upkeep rises: when
 /// a run (smoothed) costs more than the mean since the last rebuild, including the rebuild. This
@@ -116,8 +116,8 @@ class Margins {
   const MarginFront& front() const { return front_; }
 
  private:
-  static constexpr double stretch = 4;    // steps over which motion is measured
-  static constexpr double triangles = 4;  // cost of a pair of triangles in pairs of volumes
+  static constexpr double stretch = 4;      // steps over which motion is measured
+  static constexpr double triangles = 4;    // cost of a pair of triangles in pairs of volumes
   static constexpr double farthest = 1024;  // radii after which the clock is set back
 
   /// Follows the bodies. If nothing can have changed, answers the query and returns true.

@@ -35,9 +35,9 @@ struct Recursive : detail::FromTheRoots<NoFront> {
   static constexpr std::string_view description = "from the roots in every run";
 };
 
-/// The same, but a pair of inner nodes is replaced by the four pairs of their children. With
-/// batches that is better: half as many steps that wait for each other, and where most overlapping
-/// pairs have overlapping children, up to a third fewer tests ((4n - 1) / 3 for n leaves).
+/// Opens both nodes of a pair at once (NoFrontBoth). With batches that is better: half as many
+/// steps wait for each other, and on binary trees where most overlapping pairs have overlapping
+/// children, up to a third fewer tests are made ((4n - 1) / 3 for n leaves).
 struct RecursiveBoth : detail::FromTheRoots<NoFrontBoth> {
   static constexpr std::string_view name = "recursive-both";
   static constexpr std::string_view description =

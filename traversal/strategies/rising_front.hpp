@@ -3,10 +3,10 @@
 /// by that pair where it is apart (ehmann2001accurate).
 ///
 /// Law: whatever is raised, the front remains a partition into pairs that recursion makes.
-/// Recursion makes a pair in one way only: larger nodes are descended before smaller ones, and a
-/// child that is larger than its parent right after it. So of the two parents the one descended
-/// last is the one with the smaller `least` (Hierarchy::Above). The siblings of an entry are the
-/// pairs with the other children of that parent; a table finds their slots.
+/// Recursion reaches a pair in one way only: it descends the larger node first, and a child that is
+/// larger than its parent is descended next. So the last descent was at the parent with the smaller
+/// `least` (Hierarchy::Above). The siblings of an entry are the pairs with the other children of
+/// that parent; a table finds their slots.
 ///
 /// Siblings that are all in the front are proposed in the run after the last of them was added, and
 /// after j failures in the next run whose number is divisible by 2^j, j up to `most_failures`. A

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The test of triangles where all hits are sought, in two phases. First a triangle of a against a
-/// leaf of b (or four against four), by boxes and by the plane of that of a, in forty operations: a
-/// lane in ten is left. The pairs left by many leaves are packed side by side, and the filter of
-/// triangles tests full registers of them. N_p counts the lanes of the first phase.
+/// The triangle test of contact queries, in two phases. The first tests a triangle of a against a
+/// leaf of b (or four against four): their boxes, then b's corners against the plane of a's
+/// triangle. It takes forty operations and leaves one lane in ten. The second packs what many
+/// leaves have left, and the filter of triangles tests full registers. N_p counts the lanes of the
+/// first phase.
 ///
 /// Rounding in the first phase. Let d be CornerTransform::error_bound. Coordinates of a's corners
 /// have errors below d > 16 e (r_a + |t|) + 2 e r_b, with r the reaches and e the unit roundoff, so

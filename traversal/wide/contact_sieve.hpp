@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The first phase of the test of triangles where all hits are sought (contact_batch.hpp), of the
-/// pairs that the steps of a kernel have left.
+/// Runs the first phase of the triangle test of contact queries (contact_batch.hpp) on the pairs of
+/// leaves that the steps of a kernel have found near.
 #pragma once
 
 #include <array>

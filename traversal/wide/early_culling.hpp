@@ -43,8 +43,8 @@ class PairSieve {
   void sift(Decides&& decides) {
     sift_deferred([&](std::size_t p) { put(static_cast<std::int32_t>(p), !decides(p)); });
   }
-  /// Calls `take(pair)` for each undecided pair. `take` may delay pairs before it calls `put` for
-  /// them, in any order; they are written behind the pair that is read.
+  /// Calls `take(pair)` for each undecided pair. `take` may call `put` for a pair later, and in any
+  /// order: results overwrite only pairs that have been read.
   template <class Take>
   void sift_deferred(Take&& take) {
     const std::size_t count = std::exchange(undecided_count_, 0);

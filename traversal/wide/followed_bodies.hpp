@@ -40,10 +40,11 @@ class FollowedBodies {
   /// Body i has not moved since the last frame.
   void rest(std::size_t i) { steps_[i] = 0; }
 
-  /// The displacement bounds of both bodies, summed; by how much that has grown since the last
-  /// frame; and the same sum of the rotation bounds.
+  /// The displacement bounds of both bodies, summed.
   double displacement(const ObjectPair& pair) const { return sum(displacements_, pair); }
+  /// By how much that sum has grown since the last frame.
   double step(const ObjectPair& pair) const { return sum(steps_, pair); }
+  /// The rotation bounds of both bodies, summed.
   double rotation(const ObjectPair& pair) const { return sum(rotations_, pair); }
   /// Changes whenever one of the bodies moves.
   std::uint32_t epochs(const ObjectPair& pair) const { return sum(epochs_, pair); }

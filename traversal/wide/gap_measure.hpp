@@ -162,10 +162,11 @@ class GapMeasure {
   void record_touching(const NodePair& pair) { touched_ = pair; }
   void record_crossing(const Crossing& found) { crossing_ = found; }
 
-  /// Whether a front was kept; whether the traversal started from it, and how many of its entries
-  /// were due.
+  /// Whether a front was kept.
   bool keeps_front() const { return start_.front; }
+  /// Whether the traversal started from the front.
   bool sweeps() const { return sweeps_; }
+  /// How many entries of the front were due.
   std::size_t due() const { return due_; }
   const std::optional<Crossing>& crossing() const { return crossing_; }
   /// The pair whose triangles touched, or may have.

@@ -15,7 +15,7 @@ struct PairAnswer {
   static constexpr double unknown = -1;
 
   double until = unknown;    ///< valid while displacements sum to less; negative: none is known
-  std::uint32_t epochs = 0;  ///< sum of both bodies': a whole answer holds while it is the same
+  std::uint32_t epochs = 0;  ///< sum of both bodies' epochs then; the same until one moves
   bool touching = false;
 };
 /// All else that is kept, read where the answer's deadline has passed.
@@ -27,7 +27,8 @@ struct KeptOfPair {
   WideFront front;
   FrontPause pause;
   std::optional<Crossing> crossing;
-  int rest = 0, next_rest = 1;  // traversals to come whose crossing is not kept; of the next time
+  int rest = 0;       ///< traversals left in which no crossing is kept
+  int next_rest = 1;  ///< the length of the next such pause
   bool was_apart = false, touched_twice = false;
 };
 

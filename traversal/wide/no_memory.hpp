@@ -4,7 +4,7 @@
 /// A memory keeps state of pairs of bodies from frame to frame. WidePairs calls
 ///   add_body(sphere, reach), resize(pairs)  for the bodies and the number of pairs
 ///   forget(pair)                            when a pair parts
-///   begin_frame<Query>()                    another query than before starts without memory
+///   begin_frame<Query>()                    begins a frame; forgets all if the query differs
 ///   move(i, body, pose, culling, origin)    body i is at `pose`
 ///   rest(i)                                 body i does not move
 ///   front_size(pair), front_size()          entries of the front of one pair, of all
@@ -88,7 +88,7 @@ class NoMemory {
   }
 
  private:
-  /// Queries whose one-bit answer is what to expect next.
+  /// Queries answered by yes or no: the last answer is the one to expect next.
   template <class Query>
   static constexpr bool AnswersTouching = requires(Query query) { query.touching(); };
 

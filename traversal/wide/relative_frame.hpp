@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Two bodies tested in each other's frames: volumes stay in the frames of their meshes, and one
-/// node at a time is posed into the frame of the other body. Only the relative pose is cached.
+/// node at a time is posed into the frame of the other body. No posed volume is kept; the relative
+/// pose is formed once per traversal.
 #pragma once
 
 #include <algorithm>
@@ -53,7 +54,8 @@ class CornerTransform {
  public:
   using Four = Batch<float, 4>;
 
-  /// Corners are rounded (e r), as are rotation and translation; three products and sums follow.
+  /// Prepares the transform and its error bound: corners are rounded (e r), as are rotation and
+  /// translation; three products and sums follow.
   void begin(const RelativePose& a_from_b, double reach_a, double reach_b) {
     constexpr double e = unit_roundoff<float>;
     error_bound_ = static_cast<float>((16 * e * (reach_a + a_from_b.length) + 2 * e * reach_b +

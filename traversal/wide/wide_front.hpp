@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The front of two wide trees. Its entries: every step of the traversal that found volumes apart,
-/// with the opened lanes, the gap of the others and the sphere at which it was measured; and every
-/// triangle tested against a leaf, likewise once its gap has been measured.
+/// The front of two wide trees. Its entries: every step of the traversal, with the lanes it opened,
+/// the least gap of the others and the sphere at which it was measured; and every triangle tested
+/// against a leaf, likewise once its gap has been measured.
 ///
 /// Law: every pair of triangles lies below an unopened lane of exactly one entry, or in one entry
 /// of triangles.
@@ -17,14 +17,15 @@
 /// -M'^-1 (T'y - Ty), and the inverse rotations differ as the rotations do. |M' - M| is at most
 /// what both bodies have rotated by since, and 2.
 ///
-/// Rounding, with e = 2^-24 and `off` the error bound of any coordinate of T'y (CornerTransform). y
-/// and Ty, as they are kept, belong together to within sqrt(3) off of then, T'y is off by sqrt(3)
-/// off of now. The error of a sphere because bodies' poses are not their orthonormal poses, and the
-/// difference between those rotations, is in the error bound of both poses, thrice, which is less
-/// than off: 8 off of then and of now cover all. Differences, squares and the root are off by fewer
-/// than 16 e of themselves; squares that underflow by less than 2^-60 after the root, which is
-/// added as 2^-120 under it, and covers a radius that underflowed, too. Rotations are summed up in
-/// double and rounded to float: 2e of each. NaN counts as no gap.
+/// Rounding, with e = 2^-24. Let d be the error bound of any coordinate of T'y (CornerTransform),
+/// and d_0 that of Ty, when the gap was measured. y and Ty, as they are kept, correspond to each
+/// other to within sqrt(3) d_0; T'y has an error below sqrt(3) d. Bodies' poses are not quite their
+/// orthonormal poses: what that adds to a sphere, and to the difference of the rotations, is at
+/// most thrice the error bound of both poses, which is less than d. 8 d_0 + 8 d cover all.
+/// Differences, squares and the root are off by fewer than 16 e of themselves; squares that
+/// underflow by less than 2^-60 after the root, which is added as 2^-120 under it, and covers a
+/// radius that underflowed, too. Rotations are summed up in double and rounded to float: 2e of
+/// each. NaN counts as no gap.
 #pragma once
 
 #include <algorithm>
@@ -115,7 +116,7 @@ class WideFront {
 /// Pauses of the front: traversals without one after a front that wore out.
 class FrontPause {
  public:
-  /// Counts one traversal.
+  /// Counts one traversal; returns whether it may keep a front.
   bool over() { return remaining_ == 0 || (--remaining_, false); }
   /// Called when a front was retested: one that wore out starts a pause, longer each time.
   void begin(bool worn) {

@@ -14,19 +14,20 @@
 /// query's own test. Only if they no longer meet are the bodies traversed, first where they
 /// touched.
 ///
-/// After two near misses a pair keeps a front (WideFront). Later traversals retest only the entries
-/// whose gaps may have closed. Where that is most of them the pair keeps no front for sixteen
-/// traversals, and for four times as many each time this recurs, at most 256.
+/// A pair that was traversed and found apart writes a front (WideFront) in its next traversal.
+/// Later traversals retest only the entries whose gaps may have closed. Where that is most of them
+/// the pair keeps no front for sixteen traversals, and for four times as many each time this
+/// recurs, at most 256.
 ///
 /// Tried and not kept. Where bodies are fast, hardly any answer outlasts a frame, and some frames
-/// could start from the roots without a measurement. A rule by the share of traversals that were
-/// spared gains a tenth there, but costs single pairs up to half, since what is spared comes in
-/// phases; counted over so many traversals that it costs them nothing, it gains nothing. Volumes
-/// with a small gap can be opened so that the least gap grows. But triangles of two surfaces are
-/// close in many places, the closest ones are at the distance itself, and opening costs five times
-/// as much. Nor does it pay to measure gaps of triangles, exactly or not: a third of the tests
-/// remains, each gap costs as much as four, and of 8000 polygons many are within a step or two of
-/// each other.
+/// could start from the roots without a measurement. A rule that skips measuring when few
+/// traversals were spared lately gains a tenth there, but slows single pairs by up to half, since
+/// what is spared comes in phases; averaged over enough traversals to avoid that, it gains nothing.
+/// Volumes with a small gap can be opened so that the least gap grows. But triangles of two
+/// surfaces are close in many places, the closest ones are at the distance itself, and opening
+/// costs five times as much. Nor does it pay to measure gaps of triangles, exactly or not, except
+/// when an entry of triangles is retested (GapMeasure): a third of the tests remains, each gap
+/// costs as much as four, and of 8000 polygons many are within a step or two of each other.
 #pragma once
 
 #include <algorithm>

@@ -125,7 +125,7 @@ class WidePairs {
 
   const std::vector<ObjectPair>& pairs() const { return pairs_; }
   /// Entries of all fronts, or of one pair's. An entry is a step's pair of nodes with the lanes it
-  /// closed, or a triangle with a leaf.
+  /// opened, or a triangle against a leaf.
   std::size_t front_size() const { return memory_.front_size(); }
   std::size_t front_size(std::uint32_t slot) const { return memory_.front_size(slot); }
 
@@ -186,7 +186,7 @@ class WidePairs {
     traverse_interleaved<Query>(sieve.undecided(), worker, before, counter, make_query, take);
   }
 
-  /// `before`: n_v + n_p when the frame began.
+  /// `before`: n_v + n_p before the first test of these pairs.
   template <class Query, class Counter, class MakeQuery, class Take>
   void traverse_interleaved(std::span<const std::int32_t> near, Worker& worker,
                             std::uint64_t before, Counter& counter, MakeQuery& make_query,

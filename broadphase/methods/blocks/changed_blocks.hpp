@@ -204,7 +204,8 @@ class ChangedBlocks {
     const std::size_t few = std::min(parts, parts / 16 + 1);
     query_parts(0, few);
     const double done = static_cast<double>(std::min(few * some, all));
-    // A refusal would lose the known places, so with them a partial estimate may be twice as high.
+    // Refusing discards the index of pairs, so while there is one a partial estimate may be twice
+    // as high.
     if (all > 0 && cost(done / static_cast<double>(all)) > (placed_ ? 2 : 1) * affordable)
       return refused(cost(done / static_cast<double>(all)));
     query_parts(few, parts);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Updates the list of pairs while boxes move steadily. Each box gets a *fat box* that encloses it
 /// for some frames (the *horizon*) if it keeps its present motion. Pairs whose fat boxes overlap
-/// are the candidates, as in a Verlet list (BibTeX: verlet1967computer), but fat boxes grow on one
-/// side only, along the motion of each face: a quarter of the growth of a margin all around. While
-/// every box is inside its fat box, only candidates can overlap. A box that leaves it gets a wider
-/// one, and a box that jumps or is new gets another slot.
+/// are the candidates, as in a Verlet list (BibTeX: verlet1967computer), but each face of a fat box
+/// moves outward only if that is its direction of motion, so that the width grows by about a
+/// quarter of what a margin all around adds. While every box is inside its fat box, only candidates
+/// can overlap. A box that leaves it gets a wider one, and a box that jumps or is new gets another
+/// slot.
 ///
 /// Boxes that change direction too often for that, or jitter, get margins all around instead.
 /// Margins have no fixed horizon: they are used until a sample of the boxes has used half of them.
-/// Where none does so for long, the narrowest margins take over.
+/// If no sample uses half of its margin for long, the narrowest margins take over.
 ///
 /// A frame reads every box once and compares all candidates. The next candidates are found in
 /// parts, one in each frame (NextCandidates). Only a frame that begins without them takes longer

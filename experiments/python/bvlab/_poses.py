@@ -29,7 +29,7 @@ def poses(positions: ArrayLike, quaternions: ArrayLike | None = None, *,
             raise ValueError("order: is of quaternions, and there are none")
         return _from_matrices(_array(positions, "matrices", ("frames", "objects", 4, 4)))
     if order not in ORDERS:
-        raise ValueError(f"order: {'is needed' if order is None else f'{order!r} is unknown'}; there are "
+        raise ValueError(f"order: {'is needed' if order is None else f'{order!r} is unknown'}; available: "
                          + ", ".join(ORDERS))
     at = _array(positions, "positions", ("frames", "objects", 3))
     turned = _array(quaternions, "quaternions", (*at.shape[:2], 4))

@@ -44,7 +44,7 @@ def figures(path: str | os.PathLike, **figure: str) -> dict[str, matplotlib.figu
         from bvlab_plots import figures as declared
         keys = sorted({*draw.KEYS, "where"} - {"table"})
         if unknown := set(figure) - set(keys):
-            raise ValueError(f"{min(unknown)}: unknown; there are {', '.join(keys)}")
+            raise ValueError(f"{min(unknown)}: unknown; available: {', '.join(keys)}")
         options = [f"--{key.replace('_', '-')}={value}" for key, value in figure.items() if key != "where"]
         options += [f"--where={each}" for each in figure.get("where", [])]
         arguments = draw.arguments_of([folder, *options])

@@ -261,7 +261,7 @@ void require_public_scene(const std::string& scene) {
   if (find(scenes(), scene) != scenes().end() || is_public_box_scene(scene)) return;
   std::string names;
   for (const auto& each : public_scenes()) names += (names.empty() ? "" : ", ") + each.name;
-  throw Unusable("no scene '" + scene + "'; there are " + names);
+  throw Unusable("no scene '" + scene + "'; available: " + names);
 }
 
 PublicMotion public_motion(const std::string& scene, const std::string& from,

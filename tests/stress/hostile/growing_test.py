@@ -96,8 +96,8 @@ class Grows(GrowTest):
         self.run_it(definition(repetitions=2, seeds=(1, 2), more='measures = ["coherence"]'))
         kept = 'measures = ["coherence"]'
         for text, said in ((definition(1, (1, 2), more=kept), "it has 2 repetitions"),
-                           (definition(2, (1, 3), more=kept), "seed = 2, strategy = recursive is none of this one"),
-                           (definition(2, (1, 2), frames=41, more=kept), "is none of this one"),
+                           (definition(2, (1, 3), more=kept), "seed = 2, strategy = recursive is not in the definition"),
+                           (definition(2, (1, 2), frames=41, more=kept), "is not in the definition"),
                            (definition(2, (1, 2)), "it measures coherence")):
             self.write("grow.toml", text)
             self.refuse("run", "grow.toml", "--record", "record", mentions=["record", "another definition", said])
@@ -224,14 +224,14 @@ class Refused(GrowTest):
     """Before the first cell is run, in one line."""
 
     def test_series_that_match_no_cell(self):
-        for series, said in (('seed = 7', "series: seed has no '7'; there are '1'"),
+        for series, said in (('seed = 7', "series: seed has no '7'; available: '1'"),
                              ('strategy = "frob"', "series: strategy has no 'frob'"), ('frob = 1', "unknown 'frob'")):
             self.write("grow.toml", definition(end=f"[series]\n{series}\n"))
             self.refuse("run", "grow.toml", "--record", "record", mentions=["grow.toml", said])
 
     def test_figures_that_cannot_be_drawn(self):
         whole = dict(name="mine", x="strategy", y="time_ns / pairs")
-        for keys, said in ((dict(y="time_sn / pairs"), "y: no column 'time_sn'; there are "),
+        for keys, said in ((dict(y="time_sn / pairs"), "y: no column 'time_sn'; available: "),
                            (dict(x="strategi"), "x: no column 'strategi'"), (dict(series="frob"), "series: no column"),
                            (dict(panels="frob, seed"), "panels: no column"), (dict(pool="frob"), "pool: no column"),
                            (dict(where=["frob=1"]), "where: no column"), (dict(where=["seed=9"]), "seed has no '9'"),

@@ -132,7 +132,7 @@ class Predict(ProgramTest):
         self.write("trace.npy", wandering(300, 4, 0.01, 5))
         told = self.predicted("contacts", "--stride", "96", "--window", "48")
         self.assertEqual((told["fastest"], told["windows"]), (None, 3))
-        self.assertIn("cannot be told: 3 of the 4 windows that are needed", told["verdict"])
+        self.assertIn("unknown: 3 of the 4 windows that are needed", told["verdict"])
         self.assertEqual(len(told["candidates"].split(", ")), len(STRATEGIES))
 
     def test_who_is_named_is_told_from_the_next(self):
