@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A tree of bounding volumes over one mesh, binary or with up to sixteen children a node, stored
+/// A tree of bounding volumes over one mesh, binary or with up to sixteen children per node, stored
 /// flat: siblings are adjacent, indices are 32 bits, and volumes are in an array of their own,
 /// since posing reads nothing else.
 ///

@@ -41,7 +41,8 @@ inline double elongation(std::span<const TriangleMesh> meshes) {
 /// The elongation above which triangles count as long.
 inline constexpr double long_triangles = 3.5;
 
-/// Wide trees of one volume. Build is an entry of builds.hpp; at most `leaf_size` triangles a leaf.
+/// Wide trees of one volume. Build is an entry of builds.hpp; at most `leaf_size` triangles per
+/// leaf.
 template <BoundingVolume V, int F, class KernelType, class BuildType, Fit kFit,
           std::uint32_t kLeafSize>
 struct WideTrees {

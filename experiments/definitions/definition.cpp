@@ -369,7 +369,7 @@ const std::vector<Parameter>& parameters() {
              {"precision", "exact", "of triangle tests; see `bvlab list precisions`"},
              {"relative_error", "0", "distances may be above the truth by this part of it"},
              {"fan_out", "2",
-              "children a node, at most: 2, 4, 8, 16; or native, a register's lanes"},
+              "children per node, at most: 2, 4, 8, 16; or native, a register's lanes"},
              {"frame", "world", "where volumes are compared; see `bvlab list frames`"},
              {"kernel", "gathered", "how lanes are filled; see `bvlab list kernels`"},
              {"configuration", "", "chooses volume, tree, build and all else; see `bvlab list`"},

@@ -48,7 +48,7 @@ struct BestRebuilds {
 };
 
 /// For the variant's volume, query (touching or contacts), build and leaf size. Takes O(frames^2)
-/// runs a pair.
+/// runs per pair.
 BestRebuilds best_rebuilds(std::span<const TriangleMesh> meshes, const Trace& trace,
                            const Variant& variant);
 

@@ -58,7 +58,7 @@ constexpr Configuration list[] = {
      "bottom-up, fit tight, leaves of 1, recursive",
      set_recommended},
     {"as-published",
-     "the talk's (Li and Chen 1998): spheres in binary trees, one triangle a leaf, and a "
+     "the talk's (Li and Chen 1998): spheres in binary trees, one triangle per leaf, and a "
      "separation list that is rebuilt one run late (deferred)",
      set_as_published},
 };
@@ -112,7 +112,7 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
   if (best.reason.empty()) return recommended(variant, meshes);
   best.reason += " cost least in " + std::to_string(samples.frames.size()) +
                  " sampled frames, of " + std::to_string(trace.frames) +
-                 " (expected ns a pair: " + costs.str() + ")";
+                 " (expected ns per pair: " + costs.str() + ")";
   return best;
 }
 

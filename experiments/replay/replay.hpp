@@ -28,7 +28,7 @@ struct Variant {
   std::string fit = "published";  ///< or "tight", see bounding_volume.hpp
   std::string precision = "exact";
   double relative_error = 0;        ///< of distances
-  std::uint32_t fan_out = 2;        ///< children a node, at most: 2, 4, 8 or 16
+  std::uint32_t fan_out = 2;        ///< children per node, at most: 2, 4, 8 or 16
   std::string frame = "world";      ///< or "body", see traversal/frame.hpp
   std::string kernel = "gathered";  ///< or "siblings", "mixed": see kernels() in registry.hpp
 };

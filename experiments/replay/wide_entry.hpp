@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A volume in wide trees under one query, as the program sees it while it runs. What is compiled
-/// is what is compared: bodies in each other's frames, as many children a node as a register has
+/// is what is compared: bodies in each other's frames, as many children per node as a register has
 /// lanes, every pair from the roots in every frame.
 #pragma once
 

@@ -22,7 +22,7 @@ namespace detail {
 template <class T>
 inline constexpr int native_fan_out = std::clamp(native_width<T>, 2, 16);
 
-/// How many children a node has.
+/// How many children per node has.
 template <class Kernel, class T>
 inline constexpr int fan_out_of = native_fan_out<T>;
 template <class T>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A tree of bounding volumes with up to four children a node, stored in SIMD lanes in two forms: a
-/// row, the four children of a node, for tests against four of another node; and a block of four
+/// A tree of bounding volumes with up to four children per node, stored in SIMD lanes in two forms:
+/// a row, the four children of a node, for tests against four of another node; and a block of four
 /// rows, the sixteen grandchildren, for tests against one volume (see mixed_kernel.hpp). A row is
 /// also a part of a block, but lies there in seventeen cache lines (of oriented boxes), where a row
 /// alone takes five.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Collapses a binary topology into one with up to F children a node, by replacing nodes with their
-/// children. Of all ways to do so it finds the one with the least total surface area of nodes,
-/// which is proportional to the expected number of tests, by dynamic programming
+/// Collapses a binary topology into one with up to F children per node, by replacing nodes with
+/// their children. Of all ways to do so it finds the one with the least total surface area of
+/// nodes, which is proportional to the expected number of tests, by dynamic programming
 /// (ylitie2017efficient). This fills nodes near the leaves, of which there are many, and leaves
 /// lanes vacant near the root; opening the largest child until there are F (wald2008getting) does
 /// the opposite and is a tenth slower. A subtree of at most `leaf_size` triangles becomes a leaf,

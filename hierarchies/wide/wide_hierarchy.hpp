@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A tree of bounding volumes with up to F children a node. Siblings are the lanes of one batched
+/// A tree of bounding volumes with up to F children per node. Siblings are the lanes of one batched
 /// volume, so that one volume is tested against all of them without a gather. The children of a
 /// leaf are its triangles: they have volumes of their own, and corners in lanes.
 ///

@@ -47,7 +47,7 @@ def speedups(record):
     one = tests.loc[[reading for reading in passing if reading.startswith("one")]]
     every = tests.loc[[reading for reading in passing if reading.startswith("all")]]
     published = nine_bunnies.PUBLISHED.mean()
-    claim((one.deferred > one["separation-list"]).all(), "deferring pays where one body moves a step")
+    claim((one.deferred > one["separation-list"]).all(), "deferring pays where one body moves in a step")
     claim((every.deferred < 1.01 * every["separation-list"]).all(), "deferring saves no more tests where all bodies move")
     claim((means["time_ns"] < tests).loc[passing[:3]].all(axis=None), "time follows less than N_v")
     time = means["time_ns"]

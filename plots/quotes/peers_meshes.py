@@ -52,7 +52,7 @@ def peers_meshes(record):
 
 @quotes("peers-meshes")
 def peers_counts(record):
-    """Tests a pair of `recommended`, from the roots and of OPCODE, medians over seeds, by mesh."""
+    """Tests per pair of `recommended`, from the roots and of OPCODE, medians over seeds, by mesh."""
     rows = records.read(record)
     rows = rows.assign(us=rows.later_ns / rows.later_pairs / 1e3, volumes=rows.n_v / rows.pairs, triangles=rows.n_p / rows.pairs)
     each = rows.groupby(["work", "method", "mesh"])[["us", "volumes", "triangles"]].median()

@@ -13,7 +13,7 @@ NEAR = 1.1  # times the best of ours
 
 @cache
 def motions(record):
-    """By motion: us a pair of `recommended`, over the best of ours, and over the fastest library."""
+    """By motion: us per pair of `recommended`, over the best of ours, and over the fastest library."""
     rows = records.read(record)
     claim((rows.differing[rows.peer == ""] == 0).all(), "answers of ours agree")
     rows = rows.assign(us=(rows.time_ns - rows.first_ns) / (rows.pairs * (1 - 1 / rows.frames)) / 1e3)
@@ -55,7 +55,7 @@ def real_motions_bounds(record):
     each = rows.groupby(["method", "motion"])[["us", "volumes", "tests"]].median()
     single = each.loc["recommended"].drop("kuka (unseen)")
     alone = rows[rows.motion != "kuka (unseen)"]
-    claim((alone.pairs == alone.frames).all(), "one pair a frame but on kuka")
+    claim((alone.pairs == alone.frames).all(), "one pair per frame but on kuka")
     terms = np.column_stack([np.ones(len(single)), single.tests])
     fixed, price = np.linalg.lstsq(terms / single.us.to_numpy()[:, None], np.ones(len(single)), rcond=None)[0]
     off = terms @ [fixed, price] / single.us

@@ -29,7 +29,7 @@ def reuse(record):
     lists = [savings(cells, "n_v", name, motion) for name in ("separation-list", "deferred") for motion in fan_outs.FAST]
     raised = [savings(cells, "n_v", "raise", motion) for motion in fan_outs.FAST]
     margins = [savings(cells, "n_v", "margins", motion) for motion in fan_outs.FAST]
-    claim(all((values < 1).all() for values in lists), "in tests lists lose everywhere from 5 degrees a frame on")
+    claim(all((values < 1).all() for values in lists), "in tests lists lose everywhere from 5 degrees per frame on")
     time = cells.time_ns.unstack("strategy")
     fastest = time.idxmin(axis=1)
     slow = fastest.xs(fan_outs.SLOW, level="motion")
@@ -126,7 +126,7 @@ FAMILIES = {"recursion": ["recursive"], "a list": ["separation-list", "deferred"
 
 @quotes("fan-outs")
 def fastest(record):
-    """By motion and family of strategies the configuration of the least time a pair, median over volumes."""
+    """By motion and family of strategies the configuration of the least time per pair, median over volumes."""
     cells = fan_outs.read(record)
     time = (cells.time_ns / cells.pairs).groupby(["motion", "strategy", "fan_out", "frame"]).median()
     lines, binary, least = [], [], {}

@@ -82,7 +82,7 @@ SHOWN = ["recommended", "wide, from the roots", "OPCODE", "OPCODE, coherent", "P
 
 @quotes("tournament-peers")
 def scenes(record):
-    """Scene by method: microseconds a pair, mean and the 99th percentile of frames; and the lead over the fastest library."""
+    """Scene by method: microseconds per pair, mean and the 99th percentile of frames; and the lead over the fastest library."""
     rows = tournament.read(record)
     middle = rows.groupby([*tournament.PLACES, "method", "seed"])[["ns", "tail_ns"]].median().groupby([*tournament.PLACES, "method"]).mean() / 1e3
     beside = beside_all(record)
@@ -112,7 +112,7 @@ def scenes(record):
 
 @quotes("tournament-peers")
 def tournament_peers(record):
-    """Every library from source in one program: microseconds a pair, later frames, medians of repetitions, means of seeds."""
+    """Every library from source in one program: microseconds per pair, later frames, medians of repetitions, means of seeds."""
     rows = records.read(record)
     claim((rows.alone != "no").all(), "the rows were timed alone")
     claim((rows[rows.peer == ""].differing == 0).all(), "answers of ours agree")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A step of a traversal of two trees with four children a node, in sixteen lanes. Where the two
+/// A step of a traversal of two trees with four children per node, in sixteen lanes. Where the two
 /// nodes are alike in size, four children are tested against four; else one node against the
 /// sixteen grandchildren of the other, which is the larger one or the only inner one (see
 /// block_hierarchy.hpp).

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// PhysX's mesh against mesh (PxMeshQuery::findOverlapTriangleMesh) on its BV4 trees: four-wide,
 /// float32, boxes in the meshes' own frames. What was found fastest is set: trees that are not
-/// quantised, built by surface area, four triangles a leaf; denormals taken for zero, set once and
-/// not at every call; and, of its four triangle tests, that by separating axes, since the default
-/// (Moller's, with an absolute epsilon) reports contacts that are none. Poses are taken relative to
-/// the first body of the first frame, as float32 needs it.
+/// quantised, built by surface area, four triangles per leaf; denormals taken for zero, set once
+/// and not at every call; and, of its four triangle tests, that by separating axes, since the
+/// default (Moller's, with an absolute epsilon) reports contacts that are none. Poses are taken
+/// relative to the first body of the first frame, as float32 needs it.
 #include <common/PxInsertionCallback.h>
 #include <cooking/PxCooking.h>
 #include <geometry/PxMeshQuery.h>
