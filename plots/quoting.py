@@ -127,6 +127,11 @@ def two_digits(value):
     return f"{value:.{max(0, 1 - math.floor(math.log10(float(f'{value:.1e}'))))}f}"
 
 
+def at_most(value, digits=2):
+    """The value, rounded up: for what is said to be an upper bound."""
+    return math.ceil(round(value * 10**digits, 6)) / 10**digits
+
+
 def short(count):
     """3.4M, 289k, 940."""
     for size, letter in ((1e6, "M"), (1e3, "k")):

@@ -11,13 +11,13 @@ from quoting import Interval, claim, quotes
 COUNTS = ["n_u", "n_v", "n_p"]
 
 
-def fitted_errors(rows):
-    """Median error of three constants fitted to the rows of each volume, as a share of the time."""
-    def error(part):
+def fitted(rows):
+    """By volume, three constants fitted to its rows, and their median error as a share of the time."""
+    def fit(part):
         terms = part[COUNTS].to_numpy(float) / part.time_ns.to_numpy()[:, None]
         constants = np.linalg.lstsq(terms, np.ones(len(part)), rcond=None)[0]
-        return np.median(np.abs(terms @ constants - 1))
-    return [error(part) for _, part in rows.groupby("volume")]
+        return constants, np.median(np.abs(terms @ constants - 1))
+    return {volume: fit(part) for volume, part in rows.groupby("volume")}
 
 
 @quotes("cost-model")
@@ -31,14 +31,17 @@ def cost(record):
     claim(max(batched, key=batched.get) == "shell", "shells cost most to test")
     claim(share.max() < 1, "the model predicts too little")
     busy = rows[rows.density != "sparse"]
+    near, everywhere = fitted(busy), fitted(rows)
+    claim(all((constants > 0).all() for constants, _ in near.values()), "where bodies are near each other all fitted costs are positive")
+    negative = [volume for volume, (constants, _) in everywhere.items() if constants[2] < 0]
     left = ((busy.time_ns - busy.predicted_ns) / busy.n_v).groupby(busy.volume)
     claim(all(batched[volume] < middle for volume, middle in left.median().items() if volume != "shell"),
           "C_v is less than the engine around it for all volumes but the shell")
     return {"pose_least": pose["sphere"], "pose_most": pose["kdop26"], "test_least": batched["sphere"],
             "test_most": batched["shell"], "alone": Interval(cost["alone"] for cost in costs.values()),
             "triangle": triangle, "inner": Interval(share.quantile([0.05, 0.95])), "median": share.median(),
-            "most": share.max(), "fitted": Interval(100 * error for error in fitted_errors(busy)),
-            "fitted_all": Interval(100 * error for error in fitted_errors(rows)),
+            "most": share.max(), "fitted": Interval(100 * error for _, error in near.values()),
+            "fitted_all": Interval(100 * error for _, error in everywhere.values()), "negative": len(negative), "volumes": len(everywhere),
             "left": Interval(left.median()), "quartiles": Interval([left.quantile(0.25).min(), left.quantile(0.75).max()])}
 
 
@@ -87,4 +90,4 @@ def boxes_precision(record):
     time = outward.ns_per_frame / double.ns_per_frame
     return {"thousand": Interval(apart.xs(1000, level="offset")), "ten_thousand": Interval(apart.xs(10000, level="offset")),
             "adjacent": wrong["adjacent"].min(), "blocks": time.xs("blocks", level="method").median(),
-            "sort": time.xs("sort-and-sweep", level="method").median(), "slowest": time["sphere-sparse", 10000, "blocks"]}
+            "sort": time.xs("sort-and-sweep", level="method").median(), "hybrid": time.xs("hybrid", level="method").median(), "slowest": time["sphere-sparse", 10000, "blocks"]}

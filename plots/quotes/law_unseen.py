@@ -84,6 +84,9 @@ def wide_law(record):
     claim(abs(off(LAST, 2) - off(LAW, 2)) < 0.1 and all(off(LAST, f) < off(LAW, f) for f in fan_outs[1:]),
           "in the median the speedup of the first frames predicts as well on binary trees and better on wider ones")
     lose = law_fan_outs.thresholds(runs)
+    others = [law_fan_outs.at(runs, f, "less") | law_fan_outs.at(runs, f) for f in fan_outs]
+    persisting = [(rows.fan_out == f).to_numpy() & ~other for f, other in zip(fan_outs, others)]
+    claim(all(rows.persistence[where].gt(0).all() for where in persisting), "the cells of neither regime are those in which motion persists")
     held = [number for number, holds, _ in law_fan_outs.hypotheses(runs, said, fit.kappa) if holds]
     own = law_fan_outs.own_kappas(runs)
     return {"rows": [[label, *(f"{off(name, f):.1f} ({off(name, f, 0.95):.0f})" for f in fan_outs)] for name, label in shown.items()],
@@ -92,4 +95,6 @@ def wide_law(record):
             "worse": Interval([off(LAST, f, 0.95) / off(LAW, f, 0.95) for f in fan_outs]), "last_most": Interval([off(LAST, f, 0.95) for f in fan_outs]),
             "binary": Interval([off(law_fan_outs.BINARY, f) for f in fan_outs[1:]]), "less": Interval([off(LAW, f, regime="less") for f in fan_outs]),
             "kappa": Interval(list(own.values())), "lose_two": lose[2][0], "lose_wide": Interval([lose[f][0] for f in fan_outs[1:]]),
-            "cells": int(law_fan_outs.at(runs, 2).sum()), "less_cells": int(law_fan_outs.at(runs, 2, "less").sum()), "held": held}
+            "cells": int(law_fan_outs.at(runs, 2).sum()), "less_cells": int(law_fan_outs.at(runs, 2, "less").sum()), "held": held,
+            "persisting_cells": int(persisting[0].sum()),
+            "persisting": Interval([law_fan_outs.off(runs, said[LAW], where) for where in persisting])}

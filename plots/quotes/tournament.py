@@ -10,8 +10,10 @@ from quoting import Interval, claim, quotes, two_digits
 SOURCE, SHIPPED, EIGHT, ONE = "from-source", "as-shipped", "eight-lanes", "one-lane"
 OURS = "recommended"
 
+
 def called(method, program):
     return f"{method}, {program}"
+
 
 @cache
 def cells(record):
@@ -30,8 +32,10 @@ def cells(record):
         "fcl": beside(called("FCL, obb", SOURCE), [called("FCL, obb", SHIPPED)]),
         "cold": beside(called(OURS, SOURCE), fresh, "cold_ns"), "tail": beside(called(OURS, SOURCE), fresh, "tail_ns")}
 
+
 def written(line):
     return f"{line.ratio:.1f} ({line.low:.1f} to {line.high:.1f})"
+
 
 @quotes("tournament")
 def tournament_table(record):
@@ -45,6 +49,7 @@ def tournament_table(record):
                       *(f"{found[column].loc[place].ratio:.1f}" for column in ("cold", "tail"))])
         last = place[0]
     return {"rows": lines}
+
 
 @quotes("tournament")
 def tournament_headline(record):
@@ -64,12 +69,14 @@ def tournament_headline(record):
             "roots": Interval(found["roots"].ratio), "roots_one": Interval(found["roots, one"].ratio),
             "width": Interval(found["one"].ours_ns / found["sixteen"].ours_ns), "fcl": Interval(1 / found["fcl"].ratio)}
 
+
 def libraries(rows):
     """The methods of other libraries, those compiled from source with our flags where several programs ran them."""
     rows = rows[rows.peer != ""]
     if "program" in rows:
         rows = rows[rows.program == SOURCE]
     return list(dict.fromkeys(rows.method))
+
 
 @cache
 def beside_all(record):
@@ -78,7 +85,9 @@ def beside_all(record):
     ours = called(OURS, SOURCE) if "program" in rows else OURS
     return tournament.tournament(rows, ours, libraries(rows)).set_index(tournament.PLACES)
 
+
 SHOWN = ["recommended", "wide, from the roots", "OPCODE", "OPCODE, coherent", "PhysX", "FCL, obb", "Coal, obb"]
+
 
 @quotes("tournament-peers")
 def scenes(record):
@@ -106,9 +115,11 @@ def scenes(record):
     claim(rows[contacts].frames.max() < 100 < rows[~contacts].frames.min(), "runs for contacts alone have less than a hundred frames")
     mean = middle.ns.unstack("method")
     roots = "wide, from the roots"
-    return {"rows": lines, "lead": Interval(beside.ratio), "seeds": rows.seed.nunique(), "repetitions": rows.repetition.nunique(),
+    built = rows[rows.polygons == 8000].groupby(["method", *tournament.PLACES]).build_ns.median() / 1e6
+    return {"build": Interval(built[OURS]), "build_opcode": Interval(built["OPCODE"]), "build_physx": Interval(built["PhysX"]), "rows": lines, "lead": Interval(beside.ratio), "seeds": rows.seed.nunique(), "repetitions": rows.repetition.nunique(),
             "cells": len(beside), "roots_faster": int((mean[roots] < mean[OURS]).sum()), "roots_tails": int((tails[roots] < tails[OURS]).sum()),
             "contact_frames": rows[contacts].frames.max()}
+
 
 @quotes("tournament-peers")
 def tournament_peers(record):
