@@ -78,6 +78,8 @@ class Bullet final : public BoxPeer {
           reinterpret_cast<void*>(static_cast<std::uintptr_t>(k + 1)), 1, 1, nullptr));
   }
   void release() {
+    // Without pairs first: each proxy that is destroyed has all pairs searched for its own.
+    if (broadphase_) broadphase_->getOverlappingPairCache()->getOverlappingPairArray().clear();
     for (auto* proxy : proxies_) broadphase_->destroyProxy(proxy, nullptr);
     proxies_.clear();
     broadphase_.reset();
