@@ -9,9 +9,10 @@
 #include "traversal/no_front.hpp"
 #include "traversal/strategies/margin_sweep.hpp"
 #include "traversal/strategies/rising_front.hpp"
+#include "traversal/strategies/witness.hpp"
 
 namespace bvlab {
 
-using Fronts = TypeList<NoFront, NoFrontBoth, Front, RisingFront, MarginSweep>;
+using Fronts = TypeList<NoFront, NoFrontBoth, WitnessedRoots, Front, RisingFront, MarginSweep>;
 
 }  // namespace bvlab

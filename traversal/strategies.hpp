@@ -16,10 +16,11 @@
 #include "traversal/strategies/raise.hpp"
 #include "traversal/strategies/recursive.hpp"
 #include "traversal/strategies/separation_list.hpp"
+#include "traversal/strategies/witness.hpp"
 
 namespace bvlab {
 
-using Strategies =
-    TypeList<Recursive, RecursiveBoth, SeparationList, Deferred, ByCost, Raise, Margins, Adaptive>;
+using Strategies = TypeList<Recursive, RecursiveBoth, Witness, SeparationList, Deferred, ByCost,
+                            Raise, Margins, Adaptive>;
 
 }  // namespace bvlab

@@ -9,6 +9,7 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/player.hpp"
 #include "traversal/recommended_for.hpp"
+#include "traversal/strategies/witness.hpp"
 
 namespace bvlab {
 namespace {
@@ -37,7 +38,8 @@ void set_recommended(Variant& variant) {
     return;
   }
   set_tree(variant, "binary");
-  variant.volume = "rss", variant.strategy = "recursive";
+  variant.frame = "body";
+  variant.volume = "rss", variant.strategy = Witness::name;
   variant.build = "bottom-up", variant.fit = "tight", variant.leaf_size = 1;
 }
 
@@ -54,8 +56,8 @@ constexpr Configuration list[] = {
      "kernel siblings, built top-down-surface-area, leaves as large as a register; (2) obb, kernel "
      "mixed, built bottom-up, fit tight, leaves of 4; either of them with margins or recursive; "
      "(3) slab-box with margins, built bottom-up, leaves of 4. Where the motion is not known, (1) "
-     "or (2) with margins, by the shape of the triangles. distance: rss in binary trees, built "
-     "bottom-up, fit tight, leaves of 1, recursive",
+     "or (2) with margins, by the shape of the triangles. distance: rss in binary trees, frame "
+     "body, built bottom-up, fit tight, leaves of 1, witness",
      set_recommended},
     {"as-published",
      "the talk's (Li and Chen 1998): spheres in binary trees, one triangle per leaf, and a "

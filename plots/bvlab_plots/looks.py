@@ -27,6 +27,7 @@ STYLES = {
     "gjk-coherent": dict(color="#00796b", marker="h", linestyle="-.", hatch="..."),
     "v-clip": dict(color="#c2185b", marker="8", linestyle="--", hatch="++"),
     "recursive-both": dict(color="#6b6b6b", marker="p", linestyle="-", hatch="||"),
+    "witness": dict(color="#00796b", marker="h", linestyle=(0, (1, 1)), hatch="--"),
     "by-cost": dict(color="#8c6bb1", marker="D", linestyle=":", hatch="xx"),
     "raise": dict(color="#b8860b", marker="X", linestyle=(0, (3, 1, 1, 1)), hatch="oo"),
     "margins": dict(color="#31a354", marker="v", linestyle=(0, (5, 1)), hatch="\\\\\\"),

@@ -2,6 +2,7 @@
 /// What the talk says of its separation list, held to the number.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "experiments/scenes/formula_mesh.hpp"
@@ -282,6 +283,46 @@ TYPED_TEST(FrontLaws, AHitIsTheFirstToBeTestedNextTime) {
   EXPECT_TRUE(one.touching() && two.touching());
   EXPECT_EQ(again.n_p, 1u);
   EXPECT_EQ(again.n_v, 1u);
+}
+
+TYPED_TEST(FrontLaws, AWitnessDecidesBeforeAnyVolumeIsTested) {
+  this->place(Pose{}, at(0.2, 0.5));
+  Witness witness;
+  Counting first, again, other;
+  Touching one, two;
+  witness.run(this->pair(one, first));
+  witness.run(this->pair(two, again));
+  EXPECT_TRUE(one.touching() && two.touching());
+  EXPECT_GT(first.n_v, 0u);
+  EXPECT_EQ(again.n_v, 0u);
+  EXPECT_EQ(again.n_u, 0u);
+  EXPECT_EQ(again.n_p, 1u);
+  // All contacts are sought from the roots, each found once, and so is an answer after them.
+  std::vector<Contact> expected, found;
+  Contacts all(expected), after(found);
+  RecursiveBoth().run(this->pair(all, other));
+  witness.run(this->pair(after, other));
+  std::sort(expected.begin(), expected.end()), std::sort(found.begin(), found.end());
+  EXPECT_EQ(found, expected);
+  this->place(Pose{}, at(9));
+  Touching apart;
+  witness.run(this->pair(apart, other));
+  EXPECT_FALSE(apart.touching());
+}
+
+TYPED_TEST(FrontLaws, TheLastNearestLeavesSpareTestsOfDistances) {
+  std::uint64_t from_roots = 0, with_witness = 0;
+  Witness witness;
+  for (int frame = 0; frame < 40; ++frame) {
+    this->place(Pose{}, at(2.4 + 0.01 * frame, 0.02 * frame));
+    Counting roots, kept;
+    Distance expected, found;
+    RecursiveBoth().run(this->pair(expected, roots));
+    witness.run(this->pair(found, kept));
+    EXPECT_NEAR(found.distance(), expected.distance(), 0x1p-45 * expected.distance()) << frame;
+    if (frame > 0) from_roots += roots.n_v, with_witness += kept.n_v;
+  }
+  EXPECT_LT(with_witness, from_roots);
 }
 
 /// Entries are found by their pairs whichever was a witness: siblings are proposed as often as in a

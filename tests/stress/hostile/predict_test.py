@@ -10,7 +10,7 @@ import numpy as np
 from program import ProgramTest, poses
 
 KEYS = {"n_v", "n_p", "seconds"}
-STRATEGIES = ["recursive", "recursive-both", "separation-list", "deferred", "by-cost", "raise", "margins", "adaptive"]
+STRATEGIES = ["recursive", "recursive-both", "witness", "separation-list", "deferred", "by-cost", "raise", "margins", "adaptive"]
 
 
 def wandering(frames, objects, step, seed):
