@@ -19,6 +19,7 @@
 #include "experiments/recorder/record.hpp"
 #include "experiments/replay/coherence.hpp"
 #include "experiments/replay/predict.hpp"
+#include "experiments/replay/registry.hpp"
 #include "experiments/replay/replay.hpp"
 #include "experiments/studies/cells.hpp"
 #include "experiments/studies/clocks.hpp"
@@ -122,6 +123,21 @@ struct Work {
     return std::any_of(counts.begin(), counts.end(), [](const Row& row) { return row.empty(); });
   }
 };
+
+/// What the answers to a query are compared with: the engine's default variant, with the first
+/// volume and strategy of a build that lacks those of the default.
+Variant reference_for(const std::string& query) {
+  Variant variant;
+  variant.query = query;
+  const auto replace_if_absent = [](std::string& name, const std::vector<Named>& compiled) {
+    const auto is_it = [&](const Named& each) { return each.name == name; };
+    if (!compiled.empty() && std::none_of(compiled.begin(), compiled.end(), is_it))
+      name = compiled.front().name;
+  };
+  replace_if_absent(variant.volume, volumes());
+  replace_if_absent(variant.strategy, strategies());
+  return variant;
+}
 
 class Experiment {
  public:
@@ -328,9 +344,8 @@ class Experiment {
       options.count = Count::on;
       if (i == 0) {
         try {
-          Variant variant;
-          variant.query = (*work.cells[0])["query"];
-          found.set_value(replay(ready.meshes, ready.trace, variant, options));
+          found.set_value(
+              replay(ready.meshes, ready.trace, reference_for((*work.cells[0])["query"]), options));
         } catch (...) {
           found.set_exception(std::current_exception());
         }
