@@ -13,7 +13,7 @@ import tempfile
 import time
 import unittest
 
-from program import BVLAB, ProgramTest
+from program import BVLAB, ProgramTest, names_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 START = """
@@ -75,7 +75,7 @@ class Grows(GrowTest):
             self.assertEqual((self.folder / "record/definition.toml").read_text(), text)
             before = grown
         self.assertEqual(len(self.rows("grow.coherence.csv")), 3)
-        self.assertEqual(len({row["strategy"] for row in self.rows("grow.predictions.csv")}), 8)
+        self.assertEqual(len({row["strategy"] for row in self.rows("grow.predictions.csv")}), len(names_of("strategies")))
         # In the order of the definition, and counts as those of a run at once.
         self.assertEqual([row["seed"] for row in self.rows()], ["2"] * 18 + ["1"] * 18 + ["3"] * 18)
         self.take("run", "grow.toml", "--record", "at-once")

@@ -90,10 +90,10 @@ class Predict(ProgramTest):
 
     def test_stationary_motion(self):
         """Bodies that wander about where they are: half of the frames say what all take, raise and margins included. Of
-        yes or no by-cost and raise go on to find better witnesses, for longer than a window; and adaptive tries its ways one
-        after the other."""
+        yes or no witness, by-cost and raise go on to find better witnesses, for longer than a window; and adaptive tries its
+        ways one after the other."""
         self.write("trace.npy", about_a_place(480, 4, 0.02, 2))
-        for query, near, still_learning in (("contacts", 0.05, ("adaptive",)), ("touching", 0.1, ("adaptive", "by-cost", "raise"))):
+        for query, near, still_learning in (("contacts", 0.05, ("adaptive",)), ("touching", 0.1, ("adaptive", "by-cost", "raise", "witness"))):
             said = self.predicted(query)["strategies"]
             for strategy in STRATEGIES:
                 done = self.counted(strategy, query)
