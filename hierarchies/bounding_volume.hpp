@@ -17,8 +17,13 @@ template <class V, class S>
 using Over = typename V::template over<S>;
 
 namespace detail {
+// Empty for what is no volume, so that BoundingVolume is false of it, and no error.
 template <class V>
-struct PlacementOf {
+struct PlacementOf {};
+template <class V>
+  requires(
+      requires { typename V::scalar; } && !requires { typename V::placement; })
+struct PlacementOf<V> {
   using type = Placement<Element<typename V::scalar>>;
 };
 template <class V>

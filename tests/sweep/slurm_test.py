@@ -3,6 +3,7 @@
 
 import os
 import platform
+import shutil
 import signal
 import subprocess
 import time
@@ -75,7 +76,10 @@ class Slurm(SweepTest):
 
     def test_timed_parts_have_the_node_to_themselves(self):
         self.run_whole()
-        self.sweep("--jobs", 3)
+        # A profile of one's own, with a blank in its path.
+        profile = self.folder / "my profile"
+        shutil.copytree(ROOT / "experiments/workflow/slurm", profile)
+        self.sweep("--jobs", 3, "--profile", profile)
         self.assert_same_record(timed=True)
         self.assertEqual({row["node"] for row in self.rows("swept")}, {platform.node()})
         moments = sorted([(time, 1) for _, time in self.diary("begins")] + [(time, -1) for _, time in self.diary("ends")])
