@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/replay/configurations.hpp"
 
+#include <algorithm>
 #include <iomanip>
 #include <limits>
 #include <sstream>
@@ -8,7 +9,9 @@
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/player.hpp"
+#include "experiments/replay/registry.hpp"
 #include "traversal/recommended_for.hpp"
+#include "traversal/strategies/recursive.hpp"
 #include "traversal/strategies/witness.hpp"
 
 namespace bvlab {
@@ -39,7 +42,10 @@ void set_recommended(Variant& variant) {
   }
   set_tree(variant, "binary");
   variant.frame = "body";
-  variant.volume = "rss", variant.strategy = Witness::name;
+  const auto all = strategies();
+  const bool compiled = std::any_of(all.begin(), all.end(),
+                                    [](const Named& each) { return each.name == Witness::name; });
+  variant.volume = "rss", variant.strategy = compiled ? Witness::name : Recursive::name;
   variant.build = "bottom-up", variant.fit = "tight", variant.leaf_size = 1;
 }
 
