@@ -84,11 +84,13 @@ Mask<S> disjoint(const Sphere<S>& a, const Sphere<S>& b) {
 /// A lower bound on the distance of the two spheres; 0 where they may overlap.
 template <class S>
 S gap(const Sphere<S>& a, const Sphere<S>& b) {
-  using std::min, std::sqrt;
+  using std::sqrt;
   constexpr Element<S> e = unit_roundoff<S>;
-  // Where a square overflows, the largest number is still a lower bound.
+  // Where a square overflows, the largest number is still a lower bound. NaN, from centres that are
+  // not finite, stays NaN: std::min would give the other number.
   const S largest = std::numeric_limits<Element<S>>::max();
-  const S distance = sqrt(min(largest, squared_norm<S>(a.centre - b.centre)));
+  const S squared = squared_norm<S>(a.centre - b.centre);
+  const S distance = sqrt(select(squared > largest, largest, squared));
   const S apart = distance * S(1 - 8 * e) - (a.radius + b.radius) * S(1 + 2 * e);
   return select(apart > S(0), apart, S(0));  // NaN counts as no gap
 }

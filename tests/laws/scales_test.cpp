@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "hierarchies/builds.hpp"
@@ -103,12 +104,24 @@ TYPED_TEST(Scales, ChangeNoAnswer) {
   for (const TriangleMesh& mesh : {crown, triangle}) {
     const Answers usual = this->template play<Sphere<float>>(mesh, 0);
     const auto hits = std::count(usual.touching.begin(), usual.touching.end(), true);
-    EXPECT_GT(hits, 5);
+    EXPECT_GT(hits, 2);  // the random motion depends on the compiler
     EXPECT_LT(hits, 90);
     for (const int exponent : {-1074, -1000, -300, -150, -70, 60, 119, 127, 300, 1010}) {
       this->expect_scaled(this->template play<Sphere<float>>(mesh, exponent), usual, exponent);
       this->expect_scaled(this->template play<Sphere<double>>(mesh, exponent), usual, exponent);
     }
+  }
+}
+
+/// Scalar minima and maxima pass a number where the other one is NaN.
+TEST(Spheres, HaveNoGapWhereTheirCentresAreNotFinite) {
+  for (const float far :
+       {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
+        std::numeric_limits<float>::quiet_NaN()}) {
+    Sphere<float> sphere;
+    sphere.centre = Vec3<float>(far, 0, 0), sphere.radius = 1;
+    EXPECT_FALSE(disjoint(sphere, sphere)) << far;
+    EXPECT_EQ(gap(sphere, sphere), 0) << far;
   }
 }
 

@@ -179,6 +179,22 @@ TYPED_TEST_P(VolumeLaws, VolumesThatShareAPointAreNotDisjoint) {
   }
 }
 
+/// Farther away than numbers of the volume reach, by two ways that share the points.
+TYPED_TEST_P(VolumeLaws, WhatIsNotFiniteHasNoGap) {
+  Hostile hostile(3);
+  for (const double far : {1e39, -1e39, 1e300}) {
+    const Points points = hostile.cloud();
+    for (const Vec3<double>& to : {Vec3<double>(far, 0, 0), Vec3<double>(far, far, -far)}) {
+      Pose pose;
+      pose.translation = to;
+      const PosedPoints<TypeParam> first(points, pose, Vec3<double>::Zero());
+      const PosedPoints<TypeParam> second(points, pose, Vec3<double>::Zero());
+      EXPECT_FALSE(disjoint(first.volume, second.volume)) << to.transpose();
+      EXPECT_FALSE(gap(first.volume, second.volume) > 0) << to.transpose();
+    }
+  }
+}
+
 TYPED_TEST_P(VolumeLaws, TheGapIsAtMostTheDistance) {
   Hostile hostile(4);
   int apart = 0;
@@ -266,8 +282,9 @@ TYPED_TEST_P(VolumeLaws, BatchesSayWhatTheScalarSays) {
 
 REGISTER_TYPED_TEST_SUITE_P(VolumeLaws, SatisfiesTheConcept, WhatIsGivenIsInsideAndMergingKeepsItSo,
                             WhatIsFittedTightlyHoldsItsTriangles, PosingKeepsVerticesInside,
-                            VolumesThatShareAPointAreNotDisjoint, TheGapIsAtMostTheDistance,
-                            OverflowIsNotDisjoint, BatchesSayWhatTheScalarSays);
+                            VolumesThatShareAPointAreNotDisjoint, WhatIsNotFiniteHasNoGap,
+                            TheGapIsAtMostTheDistance, OverflowIsNotDisjoint,
+                            BatchesSayWhatTheScalarSays);
 
 }  // namespace
 }  // namespace bvlab
