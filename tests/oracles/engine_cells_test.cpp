@@ -4,6 +4,7 @@
 /// mean the same everywhere. In short one scene a cell, in turns; --long every scene.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "experiments/replay/registry.hpp"
@@ -69,8 +70,7 @@ TEST_P(Cells, AgreeWithRecursionOverBinaryTrees) {
           const std::size_t own = cells++ % scenes.size();
           for (std::size_t s = all ? 0 : own; s < (all ? scenes.size() : own + 1); ++s) {
             const std::string where = volume.name + ' ' + strategy.name + ' ' + query + ' ' +
-                                      std::to_string(fan_out) + ' ' + frame + ": " +
-                                      scenes[s].name;
+                                      std::to_string(fan_out) + ' ' + frame + ": " + scenes[s].name;
             ReplayOptions options;
             options.count = Count::on;
             const auto found =
@@ -95,7 +95,10 @@ TEST(Frames, HardlyChangeWhatRigidVolumesTest) {
   const Played scene = played(settings(60)[0]);
   ReplayOptions options;
   options.count = Count::on;
-  for (const char* volume : {"sphere", "obb", "rss"})
+  const auto compiled = volumes();
+  for (const char* volume : {"sphere", "obb", "rss"}) {
+    const auto is_it = [&](const Named& each) { return each.name == volume; };
+    if (std::none_of(compiled.begin(), compiled.end(), is_it)) continue;
     for (const std::uint32_t fan_out : {2u, 8u}) {
       Variant variant;
       variant.volume = volume, variant.fan_out = fan_out, variant.query = "contacts";
@@ -107,6 +110,7 @@ TEST(Frames, HardlyChangeWhatRigidVolumesTest) {
           << volume;
       EXPECT_LT(world.n_u, body.n_u) << volume;
     }
+  }
 }
 
 }  // namespace
