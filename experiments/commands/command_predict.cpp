@@ -130,9 +130,8 @@ void add_predict(CLI::App& app) {
   command->footer(
       "On 40 motions of 600 frames, 312 of 320 intervals contained the measured time (of\n"
       "recursion's, the narrowest, 35 of 40). Intervals are wide: +-56 % of the predicted time in\n"
-      "the median, so that on average 7.3 of eight strategies remained candidates. The fastest "
-      "one\n"
-      "was among them in all 40. To find out which candidate is the fastest, replay them.\n"
+      "the median, so that on average 7.3 of eight strategies remained candidates. The fastest\n"
+      "one was among them in all 40. To find out which candidate is the fastest, replay them.\n"
       "experiments/replay/predict_coverage repeats this measurement.");
   auto arguments = std::make_shared<Arguments>();
   command

@@ -47,11 +47,7 @@ Variant gathered(Variant variant) {
   if (variant.kernel == "gathered") return variant;
   set_tree(variant, "binary");
   variant.leaf_size = 1;
-  const auto known = volumes();
-  const auto has = [&](std::string_view name) {
-    return std::any_of(known.begin(), known.end(), [&](const Named& v) { return v.name == name; });
-  };
-  variant.volume = has("obb") ? "obb" : known.at(0).name;
+  variant.volume = name_or_first("obb", volumes());
   return variant;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/replay/configurations.hpp"
 
-#include <algorithm>
 #include <iomanip>
 #include <limits>
 #include <sstream>
@@ -42,10 +41,8 @@ void set_recommended(Variant& variant) {
   }
   set_tree(variant, "binary");
   variant.frame = "body";
-  const auto all = strategies();
-  const bool compiled = std::any_of(all.begin(), all.end(),
-                                    [](const Named& each) { return each.name == Witness::name; });
-  variant.volume = "rss", variant.strategy = compiled ? Witness::name : Recursive::name;
+  variant.volume = "rss";
+  variant.strategy = has(strategies(), Witness::name) ? Witness::name : Recursive::name;
   variant.build = "bottom-up", variant.fit = "tight", variant.leaf_size = 1;
 }
 

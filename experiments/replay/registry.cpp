@@ -16,9 +16,7 @@ std::string text_of(const std::vector<Named>& all) {
 
 /// Those that were not named before, in order.
 void add(std::vector<Named>& all, std::string_view name, std::string_view description) {
-  const bool known =
-      std::any_of(all.begin(), all.end(), [&](const Named& each) { return each.name == name; });
-  if (!known) all.push_back({std::string(name), std::string(description)});
+  if (!has(all, name)) all.push_back({std::string(name), std::string(description)});
 }
 
 [[noreturn]] void refuse(const char* option, std::string_view name, const std::vector<Named>& all) {
@@ -27,6 +25,14 @@ void add(std::vector<Named>& all, std::string_view name, std::string_view descri
 }
 
 }  // namespace
+
+bool has(const std::vector<Named>& all, std::string_view name) {
+  return std::any_of(all.begin(), all.end(), [&](const Named& each) { return each.name == name; });
+}
+
+std::string name_or_first(std::string_view name, const std::vector<Named>& all) {
+  return has(all, name) ? std::string(name) : all.at(0).name;
+}
 
 std::vector<Named> volumes() {
   std::vector<Named> all;

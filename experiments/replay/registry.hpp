@@ -35,6 +35,10 @@ std::span<const OwnLoopsEntry<Query>* const> own_loops_entries();
 struct Named {
   std::string name, description;
 };
+/// Whether one of them has that name.
+bool has(const std::vector<Named>& all, std::string_view name);
+/// The name if one of them has it, else the first of them: a build may lack what is preferred.
+std::string name_or_first(std::string_view name, const std::vector<Named>& all);
 std::vector<Named> volumes();
 std::vector<Named> frames();
 /// How the lanes of a register are filled. What each is compiled for, and why not for the rest,

@@ -129,13 +129,8 @@ struct Work {
 Variant reference_for(const std::string& query) {
   Variant variant;
   variant.query = query;
-  const auto replace_if_absent = [](std::string& name, const std::vector<Named>& compiled) {
-    const auto is_it = [&](const Named& each) { return each.name == name; };
-    if (!compiled.empty() && std::none_of(compiled.begin(), compiled.end(), is_it))
-      name = compiled.front().name;
-  };
-  replace_if_absent(variant.volume, volumes());
-  replace_if_absent(variant.strategy, strategies());
+  variant.volume = name_or_first(variant.volume, volumes());
+  variant.strategy = name_or_first(variant.strategy, strategies());
   return variant;
 }
 

@@ -39,9 +39,9 @@ def peers_of(rows):
 def peers(record):
     rows = boxes_fast.read([record])
     still = rows[(rows.set == "adjacent") & (rows.motion == "still")]
-    teleport = rows[rows.motion == "teleport"].groupby(["peer", "set"]).frames.min().unstack("peer")
-    given_up = teleport < rows.frames.max()
-    drift = rows[(rows.motion == "drift") & (rows.peer != "")].groupby(["peer", "set"]).frames.min().unstack("peer") < rows.frames.max()
+    played = {motion: part.groupby(["peer", "set"]).frames.min().unstack("peer") for motion, part in rows.groupby("motion")}
+    teleport = played["teleport"]
+    given_up, drift = teleport < rows.frames.max(), played["drift"] < rows.frames.max()
     claim(set(drift.columns[drift.any()]) == {"bullet-dbvt"}, "in drift Bullet's tree alone is given up")
     claim(given_up["fcl-tree"].all() and (teleport["fcl-tree"] == 2).all(), "FCL's tree is given up after two frames wherever boxes teleport")
     claim(set(given_up.columns[given_up.any()]) == {"fcl-tree", "bullet-dbvt"}, "FCL's tree and Bullet's alone are given up")

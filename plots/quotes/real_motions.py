@@ -102,26 +102,20 @@ def recommended_rule(record):
 
 
 def changing(record):
-    """Rows of `auto` by set, motion and how it follows; and the fastest rival's time by set and motion, told and not ("")."""
+    """Rows of `auto` by set, motion and how it follows; rows of the rivals; and the fastest rival's time by set and motion,
+    told and not ("")."""
     rows = records.read(record)
     claim((rows.differing[rows.method == "auto"] == 0).all(), "the list of auto with coherence is that of auto without")
-    rivals = rows[(rows.method != "auto") & (rows.frame_ns > 0)].groupby(["set", "motion", "coherent"]).frame_ns.min().unstack()
-    claim(set(rivals) == {"", "told"}, "rivals find the movers or are told")
-    return rows[rows.method == "auto"].set_index(["set", "motion", "coherent"]), rivals
+    rivals = rows[rows.method != "auto"]
+    fastest = rivals[rivals.frame_ns > 0].groupby(["set", "motion", "coherent"]).frame_ns.min().unstack()
+    claim(set(fastest) == {"", "told"}, "rivals find the movers or are told")
+    return rows[rows.method == "auto"].set_index(["set", "motion", "coherent"]), rivals, fastest
 
 
-def records_left(record):
-    """By set and motion, how many rivals have a time."""
-    rows = records.read(record)
-    return rows[(rows.method != "auto") & (rows.frame_ns > 0)].groupby(["set", "motion"]).method.nunique()
-
-
-def stopped(record):
+def stopped(rivals):
     """Rows of rivals: all, those without a time, and those that ended before the last frame and have one."""
-    rows = records.read(record)
-    rows = rows[rows.method != "auto"]
-    timed = rows.frame_ns > 0
-    return {"rival_rows": len(rows), "untimed": int((~timed).sum()), "stopped": int((timed & (rows.frames < rows.frames.max())).sum())}
+    timed = rivals.frame_ns > 0
+    return {"rival_rows": len(rivals), "untimed": int((~timed).sum()), "stopped": int((timed & (rivals.frames < rivals.frames.max())).sum())}
 
 
 ALL_MOVE = ["drift", "reverse", "jitter"]
@@ -129,44 +123,44 @@ ALL_MOVE = ["drift", "reverse", "jitter"]
 
 @quotes("boxes-changes")
 def boxes_changes(record):
-    auto, rivals = changing(record)
+    auto, rivals, fastest = changing(record)
     mean, tail, first = auto.frame_ns.unstack(), auto.p99_ns.unstack(), auto.first_ns.unstack()
     on, late = mean["on"] / mean["off"], tail["on"] / tail["off"]
     motion = on.index.get_level_values("motion")
     few = on[motion.isin(["few", "same", "rare"])]
-    beside, told = (mean["on"] / rivals[""]).dropna(), (mean["told"] / rivals["told"]).dropna()
-    untold = (mean["on"] / rivals["told"]).dropna()
-    moving = (rivals[""] / mean["on"])[motion.isin(ALL_MOVE)]
-    rows = records.read(record)
-    abp = rows[(rows.method == "physx-abp") & (rows.coherent == "")].set_index(["set", "motion"]).first_ns
-    wrong = rows[rows.differing > 0]
+    beside, told = (mean["on"] / fastest[""]).dropna(), (mean["told"] / fastest["told"]).dropna()
+    untold = (mean["on"] / fastest["told"]).dropna()
+    moving = (fastest[""] / mean["on"])[motion.isin(ALL_MOVE)]
+    abp = rivals[(rivals.method == "physx-abp") & (rivals.coherent == "")].set_index(["set", "motion"]).first_ns
+    wrong = rivals[rivals.differing > 0]
     claim(len(on) == len(beside) == len(told) == 28, "all cases of the definition are in the record, and rivals in each")
     claim(set(wrong.method) == {"physx-sap"}, "the pairs of PhysX's SAP alone differ")
     claim(set(untold.index[untold > 1].get_level_values("motion")) == {"rare"}, "a rival that is told is faster where few boxes move alone")
     claim((told < 1).all(), "no rival that is told is faster than auto that is told")
     claim((on <= 1.05).all() and (beside <= 1).all(), "in the mean following costs at most 1.05 of starting over, and no rival is faster")
     claim((late < 1.055).all(), "the 99th percentile of following is at most 1.06 of starting over's")
-    claim((rows[~(rows.frame_ns > 0)].frames == 2).all(), "rivals without a time ended in the second frame")
-    return {**stopped(record), "cases": len(on), "few": Interval(few), "worst": at_most(on.max()), "beside": Interval(beside), "told": Interval(told), "untold": untold.max(),
+    claim((rivals[~(rivals.frame_ns > 0)].frames == 2).all(), "rivals without a time ended in the second frame")
+    return {**stopped(rivals), "cases": len(on), "few": Interval(few), "worst": at_most(on.max()), "beside": Interval(beside), "told": Interval(told), "untold": untold.max(),
             "latest": at_most(late.max()), "moving": Interval(moving), "first": Interval((abp / first["on"]).dropna()),
             "sap": wrong.groupby(["set", "motion"]).ngroups}
 
 
 @quotes("boxes-changes-large")
 def boxes_changes_large(record):
-    auto, rivals = changing(record)
+    auto, rivals, fastest = changing(record)
     mean, tail = auto.frame_ns.unstack(), auto.p99_ns.unstack()
     on, late = mean["on"] / mean["off"], tail["on"] / tail["off"]
-    beside, told = mean["on"] / rivals[""], mean["told"] / rivals["told"]
-    untold = mean["on"] / rivals["told"]
+    beside, told = mean["on"] / fastest[""], mean["told"] / fastest["told"]
+    untold = mean["on"] / fastest["told"]
     slow = late[late > 1.06]
     claim(len(on) == len(beside.dropna()) == len(told.dropna()) == 20, "all cases of the definition are in the record, and rivals in each")
     claim((on <= 1.05).all(), "in the mean following costs at most 1.05 of starting over")
     claim((beside < 1).all() and (told < 1).all(), "no rival is faster, both finding the movers or both told")
     claim(set(untold.index[untold > 1].get_level_values("motion")) == {"rare"}, "a rival that is told is faster where few boxes move alone")
     claim(list(slow.index) == [("mixed", "drift")], "one worst frame is slower than starting over's, that of mixed in drift")
-    last = rivals[""].index[records_left(record) == 1]
+    left = rivals[rivals.frame_ns > 0].groupby(["set", "motion"]).method.nunique()
+    last = left.index[left == 1]
     claim(list(last) == [("build/scenes/n-body-simulation.npy", "jump")], "one rival is left where bodies of n-body jump, and nowhere else")
-    return {**stopped(record), "cases": len(mean), "on": Interval(on), "worst": at_most(on.max()), "beside": Interval(beside), "told": Interval(told), "late": slow.max(),
+    return {**stopped(rivals), "cases": len(mean), "on": Interval(on), "worst": at_most(on.max()), "beside": Interval(beside), "told": Interval(told), "late": slow.max(),
             "others": at_most(late.drop(slow.index).max()), "untold": untold.max(),
             "pairs": auto.overlaps.max() / 1e6}

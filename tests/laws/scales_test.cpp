@@ -51,8 +51,11 @@ class Scales : public testing::Test {
     for (int frame = 0; frame < 100; ++frame) {
       // Nearer, into each other, out again, slowly and fast, with rests and jumps.
       const double step = frame < 50 ? 4 : 10;
-      if (frame % 7 != 0)
-        place += step * Vec3<double>(frame % 20 < 10 ? -1.5 : 1.5, unit(random), unit(random));
+      if (frame % 7 != 0) {
+        // Drawn one after the other: compilers evaluate arguments in different orders.
+        const double z = unit(random), y = unit(random);
+        place += step * Vec3<double>(frame % 20 < 10 ? -1.5 : 1.5, y, z);
+      }
       if (frame > 75 && frame % 10 == 0) place = Vec3<double>(80 * unit(random), 30, -10);
       Pose pose;  // turned by a right angle about two axes: exact, too
       pose.rotation << 0, -1, 0, 0, 0, -1, 1, 0, 0;
@@ -104,7 +107,7 @@ TYPED_TEST(Scales, ChangeNoAnswer) {
   for (const TriangleMesh& mesh : {crown, triangle}) {
     const Answers usual = this->template play<Sphere<float>>(mesh, 0);
     const auto hits = std::count(usual.touching.begin(), usual.touching.end(), true);
-    EXPECT_GT(hits, 2);  // the random motion depends on the compiler
+    EXPECT_GT(hits, 5);
     EXPECT_LT(hits, 90);
     for (const int exponent : {-1074, -1000, -300, -150, -70, 60, 119, 127, 300, 1010}) {
       this->expect_scaled(this->template play<Sphere<float>>(mesh, exponent), usual, exponent);

@@ -97,8 +97,7 @@ TEST(Frames, HardlyChangeWhatRigidVolumesTest) {
   options.count = Count::on;
   const auto compiled = volumes();
   for (const char* volume : {"sphere", "obb", "rss"}) {
-    const auto is_it = [&](const Named& each) { return each.name == volume; };
-    if (std::none_of(compiled.begin(), compiled.end(), is_it)) continue;
+    if (!has(compiled, volume)) continue;
     for (const std::uint32_t fan_out : {2u, 8u}) {
       Variant variant;
       variant.volume = volume, variant.fan_out = fan_out, variant.query = "contacts";
