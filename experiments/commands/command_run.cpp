@@ -30,7 +30,7 @@ class Reporter {
  public:
   explicit Reporter(double every) : every_(every) {
     if (!isatty(STDERR_FILENO))
-      speaker_ = std::jthread([this](std::stop_token stop) { speak(stop); });
+      speaker_ = std::jthread([this](const std::stop_token& stop) { speak(stop); });
   }
 
   void operator()(std::size_t done, std::size_t all) {
@@ -76,7 +76,7 @@ class Reporter {
     if (done_ == all_) std::fputc('\n', stderr);
   }
 
-  void speak(std::stop_token stop) {
+  void speak(const std::stop_token& stop) {
     std::mutex mutex;
     std::unique_lock lock(mutex);
     const auto every = std::chrono::duration<double>(every_);

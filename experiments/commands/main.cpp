@@ -72,6 +72,8 @@ int parsed(CLI::App& app, int argc, char** argv) {
 }  // namespace
 }  // namespace bvlab
 
+// Where even the message finds no memory, the program ends.
+// NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
   using namespace bvlab;
   CLI::App app("bvlab: measures collision detection with bounding-volume hierarchies and boxes");

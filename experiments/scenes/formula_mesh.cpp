@@ -119,7 +119,7 @@ std::pair<std::size_t, std::size_t> nearest_grid(std::size_t polygons, double pr
   for (std::size_t across = std::max<std::size_t>(ideal > spread ? ideal - spread : 3, 3);
        across <= ideal + spread; ++across) {
     const auto around = std::max<std::size_t>(
-        static_cast<std::size_t>(half / static_cast<double>(across) + 0.5), least_around);
+        static_cast<std::size_t>(std::llround(half / static_cast<double>(across))), least_around);
     if (score({around, across}) < score(best)) best = {around, across};
   }
   return best;

@@ -107,7 +107,7 @@ StudyParameter number_parameter(std::string name, double fallback, NumberBounds 
   return {std::move(name), Type::number, false, texts_of({fallback}), std::move(what), bounds};
 }
 
-StudyParameter numbers_parameter(std::string name, std::vector<double> fallback,
+StudyParameter numbers_parameter(std::string name, const std::vector<double>& fallback,
                                  NumberBounds bounds, std::string what) {
   return {std::move(name), Type::number, true, texts_of(fallback), std::move(what), bounds};
 }
@@ -117,8 +117,8 @@ StudyParameter whole_parameter(std::string name, double fallback, NumberBounds b
   return {std::move(name), Type::whole, false, texts_of({fallback}), std::move(what), bounds};
 }
 
-StudyParameter wholes_parameter(std::string name, std::vector<double> fallback, NumberBounds bounds,
-                                std::string what) {
+StudyParameter wholes_parameter(std::string name, const std::vector<double>& fallback,
+                                NumberBounds bounds, std::string what) {
   return {std::move(name), Type::whole, true, texts_of(fallback), std::move(what), bounds};
 }
 

@@ -46,12 +46,12 @@ StudyParameter words_parameter(std::string name, std::vector<std::string> fallba
 using NumberBounds = StudyParameter::Bounds;
 StudyParameter number_parameter(std::string name, double fallback, NumberBounds bounds,
                                 std::string what);
-StudyParameter numbers_parameter(std::string name, std::vector<double> fallback,
+StudyParameter numbers_parameter(std::string name, const std::vector<double>& fallback,
                                  NumberBounds bounds, std::string what);
 StudyParameter whole_parameter(std::string name, double fallback, NumberBounds bounds,
                                std::string what);
-StudyParameter wholes_parameter(std::string name, std::vector<double> fallback, NumberBounds bounds,
-                                std::string what);
+StudyParameter wholes_parameter(std::string name, const std::vector<double>& fallback,
+                                NumberBounds bounds, std::string what);
 
 inline constexpr NumberBounds seeds{1, 1e9};
 

@@ -151,9 +151,7 @@ WorldRun run_of(const Contestant& who, const TriangleMesh& mesh, const Trace& tr
   return run;
 }
 
-std::string nanoseconds(double seconds) {
-  return std::to_string(static_cast<std::int64_t>(seconds * 1e9 + 0.5));
-}
+std::string nanoseconds(double seconds) { return std::to_string(std::llround(seconds * 1e9)); }
 
 void run(const StudyDefinition& definition, const std::filesystem::path& folder,
          const Progress& progress) {
