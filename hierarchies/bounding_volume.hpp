@@ -61,6 +61,8 @@ concept FittedTightly =
 /// one.
 enum class Fit { published, tight };
 
+constexpr std::string_view name_of(Fit fit) { return fit == Fit::tight ? "tight" : "published"; }
+
 /// A solid that encloses points and can be tested cheaply against its own kind.
 ///
 /// A volume is a plain aggregate of scalars S (float, double, or a SIMD batch of either), with free

@@ -3,15 +3,15 @@
 /// are in the order (0,1) (0,2) ... (0,n-1) (1,2) ...
 #pragma once
 
-#include <concepts>
 #include <cstdint>
+#include <ranges>
 #include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "traversal/answers_in_order.hpp"
-#include "traversal/bodies.hpp"
+#include "traversal/strategy_pairs.hpp"
 
 namespace bvlab {
 
@@ -23,134 +23,79 @@ inline std::vector<ObjectPair> all_object_pairs(std::uint32_t objects) {
   return pairs;
 }
 
-/// A strategy whose test of the two roots can be made by the caller, for many pairs at once:
-///   starts_at_roots()     whether the next run begins with the test of the roots
-///   roots_are_apart()     the caller found the roots apart: the run is over
-///   run_below_roots(...)  like `run`, for roots known to overlap
-/// One query object tests the roots of all pairs.
-template <class S>
-concept RootsFirst = requires(S strategy) {
-  { strategy.starts_at_roots() } -> std::same_as<bool>;
-  strategy.roots_are_apart();
-};
-
-/// BodySet is `Bodies` or a class with the same members.
-template <class BodySet, class Strategy>
+/// Pairs is StrategyPairs, WidePairs, or a class with the same members: those that WorldOf uses,
+/// and
+///   make_room(threads)             allocates for all bodies, so that no frame has to
+///   begin_all(poses, origin, threads, counter, make_query)
+///                                  begins a frame in which every body may have moved: moves all
+///   pairs()                        the pairs in slots 0, 1, ...
+template <class Pairs>
 class AllPairsOf {
  public:
-  /// Each pair gets a copy of `strategy`. The BodySet is constructed from `bodies`.
-  template <class Made>
-  AllPairsOf(Made&& bodies, std::vector<ObjectPair> pairs, const Strategy& strategy,
-             int threads = 1)
-      : bodies_(std::forward<Made>(bodies)),
-        pairs_(std::move(pairs)),
-        strategies_(pairs_.size(), strategy),
-        threads_(threads) {
-    bodies_.make_room();
-    if (threads_.count() > 1) bodies_.set_sharing(Sharing::several_threads);
-    if constexpr (roots_as_batches) {
-      fresh_.reserve(pairs_.size());
-      apart_.resize(pairs_.size());
-    }
+  /// `engine` has the bodies, and no pairs yet.
+  AllPairsOf(Pairs engine, const std::vector<ObjectPair>& pairs, int threads = 1)
+      : engine_(std::move(engine)), threads_(threads) {
+    // The last slot first: room for all is made at once.
+    for (std::size_t p = pairs.size(); p-- > 0;)
+      engine_.put(static_cast<std::uint32_t>(p), pairs[p]);
+    engine_.make_room(threads_);
   }
 
   /// Moves every body to its pose and runs every pair's query. `make_query(p)` returns the query
   /// for pair p (an index into `pairs()`); `take(p, query)` receives it with its answer, in the
-  /// order of pairs. One more query is made for the batched test of roots; it is never passed to
-  /// `take`.
+  /// order of pairs over binary trees, in any order over wide ones. More queries may be made than
+  /// are taken: to test roots of all pairs at once, or triangles that a pair kept.
   ///
-  /// With several threads, all queries run before the first `take`, and `make_query` is called on
-  /// any thread, concurrently. Answers, contacts and counts equal those of one thread. Three things
-  /// limit the speedup: the batched test of roots and the calls of `take` are serial, a frame of
-  /// few pairs lasts as long as its longest pair, and threads read posed volumes from each other's
-  /// caches.
+  /// With several threads, all queries run before the first `take`, the order is that of pairs, and
+  /// `make_query` is called on any thread, concurrently. Answers, contacts and counts equal those
+  /// of one thread. Three things limit the speedup: what is done for all pairs at once and the
+  /// calls of `take` are serial, a frame of few pairs lasts as long as its longest pair, and
+  /// threads read posed volumes from each other's caches.
   template <class Counter, class MakeQuery, class Take>
   void frame(std::span<const Pose> poses, Counter& counter, MakeQuery&& make_query, Take&& take) {
-    using Query = std::remove_cvref_t<decltype(make_query(0))>;
+    const auto make = [&make_query](std::uint32_t slot, const ObjectPair&) {
+      return make_query(std::size_t{slot});
+    };
     if (!has_origin_) origin_ = centre_of(poses), has_origin_ = true;
-    bodies_.move(poses, origin_);
-    if constexpr (roots_as_batches && !wants_bound<Query>()) find_roots_apart(counter, make_query);
-    if (threads_.count() == 1) return run_range(0, pairs_.size(), counter, make_query, take);
-    answers_.run<Query>(
-        threads_, pairs_.size(), pairs_.size(), counter, [](std::size_t p) { return p; },
-        [&](std::size_t begin, std::size_t end, std::size_t, Counter& own, auto&& answer) {
-          run_range(begin, end, own, make_query, answer);
-        },
-        take);
+    engine_.begin_all(poses, origin_, threads_, counter, make);
+    const auto all = std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(pairs().size()));
+    answers_.run_pairs(
+        engine_, threads_, all, pairs().size(), counter, make,
+        [&take](std::uint32_t slot, const ObjectPair&, auto&& query) { take(slot, query); });
   }
 
-  BodySet& bodies() { return bodies_; }
-  const std::vector<ObjectPair>& pairs() const { return pairs_; }
-  const Strategy& strategy(std::size_t pair) const { return strategies_[pair]; }
-
+  const std::vector<ObjectPair>& pairs() const { return engine_.pairs(); }
   /// The entries of all fronts together.
-  std::size_t front_size() const {
-    std::size_t sum = 0;
-    for (const auto& strategy : strategies_) sum += strategy.front_size();
-    return sum;
+  std::size_t front_size() const { return engine_.front_size(); }
+
+  /// Of StrategyPairs.
+  auto& bodies()
+    requires requires(Pairs& engine) { engine.bodies(); }
+  {
+    return engine_.bodies();
+  }
+  const auto& strategy(std::size_t pair) const
+    requires requires(const Pairs& engine) { engine.strategy(0); }
+  {
+    return engine_.strategy(pair);
   }
 
  private:
-  static constexpr bool roots_as_batches = BodySet::culls_in_batches && RootsFirst<Strategy>;
-
-  template <class Counter, class MakeQuery, class Take>
-  void run_range(std::size_t begin, std::size_t end, Counter& counter, MakeQuery& make_query,
-                 Take& take) {
-    constexpr bool roots_first =
-        roots_as_batches && !wants_bound<std::remove_cvref_t<decltype(make_query(0))>>();
-    for (std::size_t p = begin; p < end; ++p) {
-      auto query = make_query(p);
-      const std::uint64_t tested = counter.n_v + counter.n_p;
-      const auto pair = bodies_.pair(pairs_[p], query, counter);
-      if constexpr (roots_first) {
-        const bool from_roots = strategies_[p].starts_at_roots();
-        if (from_roots) {
-          counter.tested(1);
-        }
-        if (!from_roots)
-          strategies_[p].run(pair);
-        else if (apart_[p])
-          strategies_[p].roots_are_apart();
-        else
-          strategies_[p].run_below_roots(pair);
-      } else {
-        strategies_[p].run(pair);
-      }
-      counter.queried(tested);
-      take(p, query);
-    }
-  }
-
-  template <class Counter, class MakeQuery>
-  void find_roots_apart(Counter& counter, MakeQuery& make_query) {
-    fresh_.clear();
-    for (std::uint32_t p = 0; p < pairs_.size(); ++p)
-      if (strategies_[p].starts_at_roots()) fresh_.push_back(p);
-    if (fresh_.empty()) return;
-    auto query = make_query(fresh_[0]);
-    bodies_.cull_roots(pairs_, fresh_, query, counter, apart_.data());
-  }
-
-  BodySet bodies_;
-  std::vector<ObjectPair> pairs_;
-  std::vector<Strategy> strategies_;
+  Pairs engine_;
   Threads threads_;
   AnswersInOrder answers_;
-  // Only where roots are tested first:
-  std::vector<std::uint32_t> fresh_;  // pairs whose next run starts at the roots
-  std::vector<std::uint8_t> apart_;   // for each pair, whether its roots are apart
   Vec3<double> origin_ = Vec3<double>::Zero();
   bool has_origin_ = false;
 };
 
 /// One body for each shape (meshes and hierarchies must outlive this). B is the scalar or batch in
-/// which volumes are tested.
+/// which volumes are tested. Each pair begins with a copy of `strategy`.
 template <class B, BoundingVolume V, class Strategy>
-class AllPairs : public AllPairsOf<Bodies<B, V>, Strategy> {
+class AllPairs : public AllPairsOf<StrategyPairs<Bodies<B, V>, Strategy>> {
  public:
-  AllPairs(std::span<const Shape<V>> shapes, std::vector<ObjectPair> pairs,
+  AllPairs(std::span<const Shape<V>> shapes, const std::vector<ObjectPair>& pairs,
            const Strategy& strategy, int threads = 1)
-      : AllPairsOf<Bodies<B, V>, Strategy>(shapes, std::move(pairs), strategy, threads) {}
+      : AllPairsOf<StrategyPairs<Bodies<B, V>, Strategy>>({shapes, strategy}, pairs, threads) {}
 };
 
 }  // namespace bvlab

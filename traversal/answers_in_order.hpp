@@ -7,16 +7,42 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <ranges>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/threads.hpp"
+#include "traversal/body_pair.hpp"
 
 namespace bvlab {
 
 class AnswersInOrder {
  public:
+  /// Queries the pairs in `slots`, each below `count`, on the threads: `pairs` is as in WorldOf.
+  /// One thread delivers each answer as it is found.
+  template <class Pairs, class Slots, class Counter, class MakeQuery, class Take>
+  void run_pairs(Pairs& pairs, Threads& threads, const Slots& slots, std::size_t count,
+                 Counter& counter, MakeQuery& make_query, Take&& take) {
+    using Query = std::remove_cvref_t<decltype(make_query(std::uint32_t{}, ObjectPair{}))>;
+    if (threads.count() == 1) return pairs.run(slots, 0, counter, make_query, take);
+    const auto at = [&slots](std::size_t k) {
+      return std::ranges::begin(slots) + static_cast<std::ptrdiff_t>(k);
+    };
+    run<Query>(
+        threads, slots.size(), count, counter, [&](std::size_t k) { return *at(k); },
+        [&](std::size_t begin, std::size_t end, std::size_t worker, Counter& own, auto&& answer) {
+          pairs.run(std::ranges::subrange(at(begin), at(end)), worker, own, make_query,
+                    [&](std::uint32_t slot, const ObjectPair&, const Query& query) {
+                      answer(slot, query);
+                    });
+        },
+        [&](std::uint32_t slot, const Query& query) { take(slot, pairs.pairs()[slot], query); });
+  }
+
+ private:
   /// Runs `count` queries on the threads: `run_some(begin, end, worker, counter, take)` runs those
   /// from begin to end, each with a key below `keys`, and calls take(key, query). Then, on the
   /// calling thread and in order, calls `take(key, query)` for key_of(0) to key_of(count - 1).
@@ -49,7 +75,6 @@ class AnswersInOrder {
     for (const Own& own : all) counter.add(own.counter);
   }
 
- private:
   /// A share of this size makes the cost of handing it out negligible.
   static constexpr std::size_t largest_share = 32;
 

@@ -3,8 +3,7 @@
 /// as long as wide, as in scans and simulations: slab-boxes in wide trees, as many children per
 /// node as a register has lanes, tested in the bodies' own frames, with margins from frame to
 /// frame. recommended_for.hpp has others and chooses, as `bvlab replay --recommended` does. For
-/// distances, swept rectangles in binary trees are best (rss.hpp), compared in the frame of one
-/// body, by recursion that tests the leaves of the last answer first (strategies/witness.hpp).
+/// distances see recommended_distances.hpp.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -29,6 +29,7 @@
 
 #include "hierarchies/volumes/obb.hpp"
 #include "hierarchies/wide/obb_sibling_test.hpp"
+#include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries/touching.hpp"
 #include "traversal/recommended.hpp"
@@ -179,12 +180,13 @@ struct HierarchiesBy {
 
 /// The expected cost of the counted samples with one candidate, in the unit of its unit costs.
 /// samples[k] has the poses of all bodies. `make_query(p)` returns the query of pair p, as for
-/// WidePairs::frame.
+/// AllPairsOf::frame.
 template <class Best, class MakeQuery>
 double expected_cost(std::span<const typename Best::Shape> shapes,
                      std::span<const std::vector<Pose>> samples, const UnitCosts& costs,
                      MakeQuery&& make_query) {
-  typename Best::Pairs pairs(shapes, all_object_pairs(static_cast<std::uint32_t>(shapes.size())));
+  AllPairsOf pairs(typename Best::Pairs(shapes),
+                   all_object_pairs(static_cast<std::uint32_t>(shapes.size())));
   double cost = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     Counting counts;

@@ -26,6 +26,7 @@ namespace bvlab {
 /// Pairs is StrategyPairs, WidePairs, or a class with the same members:
 ///   size(), mesh(i)                     of bodies
 ///   put(slot, pair), drop(slot)         begins to query a pair in later frames, or ends it
+///   pairs()                             the pairs, by slot
 ///   begin<Query>(movers, poses, origin, threads)  begins a frame: who has moved; poses of all
 ///   set_pose(i)                                   for each mover, on any thread
 ///   run(slots, worker, counter, make_query, take) queries some of the pairs, on one thread
@@ -66,10 +67,7 @@ class WorldOf {
     near_.update([&](std::uint32_t i) { pairs_.set_pose(i); },
                  [&](std::uint32_t slot, const ObjectPair& pair) { pairs_.put(slot, pair); },
                  [&](std::uint32_t slot) { leave(slot), pairs_.drop(slot); });
-    if (near_.threads().count() == 1)
-      pairs_.run(near_.due(), 0, counter, make, take);
-    else
-      run_on_threads<Query>(counter, make, take);
+    answers_.run_pairs(pairs_, near_.threads(), near_.due(), near_.slots(), counter, make, take);
     queried_ = near_.due().size();
     near_.settle();
   }
@@ -88,20 +86,6 @@ class WorldOf {
   }
 
  private:
-  template <class Query, class Counter, class Make, class Take>
-  void run_on_threads(Counter& counter, Make& make, Take& take) {
-    const auto due = near_.due();
-    answers_.run<Query>(
-        near_.threads(), due.size(), near_.slots(), counter, [&](std::size_t k) { return due[k]; },
-        [&](std::size_t begin, std::size_t end, std::size_t worker, Counter& own, auto&& answer) {
-          pairs_.run(due.subspan(begin, end - begin), worker, own, make,
-                     [&](std::uint32_t slot, const ObjectPair&, const Query& query) {
-                       answer(slot, query);
-                     });
-        },
-        [&](std::uint32_t slot, const Query& query) { take(slot, near_.pair(slot), query); });
-  }
-
   Pairs pairs_;
   NearPairs<Method> near_;
   AnswersInOrder answers_;

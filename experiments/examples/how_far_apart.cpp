@@ -1,24 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// How far apart are several bodies, frame after frame? Every pair keeps what it learnt of the last
-/// frame.
+/// How far apart are several bodies, frame after frame? Each pair begins with the triangles that
+/// were nearest in the last frame.
 #include <cstdio>
 
-#include "hierarchies/builds.hpp"
-#include "hierarchies/volumes/rss.hpp"
 #include "ring.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
-#include "traversal/strategies/margins.hpp"
+#include "traversal/recommended_distances.hpp"
 
 using namespace bvlab;
-using Volume = Rss<float>;  // made for distances (larsen1999fast)
 
 int main() {
   const TriangleMesh mesh = ring();
-  const Hierarchy<Volume> hierarchy(mesh, builds::BottomUpLocal::topology(mesh, 2));
-  const std::vector<Shape<Volume>> shapes(3, {&mesh, &hierarchy});
-  AllPairs<Batch<float, 8>, Volume, Margins> bodies(shapes, all_object_pairs(3), Margins());
+  const auto hierarchy = RecommendedDistances::hierarchy(mesh);
+  const std::vector<RecommendedDistances::Shape> shapes(3, {&mesh, &hierarchy});
+  AllPairsOf bodies(RecommendedDistances::Pairs(shapes), all_object_pairs(3));
 
   NotCounting counter;
   for (int frame = 0; frame < 4; ++frame) {

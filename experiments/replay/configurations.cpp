@@ -9,9 +9,9 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/player.hpp"
 #include "experiments/replay/registry.hpp"
+#include "traversal/recommended_distances.hpp"
 #include "traversal/recommended_for.hpp"
 #include "traversal/strategies/recursive.hpp"
-#include "traversal/strategies/witness.hpp"
 
 namespace bvlab {
 namespace {
@@ -27,7 +27,7 @@ Variant as(Variant variant) {
   set_kernel(variant, Best::Kernel::name);
   variant.volume = Best::Volume::name, variant.strategy = Best::Memory::name;
   variant.build = Best::Build::name, variant.leaf_size = Best::leaf_size;
-  variant.fit = Best::fit == Fit::tight ? "tight" : "published";
+  variant.fit = name_of(Best::fit);
   return variant;
 }
 
@@ -39,11 +39,13 @@ void set_recommended(Variant& variant) {
     variant = as<Recommended>(variant);
     return;
   }
+  using Best = RecommendedDistances;
   set_tree(variant, "binary");
-  variant.frame = "body";
-  variant.volume = "rss";
-  variant.strategy = has(strategies(), Witness::name) ? Witness::name : Recursive::name;
-  variant.build = "bottom-up", variant.fit = "tight", variant.leaf_size = 1;
+  variant.frame = name_of(Best::frame), variant.volume = Best::Volume::name;
+  variant.strategy =
+      has(strategies(), Best::Strategy::name) ? Best::Strategy::name : Recursive::name;
+  variant.build = Best::Build::name, variant.leaf_size = Best::leaf_size;
+  variant.fit = name_of(Best::fit);
 }
 
 /// li1998incremental, with the list that it found best.

@@ -2,7 +2,6 @@
 /// What a variant says of hierarchies, made.
 #pragma once
 
-#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -13,11 +12,6 @@
 #include "traversal/bodies.hpp"
 
 namespace bvlab {
-
-/// What volumes over T are tested in: as many lanes as a register holds, where it holds four or
-/// more.
-template <class T>
-using NativeBatch = Batch<T, native_width<T> == 1 ? 1 : std::max(native_width<T>, 4)>;
 
 /// The variant's names have been checked.
 inline Fit fit_of(const Variant& variant) {

@@ -200,9 +200,10 @@ void play(const VolumeEntry& volume, const AnyHierarchies& hierarchies, const Tr
           const Variant& variant, const ReplayOptions& options, ReplayResult& result) {
   const auto strategy = made_from<Strategy>(variant.strategy);
   const auto engine = [&]<class Counter>(std::type_identity<Counter>) {
-    return AllPairsOf<BodiesFor<Strategy, Query, Counter>, Strategy>(
-        bodies_for<Strategy, Query, Counter>(volume, hierarchies, trace.objects, variant),
-        all_object_pairs(static_cast<std::uint32_t>(trace.objects)), strategy,
+    return AllPairsOf<StrategyPairs<BodiesFor<Strategy, Query, Counter>, Strategy>>(
+        {bodies_for<Strategy, Query, Counter>(volume, hierarchies, trace.objects, variant),
+         strategy},
+        all_object_pairs(static_cast<std::uint32_t>(trace.objects)),
         static_cast<int>(options.threads));
   };
   play_over<Query>(engine, trace, variant, options, result);

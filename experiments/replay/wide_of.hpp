@@ -73,9 +73,9 @@ void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const V
     const auto shapes = shapes_over(meshes, hierarchies, trace.objects);
     with_memory(variant, [&]<class Memory>(std::type_identity<Memory>) {
       const auto engine = [&](auto) {
-        return WidePairs<V, fan_out, Memory, Kernel>(
-            shapes, all_object_pairs(static_cast<std::uint32_t>(trace.objects)),
-            static_cast<int>(options.threads));
+        return AllPairsOf(WidePairs<V, fan_out, Memory, Kernel>(shapes),
+                          all_object_pairs(static_cast<std::uint32_t>(trace.objects)),
+                          static_cast<int>(options.threads));
       };
       play_over<Query>(engine, trace, variant, options, result);
     });

@@ -136,9 +136,9 @@ ReplayResult recursed(const Scene& scene,
   ReplayResult result;
   const auto engine = [&]<class Counter>(std::type_identity<Counter>) {
     using Bodies = AnyBodies<Query, Counter, TypeList<NoFront>>;
-    return AllPairsOf<Bodies, Recursive>(
-        Bodies(loops()), all_object_pairs(static_cast<std::uint32_t>(scene.trace.objects)),
-        Recursive());
+    return AllPairsOf<StrategyPairs<Bodies, Recursive>>(
+        {Bodies(loops()), Recursive()},
+        all_object_pairs(static_cast<std::uint32_t>(scene.trace.objects)));
   };
   detail::play_over<Query>(engine, scene.trace, Variant{}, options, result);
   return result;

@@ -46,6 +46,11 @@ using Batch = stdx::simd<T, stdx::simd_abi::deduce_t<T, W>>;
 template <class T>
 constexpr int native_width = static_cast<int>(stdx::native_simd<T>::size());
 
+/// As many lanes as a register holds, but at least four; one where there are no registers.
+template <class T>
+using NativeBatch =
+    Batch<T, native_width<T> == 1 ? 1 : (native_width<T> > 4 ? native_width<T> : 4)>;
+
 template <class S>
 concept Batched = stdx::is_simd_v<S>;
 

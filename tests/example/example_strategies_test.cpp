@@ -19,10 +19,11 @@ using namespace strategy_laws;
 template <class Query, class Counter, class Strategy>
 auto any_bodies_of(const Scene& scene, const Strategy& strategy) {
   using Bodies = AnyBodies<Query, Counter, typename Strategy::OwnFronts>;
-  return AllPairsOf<Bodies, Strategy>(
-      Bodies(std::make_unique<detail::LoopsOver<V, Query, TypeList<>>>(scene.shapes, Frame::world),
-             own_loops_for<V, Query, Strategy>().loop),
-      all_object_pairs(2), strategy);
+  return AllPairsOf<StrategyPairs<Bodies, Strategy>>(
+      {Bodies(std::make_unique<detail::LoopsOver<V, Query, TypeList<>>>(scene.shapes, Frame::world),
+              own_loops_for<V, Query, Strategy>().loop),
+       strategy},
+      all_object_pairs(2));
 }
 
 template <class Strategy>

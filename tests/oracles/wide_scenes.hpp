@@ -12,6 +12,7 @@
 
 #include "experiments/scenes/formula_mesh.hpp"
 #include "hierarchies/builds.hpp"
+#include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
 #include "traversal/wide/kernels.hpp"
@@ -216,8 +217,9 @@ class PlayedWide {
       const std::size_t k = i % scene.meshes.size();
       shapes.push_back({&scene.meshes[k], &hierarchies_[k]});
     }
-    engine_ = std::make_unique<WidePairs<V, F, Memory, Kernel>>(
-        shapes, all_object_pairs(static_cast<std::uint32_t>(shapes.size())));
+    engine_ = std::make_unique<AllPairsOf<WidePairs<V, F, Memory, Kernel>>>(
+        WidePairs<V, F, Memory, Kernel>(shapes),
+        all_object_pairs(static_cast<std::uint32_t>(shapes.size())));
   }
 
   void expect_touching(const Truth& truth) {
@@ -268,7 +270,7 @@ class PlayedWide {
 
   const Scene& scene_;
   std::vector<typename Kernel::template Hierarchy<V, F>> hierarchies_;
-  std::unique_ptr<WidePairs<V, F, Memory, Kernel>> engine_;
+  std::unique_ptr<AllPairsOf<WidePairs<V, F, Memory, Kernel>>> engine_;
 };
 
 template <class V, int F, class Kernel, class Expect>

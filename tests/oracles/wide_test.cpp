@@ -250,8 +250,8 @@ bool surfaces_touch(const TriangleMesh& mesh, const PosesOfFrame& frame) {
 }
 
 /// What an engine of two bodies answers.
-bool touch(WidePairs<SlabBox<float>, 16, WideMargins>& engine, const PosesOfFrame& frame,
-           Counting& counter) {
+bool touch(AllPairsOf<WidePairs<SlabBox<float>, 16, WideMargins>>& engine,
+           const PosesOfFrame& frame, Counting& counter) {
   bool found = false;
   engine.frame(
       frame, counter, [](std::size_t) { return Touching(); },
@@ -264,7 +264,7 @@ TEST(Wide, TouchingLasts) {
   const TriangleMesh mesh = formula_mesh("icosphere", 320);
   const WideHierarchy<SlabBox<float>, 16> hierarchy(mesh, builds::BottomUpLocal::topology(mesh, 1));
   const std::vector<WideShape<SlabBox<float>, 16>> shapes(2, {&mesh, &hierarchy});
-  WidePairs<SlabBox<float>, 16, WideMargins> engine(shapes, all_object_pairs(2));
+  AllPairsOf engine(WidePairs<SlabBox<float>, 16, WideMargins>(shapes), all_object_pairs(2));
   constexpr std::size_t frames = 4000;
   std::size_t looked_at = 0, touching = 0;
   for (std::size_t f = 0; f < frames; ++f) {
@@ -286,7 +286,7 @@ TEST(Wide, TouchingInAPlaneLasts) {
   const TriangleMesh mesh = formula_mesh("box", 12);
   const WideHierarchy<SlabBox<float>, 16> hierarchy(mesh, builds::BottomUpLocal::topology(mesh, 1));
   const std::vector<WideShape<SlabBox<float>, 16>> shapes(2, {&mesh, &hierarchy});
-  WidePairs<SlabBox<float>, 16, WideMargins> engine(shapes, all_object_pairs(2));
+  AllPairsOf engine(WidePairs<SlabBox<float>, 16, WideMargins>(shapes), all_object_pairs(2));
   double side = 0;
   for (const auto& vertex : mesh.vertices) side = std::max(side, 2 * vertex[0]);
   std::size_t traversed = 0, touching = 0;
@@ -321,8 +321,8 @@ void expect_answers_from_the_roots(const MakeQuery& make_query, const AnswerOf& 
   const TriangleMesh mesh = formula_mesh("star", 120);
   const WideHierarchy<SlabBox<float>, 16> hierarchy(mesh, builds::BottomUpLocal::topology(mesh, 1));
   const std::vector<WideShape<SlabBox<float>, 16>> shapes(8, {&mesh, &hierarchy});
-  WidePairs<SlabBox<float>, 16, WideMargins> margins(shapes, all_object_pairs(8));
-  WidePairs<SlabBox<float>, 16> from_roots(shapes, all_object_pairs(8));
+  AllPairsOf margins(WidePairs<SlabBox<float>, 16, WideMargins>(shapes), all_object_pairs(8));
+  AllPairsOf from_roots(WidePairs<SlabBox<float>, 16>(shapes), all_object_pairs(8));
   const auto frames = jumping_and_slow(8);
   for (std::size_t f = 0; f < frames.size(); ++f) {
     std::vector<double> expected(margins.pairs().size(), -1), found = expected;
@@ -418,8 +418,8 @@ TEST(Wide, RestIsNotTested) {
       const std::size_t k = i % scene.meshes.size();
       shapes.push_back({&scene.meshes[k], &hierarchies[k]});
     }
-    WidePairs<SlabBox<float>, 8, WideMargins> engine(
-        shapes, all_object_pairs(static_cast<std::uint32_t>(shapes.size())));
+    AllPairsOf engine(WidePairs<SlabBox<float>, 8, WideMargins>(shapes),
+                      all_object_pairs(static_cast<std::uint32_t>(shapes.size())));
     std::vector<std::uint8_t> found(engine.pairs().size());
     for (std::size_t f = 0; f < scene.frames.size(); ++f) {
       std::uint64_t tested = 0;

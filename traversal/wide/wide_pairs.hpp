@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Pairs of bodies over wide trees, queried frame by frame: all pairs of a scene, as AllPairs does,
-/// or pairs that begin and end, as in a World. Early tests decide most pairs, a register of pairs
-/// at a time (early_culling.hpp); the rest are traversed, two pairs interleaved.
+/// Pairs of bodies over wide trees: pairs in slots, as AllPairsOf and WorldOf use them. Early tests
+/// decide most pairs, a register of pairs at a time (early_culling.hpp); the rest are traversed,
+/// two pairs interleaved. Answers come first for pairs that were decided early, then for those that
+/// are traversed, as they end.
 ///
 /// The Memory says what pairs keep from frame to frame: NoMemory or WideMargins. The Kernel says
 /// what one step of a traversal tests (kernels.hpp).
@@ -10,14 +11,12 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <ranges>
 #include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "hierarchies/geometry/threads.hpp"
-#include "traversal/all_pairs.hpp"
 #include "traversal/wide/siblings_kernel.hpp"
 #include "traversal/wide/wide_margins.hpp"
 #include "traversal/wide/wide_pair.hpp"
@@ -50,10 +49,8 @@ class WidePairs {
   using Body = typename Kernel::template Body<V, F>;
 
  public:
-  /// One body for each shape, which must outlive this; threads are for `frame`.
-  explicit WidePairs(std::span<const WideShape<V, F, Kernel>> shapes,
-                     std::vector<ObjectPair> pairs = {}, int threads = 1)
-      : pairs_(std::move(pairs)), threads_(threads), workers_(threads_.count()) {
+  /// One body for each shape, which must outlive this.
+  explicit WidePairs(std::span<const WideShape<V, F, Kernel>> shapes) {
     bodies_.reserve(shapes.size());
     for (const auto& [mesh, hierarchy] : shapes) {
       bodies_.emplace_back(*mesh, *hierarchy);
@@ -61,26 +58,7 @@ class WidePairs {
       culling_.add_body(hierarchy->supports());
       memory_.add_body(hierarchy->sphere(), hierarchy->reach());
     }
-    memory_.resize(pairs_.size());
   }
-
-  /// As AllPairs::frame. With one thread, `take` is called first for pairs that were decided early,
-  /// then for those traversed, as they end. A second query may be made for a pair, to test
-  /// triangles that a Memory kept; it is never passed to `take`.
-  template <class Counter, class MakeQuery, class Take>
-  void frame(std::span<const Pose> poses, Counter& counter, MakeQuery&& make_query, Take&& take) {
-    using Query = std::remove_cvref_t<decltype(make_query(0))>;
-    if (!has_origin_) origin_ = centre_of(poses), has_origin_ = true;
-    poses_ = poses;
-    memory_.template begin_frame<Query>();
-    if (threads_.count() > 1) return frame_on_threads<Query>(counter, make_query, take);
-    for (std::size_t i = 0; i < bodies_.size(); ++i) move(i);
-    query_pairs<Query>(
-        std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(pairs_.size())), workers_[0],
-        counter, make_query, take);
-  }
-
-  // ---- pairs that come and go, in slots: see world_of.hpp --------------------------------------
 
   std::size_t size() const { return bodies_.size(); }
   const TriangleMesh& mesh(std::size_t i) const { return *meshes_[i]; }
@@ -91,13 +69,33 @@ class WidePairs {
   }
   void drop(std::uint32_t slot) { memory_.forget(slot); }
 
+  void make_room(const Threads& threads) {
+    if (workers_.size() < threads.count()) workers_.resize(threads.count());
+  }
+
+  /// Begins a frame in which every body may have moved, and moves all. `poses` must remain valid
+  /// until its end.
+  template <class Counter, class MakeQuery>
+  void begin_all(std::span<const Pose> poses, const Vec3<double>& origin, Threads& threads,
+                 Counter&, MakeQuery& make_query) {
+    make_room(threads);
+    poses_ = poses, origin_ = origin;
+    memory_.template begin_frame<std::remove_cvref_t<decltype(make_query(0, ObjectPair{}))>>();
+    if (threads.count() == 1)
+      for (std::size_t i = 0; i < bodies_.size(); ++i) move(i);
+    else
+      threads.share_out(bodies_.size(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) set_pose(static_cast<std::uint32_t>(i));
+      });
+  }
+
   /// Begins a frame in which `movers` have moved. `poses`, of all bodies, must remain valid until
   /// its end.
   template <class Query>
   void begin(std::span<const std::uint32_t> movers, std::span<const Pose> poses,
-             const Vec3<double>&, Threads& threads) {
+             const Vec3<double>&, const Threads& threads) {
+    make_room(threads);
     poses_ = poses;
-    if (workers_.size() < threads.count()) workers_.resize(threads.count());
     memory_.template begin_frame<Query>();
     for (const auto i : moved_) memory_.rest(i);
     moved_.assign(movers.begin(), movers.end());
@@ -109,10 +107,11 @@ class WidePairs {
   }
 
   /// Queries the pairs in `slots` as `worker`, which is below the number of threads: calls
-  /// `make_query(slot, pair)` and `take(slot, pair, query)`.
-  template <class Counter, class MakeQuery, class Take>
-  void run(std::span<const std::uint32_t> slots, std::size_t worker, Counter& counter,
-           MakeQuery&& make_query, Take&& take) {
+  /// `make_query(slot, pair)` and `take(slot, pair, query)`. A second query may be made for a pair,
+  /// to test triangles that a Memory kept; it is never passed to `take`.
+  template <class Slots, class Counter, class MakeQuery, class Take>
+  void run(const Slots& slots, std::size_t worker, Counter& counter, MakeQuery&& make_query,
+           Take&& take) {
     using Query = std::remove_cvref_t<decltype(make_query(0, pairs_[0]))>;
     const auto make = [&](std::size_t p) {
       return make_query(static_cast<std::uint32_t>(p), pairs_[p]);
@@ -139,21 +138,6 @@ class WidePairs {
   };
 
   void move(std::size_t i) { memory_.move(i, bodies_[i], poses_[i], culling_, origin_); }
-
-  template <class Query, class Counter, class MakeQuery, class Take>
-  void frame_on_threads(Counter& counter, MakeQuery& make_query, Take& take) {
-    threads_.share_out(bodies_.size(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
-      for (std::size_t i = begin; i < end; ++i) set_pose(static_cast<std::uint32_t>(i));
-    });
-    answers_.run<Query>(
-        threads_, pairs_.size(), pairs_.size(), counter, [](std::size_t p) { return p; },
-        [&](std::size_t begin, std::size_t end, std::size_t worker, Counter& own, auto&& answer) {
-          query_pairs<Query>(
-              std::views::iota(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)),
-              workers_[worker], own, make_query, answer);
-        },
-        take);
-  }
 
   /// Decides pairs by early tests, and traverses the rest.
   template <class Query, class Slots, class Counter, class MakeQuery, class Take>
@@ -237,14 +221,11 @@ class WidePairs {
   }
 
   std::vector<ObjectPair> pairs_;
-  Threads threads_;
-  AnswersInOrder answers_;
   std::vector<Body> bodies_;
   std::vector<const TriangleMesh*> meshes_;
   EarlyCulling culling_;
   std::vector<Worker> workers_;
-  Vec3<double> origin_ = Vec3<double>::Zero();
-  bool has_origin_ = false;
+  Vec3<double> origin_ = Vec3<double>::Zero();  // Where all bodies move, their centre at first.
   [[no_unique_address]] Memory memory_;
   std::span<const Pose> poses_;
   std::vector<std::uint32_t> moved_;  // the last movers, of pairs in slots
