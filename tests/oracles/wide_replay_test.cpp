@@ -6,6 +6,7 @@
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/configurations.hpp"
+#include "experiments/replay/registry.hpp"
 #include "tests/oracles/settings.hpp"
 
 namespace bvlab {
@@ -67,10 +68,11 @@ TEST_P(WideReplay, IsRecursionOverBinaryTrees) {
 TEST_P(WideReplay, ConfigurationsAnswerTheSame) {
   const Played scene = played(settings(60)[0]);
   const auto truth = replay(scene.meshes, scene.trace, binary(GetParam()), {});
-  for (const auto& each : configurations())
-    expect_same(
-        replay(scene.meshes, scene.trace, configured(binary(GetParam()), each.name), options(2)),
-        truth, each.name);
+  for (const auto& each : configurations()) {
+    const Variant variant = configured(binary(GetParam()), each.name);
+    if (has(volumes(), variant.volume))
+      expect_same(replay(scene.meshes, scene.trace, variant, options(2)), truth, each.name);
+  }
 }
 
 TEST_P(WideReplay, FewObjectsAndFrames) {

