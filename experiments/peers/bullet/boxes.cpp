@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Bullet's dynamic trees and its incremental sweep. The pairs of its cache are those of widened
 /// boxes, so each is compared once more with the boxes themselves.
+///
+/// The trees widen a box that moves by `gDbvtMargin`, 0.05 units, which suits boxes of about one
+/// unit. Boxes a hundredth as large would each meet hundreds of others, so it is a twentieth of the
+/// boxes' mean edge here.
 #include <BulletCollision/BroadphaseCollision/btAxisSweep3.h>
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
@@ -22,21 +26,36 @@ class Bullet final : public BoxPeer {
   ~Bullet() override { release(); }
 
   std::span<const Pair> overlapping(Boxes<float> boxes) override {
-    if (boxes.size() != proxies_.size())
+    if (boxes.size() != proxies_.size()) {
       enter(boxes);
-    else
+    } else {
+      const Margin margin(margin_);
       for (std::uint32_t k = 0; k < boxes.size(); ++k) place(k, boxes[k]);
+    }
     return found(boxes);
   }
 
   std::span<const Pair> update(Boxes<float> boxes, std::span<const std::uint32_t> moved) override {
     if (boxes.size() != proxies_.size()) return overlapping(boxes);
+    const Margin margin(margin_);
     for (const std::uint32_t k : moved) place(k, boxes[k]);
     return found(boxes);
   }
   bool takes_moved() const override { return true; }
 
  private:
+  /// Bullet's margin, a variable of the library, while boxes are placed.
+  class Margin {
+   public:
+    explicit Margin(btScalar margin) : before_(gDbvtMargin) { gDbvtMargin = margin; }
+    ~Margin() { gDbvtMargin = before_; }
+    Margin(const Margin&) = delete;
+    Margin& operator=(const Margin&) = delete;
+
+   private:
+    btScalar before_;
+  };
+
   void place(std::uint32_t k, const Box<float>& box) {
     broadphase_->setAabb(proxies_[k], vector(box.lo), vector(box.hi), nullptr);
   }
@@ -56,6 +75,11 @@ class Bullet final : public BoxPeer {
   }
   void enter(Boxes<float> boxes) {
     release();
+    double edges = 0;
+    for (const auto& box : boxes)
+      for (int axis = 0; axis < 3; ++axis) edges += box.hi[axis] - box.lo[axis];
+    const double margin = 0.05 * edges / (3 * std::max<double>(boxes.size(), 1));
+    margin_ = static_cast<btScalar>(std::isfinite(margin) ? margin : 0.05);
     Box<float> all = boxes.empty() ? Box<float>{} : boxes[0];
     for (const auto& box : boxes)
       for (int axis = 0; axis < 3; ++axis) {
@@ -86,6 +110,7 @@ class Bullet final : public BoxPeer {
   }
 
   Kind kind_;
+  btScalar margin_ = 0;
   std::unique_ptr<btBroadphaseInterface> broadphase_;
   std::vector<btBroadphaseProxy*> proxies_;
   PairList pairs_;
