@@ -280,3 +280,23 @@ def powers(record):
     claim(list(overlapped.index) == ["uniform-1", "uniform-8", "uniform-64"], "three sets, of about 1, 8 and 64")
     few, some, many = (Interval(line) for line in overlapped.to_numpy())
     return {"few": few, "some": some, "many": many, "rows": lines, "off": max(off), "sums": Interval(pd.Series(sums)), "cells": len(cells) // len(found)}
+
+
+@quotes("boxes-large-peers")
+def large_peers(record):
+    """Of each number of boxes and motion: the fastest library's frame over ours."""
+    rows = records.read(record)
+    claim((rows.differing == 0).all(), "all pair sets agree with CGAL's")
+    ours = rows[rows.peer == ""].pivot_table(index=["count", "motion"], columns="coherent", values="frame_ns")
+    theirs = rows[rows.peer != ""].pivot_table(index=["count", "motion"], columns="peer", values="frame_ns")
+    lead = theirs.min(axis=1) / ours.min(axis=1)
+    claim((ours.loc[:, "on"].xs("still", level="motion") < ours.loc[:, "off"].xs("still", level="motion")).all()
+          and (ours.loc[:, "on"].xs("drift", level="motion") > ours.loc[:, "off"].xs("drift", level="motion")).all(),
+          "in four frames coherence pays where nothing moves and not in drift")
+    claim(set(theirs.xs("still", level="motion").idxmin(axis=1)) == {"bullet-dbvt"} and set(theirs.xs("drift", level="motion").idxmin(axis=1)) == {"fcl-tree"},
+          "Bullet's tree is the fastest library at rest, FCL's in drift")
+    first = rows[rows.peer == "bullet-dbvt"].first_ns / 1e9
+    stopped = rows[(rows.peer != "") & (rows.frames < rows.frames.max())]
+    return {"frames": rows.frames.max(), "still": Interval(lead.xs("still", level="motion")), "drift": Interval(lead.xs("drift", level="motion")),
+            "coherent": Interval((ours["on"] / ours["off"]).xs("drift", level="motion")), "first": Interval(first), "stopped": len(stopped),
+            "bullet_drift": Interval((theirs["bullet-dbvt"] / ours.min(axis=1)).xs("drift", level="motion").dropna())}
