@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Distances: what `recommended` gains from its parts, and over FCL and Coal, on seeds on which nothing was chosen."""
 
+import json
+from pathlib import Path
+
 from bvlab_plots import records
 from bvlab_plots.intervals import bootstrap
 from quoting import Interval, claim, quotes, two_digits
@@ -14,6 +17,8 @@ def distances(record):
     rows = records.read(record)
     claim((rows[rows.peer == ""].differing == 0).all(), "distances of ours agree with the reference in every frame")
     claim(rows.mesh.nunique() == 5 and rows.seed.nunique() == 10, "five meshes and ten seeds")
+    machines = {name: json.loads((Path(record).parent / name / "machine.json").read_text())["processor"] for name in ("distances", "peers-meshes")}
+    claim("Intel" in machines["distances"] and "AMD" in machines["peers-meshes"], "distances were recorded on an Intel Xeon, the five meshes on an AMD EPYC")
     rows = rows.assign(us=rows.later_ns / rows.later_pairs / 1e3, volumes=rows.n_v / rows.pairs, triangles=rows.n_p / rows.pairs)
     each = rows.groupby(["mesh", "seed", "method"], sort=False)[["us", "volumes", "triangles"]].median()
     us, volumes, triangles = (each[name].unstack() for name in ("us", "volumes", "triangles"))
