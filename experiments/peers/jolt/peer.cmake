@@ -2,6 +2,11 @@
 # information (-DCPP_RTTI_ENABLED=ON): the adapter has a shape of its own.
 bvlab_optional(JOLT FIND Jolt)
 if(BVLAB_JOLT)
+  # These give its classes other members than the adapter's.
+  get_target_property(definitions Jolt::Jolt INTERFACE_COMPILE_DEFINITIONS)
+  if(definitions MATCHES "JPH_DEBUG_RENDERER|JPH_PROFILE_ENABLED")
+    message(FATAL_ERROR "Jolt: was built with its debug renderer or its profiler; experiments/peers/jolt/README.md has the options")
+  endif()
   # Its package names no version; its header does.
   get_target_property(include Jolt::Jolt INTERFACE_INCLUDE_DIRECTORIES)
   list(GET include 0 include)
