@@ -25,7 +25,7 @@ NEEDED = {"peer", "later_ns", "later_pairs", "differing", "build_ns"}
 SIDE = {"method", "variant", "peer", "configuration", "volume", "strategy", "tree", "fan_out", "frame", "kernel", "build",
         "fit", "leaf_size", "precision", "relative_error", "program"}
 DRAWN = {"seed", "repetition"}
-COLUMNS = {"scene": "", "side": "", "us": "us a pair", "times": "times the fastest", "wrong": "wrong of 1000", "p99_us": "p99, us a pair",
+COLUMNS = {"scene": "", "side": "", "us": "us per pair", "times": "times the fastest", "wrong": "wrong of 1000", "p99_us": "p99, us per pair",
            "build_ms": "build, ms", "memory_mb": "memory, MB", "configuration": "", "chosen_by": "chosen by"}
 ROW = re.compile(r"^\| *(.+?) *\| *(.+?) *\| *(.+?) *\|$")
 

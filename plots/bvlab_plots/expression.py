@@ -101,7 +101,7 @@ class Expression:
         return {unit: left.get(unit, 0) + sign * right.get(unit, 0) for unit in {**left, **right}}
 
     def label(self, node=None, inside=False):
-        """In words: "time a pair"."""
+        """In words: "time per pair"."""
         node = node or self.tree
         if isinstance(node, ast.Name):
             return called(node.id, self.kind)
@@ -110,8 +110,7 @@ class Expression:
         if not isinstance(node, ast.BinOp):
             return f"{node.value:g}" if isinstance(node, ast.Constant) else self.text
         if isinstance(node.op, ast.Div) and isinstance(node.right, ast.Name) and node.right.id in ONE_OF:
-            return f"{self.label(node.left, True)} a {ONE_OF[node.right.id]}".replace("a answer", "an answer").replace(
-                "a overlapping", "an overlapping")
+            return f"{self.label(node.left, True)} per {ONE_OF[node.right.id]}"
         text = f"{self.label(node.left, True)} {SIGNS[type(node.op)]} {self.label(node.right, True)}"
         return f"({text})" if inside else text
 

@@ -82,7 +82,7 @@ def draw_speedup(rows, out):
             axis.axhline(1, color="black", linewidth=0.8)
             axis.set_yscale("log")
         column[0].set_title(strategy)
-        column[1].set_xlabel("share of the front lost a frame")
+        column[1].set_xlabel("share of the front lost per frame")
         share_axis(column[1], [0, 0.01, 0.1, 1], ["0", "1%", "10%", "all"])
     axes[0, 0].set_ylabel("tests, recursive / strategy")
     axes[1, 0].set_ylabel("time, recursive / strategy")
@@ -120,7 +120,7 @@ def draw_law(rows, kappa, out):
         plain_ticks(axis, low, high)
     axes[0].legend(frameon=False, fontsize=7)
     axes[1].axhline(1, color="black", linewidth=0.8)
-    axes[1].set(xlabel="share of the front lost a frame", ylabel="law / measured", yscale="log")
+    axes[1].set(xlabel="share of the front lost per frame", ylabel="law / measured", yscale="log")
     plain_ticks(axes[1].yaxis, *axes[1].get_ylim())
     share_axis(axes[1], [0, 0.01, 0.1, 1], ["0", "1%", "10%", "all"])
     draw_curve(axes[2], kappa)
@@ -141,7 +141,7 @@ def draw_curve(axis, kappa):
     axis.axhline(1, color="black", linewidth=0.8)
     axis.axhline(2, color="black", linewidth=0.8, linestyle=":")
     share_axis(axis, [0, 1e-3, 1e-2, 1e-1], ["0", "0.1%", "1%", "10%"])
-    axis.set(xlabel="ends opened a frame, of 100", ylabel="speedup in tests, by the law")
+    axis.set(xlabel="ends opened per frame, of 100", ylabel="speedup in tests, by the law")
     axis.legend(frameon=False, fontsize=7)
 
 

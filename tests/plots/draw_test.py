@@ -87,7 +87,7 @@ class Draws(unittest.TestCase):
             record = own_record(folder, more=table + 'panels = "volume"\n')
             seen = Seen(self, lambda: draw.main([str(record)]), formats=("pdf", "png"))
             self.assertEqual(seen.paths, [record / "figures" / "mine.png"])
-            self.assertIn("time a pair over recursive's", " ".join(seen.texts).replace("\n", " "))
+            self.assertIn("time per pair over recursive's", " ".join(seen.texts).replace("\n", " "))
             for words in (["--x", "degrees", "--y", "n_v / pairs", "--series", "volume", "--pool", "strategy"],
                           ["--x", "volume, strategy", "--kind", "bars", "--over", "best", "--panels", "degrees"],
                           ["--x", "degrees", "--y", "volume", "--kind", "map", "--series", "strategy"],

@@ -24,12 +24,12 @@ class Findings(unittest.TestCase):
                         ("b", "raise", "", 30), ("b", "deferred", "", 20), ("b", "", "fcl", 60),
                         ("c", "raise", "", 10), ("c", "deferred", "", 20), ("c", "", "fcl", 50)])
         self.assertEqual(findings.sentence_of(rows),
-                         "raise has the least time a frame in 2 of 3 settings, deferred in 1; the best peer's is "
+                         "raise has the least time per frame in 2 of 3 settings, deferred in 1; the best peer's is "
                          "4 times our best (median over settings; 3 to 5).")
 
     def test_wrong_answers_do_not_win(self):
         rows = rows_of([("a", "raise", "", 10), ("a", "deferred", "", 20), ("a", "", "fcl", 5)], differing=[0, 0, 3])
-        self.assertEqual(findings.sentence_of(rows), "raise has the least time a frame.")
+        self.assertEqual(findings.sentence_of(rows), "raise has the least time per frame.")
 
     def test_nothing_is_said_of_one_variant(self):
         self.assertEqual(findings.sentence_of(rows_of([("a", "raise", "", 10), ("b", "raise", "", 20)])), "")
