@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Queries every pair of a set of moving bodies in every frame, as in the talk's experiments. Pairs
-/// are in the order (0,1) (0,2) ... (0,n-1) (1,2) ...
+/// Queries every pair of a set of moving bodies in every frame, as in the experiments of
+/// li1998incremental. Pairs are in the order (0,1) (0,2) ... (0,n-1) (1,2) ...
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ inline std::vector<ObjectPair> all_object_pairs(std::uint32_t objects) {
 ///   make_room(threads)             allocates for all bodies, so that no frame has to
 ///   begin_all(poses, origin, threads, counter, make_query)
 ///                                  begins a frame in which every body may have moved: moves all
-///   pairs()                        the pairs in slots 0, 1, ...
+///   front_size()                   the entries of all fronts together
 template <class Pairs>
 class AllPairsOf {
  public:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Runs queries on several threads and delivers their answers to one, in an order that does not
 /// depend on the threads. Each thread keeps copies of its answered queries in a list; a table by
-/// key says where each is.
+/// slot says which thread has an answer, and where.
 #pragma once
 
 #include <algorithm>

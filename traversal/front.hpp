@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The front (the talk's separation list): the pairs of nodes at which the last recursion stopped.
-/// Every run tests all of them, a witness first.
+/// The front of the bounding volume test tree (BVTT), which li1998incremental calls separation list:
+/// the pairs of nodes at which the last recursion stopped. Every run tests all of them, a witness
+/// first.
 ///
-/// Law: the entries partition the product of the two bodies' leaves, so that every pair of leaves
+/// Invariant: the entries partition the product of the two bodies' leaves, so that every pair of leaves
 /// lies below exactly one entry. Their order is free; entry 0 is tested first. A front never
 /// shrinks.
 #pragma once
@@ -42,7 +43,7 @@ class Front : public FrontDefaults {
   template <class Traversal>
   bool sweep(Traversal& traversal) {
     const std::size_t entries = size(), first = witnessed();  // added entries are not retested
-    if (first > 0 && (traversal.test_entry(0) || traversal.fill_batches())) return true;
+    if (first > 0 && traversal.test_entry(0)) return true;
     return traversal.test_entries(entries - first, [first](std::size_t i) { return first + i; });
   }
 

@@ -113,9 +113,6 @@ class NearPairs {
   std::span<const Pose> poses() const { return poses_; }
   /// The origin relative to which volumes are posed into the world.
   const Vec3<double>& origin() const { return origin_; }
-  bool present(std::uint32_t object) const { return present_[object]; }
-  /// The pair in a taken slot.
-  const ObjectPair& pair(std::uint32_t slot) const { return near_[slot].pair; }
   std::size_t slots() const { return near_.size(); }
   bool taken(std::uint32_t slot) const { return near_[slot].taken; }
   /// The number of pairs whose boxes overlap.

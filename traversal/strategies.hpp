@@ -3,6 +3,7 @@
 ///
 /// A strategy belongs to one pair of bodies and lives as long as the pair. It is default
 /// constructible, and has
+///   name, description   as texts;
 ///   run(pair)      answers the pair's query for the bodies' current poses (see body_pair.hpp);
 ///   front_size()   the number of entries it keeps.
 /// Law: after every run, whatever happened between runs, the query holds the answer that

@@ -16,8 +16,8 @@ struct Workspace {
   OpenPairs open;
   std::vector<Candidate> pending;
 
-  /// Scratch space that a front needs only during its sweep: one object per type T, in the state in
-  /// which it was last left.
+  /// Scratch space: one object per type T, in the state in which it was last left; valid until the
+  /// next traversal with this workspace.
   template <class T>
   T& scratch() {
     for (std::any& each : rooms)

@@ -30,7 +30,7 @@ namespace bvlab {
 ///   begin<Query>(movers, poses, origin, threads)  begins a frame: who has moved; poses of all
 ///   set_pose(i)                                   for each mover, on any thread
 ///   run(slots, worker, counter, make_query, take) queries some of the pairs, on one thread
-///   front_size(slot)
+///   front_size(slot)                    the entries of the front of a pair
 /// Method is a broad phase over float boxes that reports changes.
 template <class Pairs, class Method>
 class WorldOf {
@@ -72,7 +72,6 @@ class WorldOf {
     near_.settle();
   }
 
-  std::size_t objects() const { return pairs_.size(); }
   /// The number of pairs whose boxes overlap.
   std::size_t near() const { return near_.size(); }
   /// The number of pairs that the last update queried.

@@ -215,7 +215,7 @@ std::unique_ptr<WorldEngine> world(const VolumeEntry& volume,
                                    std::unique_ptr<AnyHierarchies> hierarchies, std::size_t objects,
                                    const Variant& variant, int threads) {
   using Pairs = StrategyPairs<BodiesFor<Strategy, Query, NotCounting>, Strategy>;
-  if constexpr (SaysYesOrNo<Query>) {
+  if constexpr (AnswersYesOrNo<Query>) {
     Pairs pairs(bodies_for<Strategy, Query, NotCounting>(volume, *hierarchies, objects, variant),
                 made_from<Strategy>(variant.strategy));
     return std::make_unique<TouchingWorld<Pairs, Query, std::unique_ptr<AnyHierarchies>>>(

@@ -2,7 +2,6 @@
 /// A whole scene that says which pairs touch, over pairs of any kind.
 #pragma once
 
-#include <concepts>
 #include <memory>
 #include <utility>
 
@@ -10,16 +9,12 @@
 #include "experiments/replay/triangle_test.hpp"
 #include "experiments/replay/world_frames.hpp"
 #include "traversal/counters.hpp"
+#include "traversal/queries/query.hpp"
 #include "traversal/world_of.hpp"
 
 namespace bvlab {
 
 namespace detail {
-
-template <class Query>
-concept SaysYesOrNo = requires(const Query& query) {
-  { query.answer() } -> std::same_as<bool>;
-};
 
 /// The broad phase of whole scenes, compiled once for all strategies.
 class NearBoxes {
@@ -36,7 +31,7 @@ class NearBoxes {
   std::unique_ptr<AnyMethod<float>> method_;
 };
 
-template <class Pairs, SaysYesOrNo Query, class Hierarchies>
+template <class Pairs, AnswersYesOrNo Query, class Hierarchies>
 class TouchingWorld final : public WorldEngine {
  public:
   /// `pairs` are of bodies over what `hierarchies` holds.

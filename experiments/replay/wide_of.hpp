@@ -87,7 +87,7 @@ template <BoundingVolume V, class Query>
 std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, std::size_t objects,
                                         const Variant& variant, int threads) {
   std::unique_ptr<WorldEngine> world;
-  if constexpr (SaysYesOrNo<Query>)
+  if constexpr (AnswersYesOrNo<Query>)
     with_kernel<V>(variant, [&]<class Kernel>(std::type_identity<Kernel>) {
       constexpr int fan_out = fan_out_of<Kernel, typename V::scalar>;
       auto hierarchies = wide_hierarchies<typename Kernel::template Hierarchy<V, fan_out>>(

@@ -18,7 +18,7 @@ def distances(record):
     claim((rows[rows.peer == ""].differing == 0).all(), "distances of ours agree with the reference in every frame")
     claim(rows.mesh.nunique() == 5 and rows.seed.nunique() == 10, "five meshes and ten seeds")
     machines = {name: json.loads((Path(record).parent / name / "machine.json").read_text())["processor"] for name in ("distances", "peers-meshes")}
-    claim("Intel" in machines["distances"] and "AMD" in machines["peers-meshes"], "distances were recorded on an Intel Xeon, the five meshes on an AMD EPYC")
+    claim(machines["distances"] == machines["peers-meshes"], "distances and the five meshes were recorded on the same processor")
     rows = rows.assign(us=rows.later_ns / rows.later_pairs / 1e3, volumes=rows.n_v / rows.pairs, triangles=rows.n_p / rows.pairs)
     each = rows.groupby(["mesh", "seed", "method"], sort=False)[["us", "volumes", "triangles"]].median()
     us, volumes, triangles = (each[name].unstack() for name in ("us", "volumes", "triangles"))

@@ -37,11 +37,10 @@ def real_motions(record):
     claim(found.times.idxmin() == "kuka (unseen)" and found.peer["kuka (unseen)"] == "OPCODE, coherent", "OPCODE comes nearest, on kuka")
     timed = rows.pivot_table(index=["motion", "repetition"], columns="method", values="us")
     leads = (timed[list(peers.method.unique())].min(axis=1) / timed.recommended).unstack("repetition")
-    wavering = leads.index[(leads.min(axis=1) < 5) & (found.times.reindex(leads.index) >= 5)]
-    claim({name.split()[0] for name in wavering} == {"easy"}, "on easy alone repetitions lie on both sides of five")
+    claim(((leads >= 5).nunique(axis=1) == 1).all(), "the repetitions of each motion lie on one side of five")
     names = [name.split()[0] for name in found.index]
     claim(set(PLANNED) < set(names), "the motions of our planner are in the record")
-    return {"wavering": Interval(leads.loc[wavering[0]]), "others": len(found) - len(PLANNED), "planned": len(PLANNED), "count": len(found), "least": found.us.min(), "most": found.us.max(), "times": Interval(found.times), "libraries": peers.method.str.split(",").str[0].nunique(),
+    return {"others": len(found) - len(PLANNED), "planned": len(PLANNED), "count": len(found), "least": found.us.min(), "most": found.us.max(), "times": Interval(found.times), "libraries": peers.method.str.split(",").str[0].nunique(),
             "near": len(near), "beside": Interval(near.over_ours), "worst": found.over_ours.max(), "worst_at": found.over_ours.idxmax().split()[0],
             "five": int((found.times >= 5).sum()), "slowest_at": found.times.idxmin().split()[0], "bullet": int(differ["Bullet"]), "physx": int(differ["PhysX"]),
             "opcode": int(differ["OPCODE"])}
@@ -66,13 +65,13 @@ def real_motions_bounds(record):
     terms = np.column_stack([np.ones(len(single)), single.tests])
     fixed, price = np.linalg.lstsq(terms / single.us.to_numpy()[:, None], np.ones(len(single)), rcond=None)[0]
     off = terms @ [fixed, price] / single.us
-    few = ["env-rob (unseen)", "abstract (unseen)"]
+    few = ["easy (seen)", "env-rob (unseen)", "abstract (unseen)"]
     low = found.index[found.times < 5]
-    claim(set(low) == {*few, "kuka (unseen)", "spirelli (unseen)"}, "the motions on which the lead is below five")
+    claim(set(low) == {*few, "escape (unseen)", "kuka (unseen)", "spirelli (unseen)"}, "the motions on which the lead is below five")
     ours, theirs = single.volumes["spirelli (unseen)"], each.loc["FCL, obb"].volumes["spirelli (unseen)"]
     claim(found.peer["spirelli (unseen)"] == "FCL, obb" and ours > theirs, "on spirelli FCL is the fastest library and makes fewer tests")
     return {"fixed": fixed, "price": 1e3 * price, "off": max(off.max(), 1 / off.min()), "few": [f"{single.tests[name]:.0f}" for name in few],
-            "share": Interval(100 * fixed / single.us[few]), "spirelli": ours, "spirelli_fcl": theirs}
+            "escape": single.tests["escape (unseen)"], "share": Interval(100 * fixed / single.us[few]), "spirelli": ours, "spirelli_fcl": theirs}
 
 
 @quotes("recommended-rule")
@@ -86,7 +85,7 @@ def recommended_rule(record):
     over, among = us["recommended"] / us.min(axis=1), us["recommended"] / candidates
     fixed = us["slab-boxes"] / us.min(axis=1)
     spread = rows.groupby(["motion", "method"]).us.agg(lambda each: each.max() / each.min())
-    claim(spread.max() > 1.3 and (spread > 1.1).mean() > 0.2, "times of one cell differ by much between repetitions")
+    claim(spread.max() > 1.3 and (spread > 1.1).mean() > 0.1, "times of one cell differ by much between repetitions")
     claim((rows.alone == "yes").all(), "the rows were timed alone")
     roots = rows[(rows.method == "recommended") & (rows.strategy == "recursive")].motion.nunique()
     claim(0 < roots < len(us), "some motions are started from the roots, not all")

@@ -32,8 +32,7 @@ def all_records(folder):
     by_processor = {name for name, machine in zip(names, machines) if machine.get("clock", "wall") != "wall"}
     claim(not by_processor, "times are by the wall clock")
     undated = [name for name, by in zip(names, made) if not by.date]
-    claim(set(undated) == {"closest-features", "fits", "hierarchies-slow-peers", "peers-cgal", "posing", "tightness", "tori", "triangles-error"},
-          "the records that are older than dates in machine.json")
+    claim(not undated, "every record has a date")
     claim(len({machine["compiler"] for machine in machines}) == 1, "one compiler")
     changing = pd.read_csv(folder / "boxes-changes" / "boxes-changes.csv", usecols=["method"]).method
     claim({"jolt", "physx-abp", "physx-pabp", "physx-sap"} <= set(changing), "PhysX and Jolt are in the record of changing boxes")

@@ -74,7 +74,7 @@ def boxes_motions(record):
     apart = by_motion.max(axis=1) / by_motion.min(axis=1)
     fastest = by_motion.groupby(["set", "boxes", "coherent"]).idxmin().applymap(lambda place: place[2])
     changed = fastest.nunique(axis=1) > 1
-    claim(changed.sum() == 1 and apart.idxmax()[2] == "sweep3", "the motion changes which method is fastest in one case, and SWEEP3's time most")
+    claim(changed.sum() == 2 and apart.idxmax()[2] == "sweep3", "the motion changes which method is fastest in two cases, and SWEEP3's time most")
     return {"apart": apart.max(), "apart_method": apart.idxmax()[2].upper(), "changed": int(changed.sum()), "cases": len(changed), "sweeps": Interval(sweeps), "middle": sweeps.median(), "blocks": Interval(saved[saved.method == "blocks"].left)}
 
 
@@ -87,12 +87,13 @@ def boxes_motions_packed(record):
     published = time.drop("blocks", level="method")
     by_motion = published["off"].unstack("motion")
     fastest = by_motion.groupby(["set", "boxes"]).idxmin().applymap(lambda place: place[2])
-    claim((fastest.nunique(axis=1) == 1).all(), "the fastest published method is the same in every motion")
+    claim((fastest.nunique(axis=1) > 1).sum() == 1 and set(fastest.loc[fastest.nunique(axis=1) > 1].iloc[0]) == {"hybrid", "sweep1"},
+          "the fastest published method depends on the motion in one case, where it is HYBRID or SWEEP1")
     over = time["on"].xs("blocks", level="method") / time["off"].xs("blocks", level="method")
     worst = rows[rows.method == "blocks"].groupby(["set", "boxes", "motion", "coherent"])[["p99_ns", "frame_ns"]].median().unstack("coherent")
     begins = worst.p99_ns["on"] / worst.frame_ns["off"]
     begins = begins[over > 1.1]
-    claim(len(begins) == 9 and begins.min() > 15, "the slowest frame of following costs as much as many from scratch, where following costs more")
+    claim(len(begins) == 3 and begins.min() > 5, "the slowest frame of following costs as much as many from scratch, where following costs more")
     return {"dear": len(begins), "cells": len(over), "begins": Interval(begins), "apart": by_motion.max(axis=1).div(by_motion.min(axis=1)).max(), "left": Interval(published["on"] / published["off"]),
             "blocks": Interval(over), "frames": rows.frames.iloc[0]}
 

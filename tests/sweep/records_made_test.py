@@ -107,6 +107,16 @@ class Made(unittest.TestCase):
         self.assertIn("bad (bvlab: it cannot be done)", done.stderr)
         self.assertEqual((self.machine("bad")["commit"], self.machine("good")["commit"]), ("a", "b"))
 
+    def test_what_a_run_does_not_write_stays(self):
+        self.hold("old")
+        for name in ("old.md", "unit-costs.json"):
+            (self.root / "experiments/record/old" / name).write_text(name)
+        done = self.make()
+        self.assertEqual(self.machine("old")["commit"], "b")
+        for name in ("old.md", "unit-costs.json"):
+            self.assertEqual((self.root / "experiments/record/old" / name).read_text(), name)
+        self.assertIn("unit-costs.json is the old one", done.stderr)
+
     def test_no_time_and_no_clean_program(self):
         self.hold("old")
         self.assertIn("old (no time)", self.make("--hours", "-1").stderr)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Decides exactly whether two closed triangles share a point, one pair at a time: first the sides
-/// of the planes, then at most two orientations of mixed corners (guigue2003fast), each sign exact.
+/// of the planes, then at most two orientations of four corners taken from both triangles
+/// (guigue2003fast), each sign exact.
 /// Flat pairs (coplanar or of zero area) are decided in a projection by exact separating lines.
 #pragma once
 

@@ -48,22 +48,16 @@ template <int W, int P, int Q, int kPairs>
   (std::make_integer_sequence<int, W>{});
 }
 
-/// Reads four numbers from each of W rows; `column[c]` gets the c-th of every row.
-template <int W>
+/// Reads four numbers from each of eight rows; `column[c]` gets the c-th of every row.
 [[gnu::always_inline]] inline void transpose_four(const double* const* rows, int offset,
-                                                  Lanes<double, W>* column) {
-  static_assert(W == 4 || W == 8);
+                                                  Lanes<double, 8>* column) {
+  constexpr int W = 8;
   Lanes<double, W> row[4];
   for (int k = 0; k < 4; ++k) {
-    Lanes<double, 4> four;
+    Lanes<double, 4> four, more;
     std::memcpy(&four, rows[k] + offset, sizeof four);
-    if constexpr (W == 4) {
-      row[k] = four;
-    } else {
-      Lanes<double, 4> more;
-      std::memcpy(&more, rows[k + 4] + offset, sizeof more);
-      row[k] = joined<double, 4>(four, more);
-    }
+    std::memcpy(&more, rows[k + 4] + offset, sizeof more);
+    row[k] = joined<double, 4>(four, more);
   }
   // a0 b0 a2 b2 and a1 b1 a3 b3, of rows 0 1 and of rows 2 3; then halves of groups.
   const auto even_01 = mixed<W, 0, 2, 1>(row[0], row[1]),
@@ -81,8 +75,8 @@ template <int W>
                                                      Lanes<double, 8>* column) {
   const double* rows[8];
   for (int k = 0; k < 8; ++k) rows[k] = (*triangles[k])[0].data();
-  transpose_four<8>(rows, 0, column);
-  transpose_four<8>(rows, 4, column + 4);
+  transpose_four(rows, 0, column);
+  transpose_four(rows, 4, column + 4);
   column[8] = Lanes<double, 8>{rows[0][8], rows[1][8], rows[2][8], rows[3][8],
                                rows[4][8], rows[5][8], rows[6][8], rows[7][8]};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Arithmetic on unevaluated sums of two numbers of S, lane by lane: exact differences and
-/// products, and minors and determinants with their rounding errors. triangle_refinement.hpp bounds
-/// the remaining error.
+/// Double-word arithmetic, on unevaluated sums of two numbers of S, lane by lane: error-free sums,
+/// differences and products (TwoSum, TwoProduct), and minors and determinants with their rounding
+/// errors. triangle_refinement.hpp bounds the remaining error.
 #pragma once
 
 #if defined(__AVX512F__)

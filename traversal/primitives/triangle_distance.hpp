@@ -37,8 +37,6 @@ namespace bvlab {
 struct TriangleDistance {
   double distance = 0;
   Vec3<double> on_a = Vec3<double>::Zero(), on_b = Vec3<double>::Zero();  ///< the nearest points
-
-  double squared() const { return distance * distance; }
 };
 
 namespace nearest {

@@ -16,6 +16,7 @@ namespace bvlab {
 ///                         wants a bound, it depends on the volumes alone
 ///   primitives(pending)   tests one candidate or more; its outcome: is the query satisfied?
 ///   buffer_size           once more candidates than this are held, `primitives` is called
+///   one_hit_is_enough     whether one pair of triangles that share a point can end the query
 ///   wants_bound           if present and true: one pair of near leaves is tested first, near pairs
 ///                         are tested before far ones, and `culls(gap)` decides the same
 /// The bvlab program makes a query by `from_options(options)` and reads `answer()`, a bool or a
@@ -25,8 +26,10 @@ namespace bvlab {
 /// For strategies that keep margins:
 ///   primitives(pending, verdicts)   the same, with a verdict on each candidate
 ///   limit()                         surfaces farther apart than this no longer matter to the query
-///   known(a, b)                     two triangles still share a point; returns whether that
-///                                   satisfies the query
+///   known(a, b)                     triangles a and b share a point (found now, or still valid);
+///                                   returns whether that satisfies the query. A query answered by
+///                                   yes or no must ignore a and b: a repeated answer has others
+///   repeat(answer)                  for queries answered by a number: sets an earlier answer
 template <class Q, class P>
 concept Query = requires(Q query, const P& p, std::span<const Candidate> pending) {
   { Q::name } -> std::convertible_to<std::string_view>;
@@ -34,6 +37,7 @@ concept Query = requires(Q query, const P& p, std::span<const Candidate> pending
   query.culls(p, p);
   { query.primitives(pending) } -> std::same_as<Outcome>;
   { Q::buffer_size } -> std::convertible_to<std::size_t>;
+  { Q::one_hit_is_enough } -> std::convertible_to<bool>;
 };
 
 template <class Q>
@@ -41,5 +45,22 @@ constexpr bool wants_bound() {
   if constexpr (requires { Q::wants_bound; }) return Q::wants_bound;
   return false;
 }
+
+/// A query whose answer is yes or no.
+template <class Q>
+concept AnswersYesOrNo = requires(const Q& query) {
+  { query.answer() } -> std::same_as<bool>;
+};
+/// A query whose answer is a number.
+template <class Q>
+concept AnswersByNumber = requires(const Q& query) {
+  { query.answer() } -> std::same_as<double>;
+};
+/// A query that a single hit decides.
+template <class Q>
+concept DecidedByOneHit = Q::one_hit_is_enough && !wants_bound<Q>();
+/// A query that looks for all hits.
+template <class Q>
+concept FindsAllHits = !Q::one_hit_is_enough && !wants_bound<Q>();
 
 }  // namespace bvlab

@@ -35,9 +35,6 @@ class ByCost {
     return statistics;
   }
 
-  /// The next run starts from the roots.
-  void forget() { front_.clear(); }
-
   const Front& front() const { return front_; }
   std::size_t front_size() const { return front_.size(); }
 

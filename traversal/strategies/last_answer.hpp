@@ -13,10 +13,7 @@ namespace bvlab {
 
 /// A query that is answered by yes or no, and decided by a single hit.
 template <class Query>
-concept YesOrNo =
-    !wants_bound<Query>() && Query::one_hit_is_enough && requires(const Query& query) {
-      { query.answer() } -> std::same_as<bool>;
-    };
+concept YesOrNo = AnswersYesOrNo<Query> && DecidedByOneHit<Query>;
 
 class LastAnswer {
  public:

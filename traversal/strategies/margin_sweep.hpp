@@ -128,7 +128,7 @@ class MarginSweep : public FrontDefaults {
   template <class Traversal>
   bool hits_still(Traversal& traversal, const NodePair& pair, std::uint32_t witness) {
     using Query = typename Traversal::Query;
-    if constexpr (Query::one_hit_is_enough && !wants_bound<Query>()) {
+    if constexpr (DecidedByOneHit<Query>) {
       const std::size_t triangles =
           std::size_t{traversal.a().node(pair.a).count} * traversal.b().node(pair.b).count;
       if (triangles > few) return false;

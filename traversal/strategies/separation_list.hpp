@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The separation list of li1998incremental (the talk), with deferred rebuilding.
+/// The separation list of li1998incremental, with deferred rebuilding.
 ///
 /// A run starts from the pairs at which the last one stopped, and the list never shrinks. When it
 /// has stopped growing the objects are predicted to move apart, and the list is rebuilt from the
 /// roots in the next run: after one run without growth (`SeparationList`), or only after `1 + k`
-/// such runs in a row (`Deferred`, k = 1 as published). For objects that stay, whose test tree has
+/// such runs in a row (`Deferred`, k = 1 as published). For objects that stay, whose BVTT has
 /// n leaves, a rebuild makes 2n - 1 tests and each other run n: over a period (2n - 1 + (1 + k) n)
 /// / (2 + k).
 ///
-/// The talk leaves some cases open. Here:
+/// The slides of li1998incremental leave some cases open. Here:
 /// - a rebuild does not count as a run without growth, so the run after it always uses the list;
 /// - a run that a hit cuts short counts like any other: as growth where the list grew, and as a run
 ///   without growth where it did not (if it did not count, the list of two bodies in lasting

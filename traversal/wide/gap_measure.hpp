@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What a traversal of two wide trees records: nothing (NoRecord); or, for a memory of margins
-/// (wide_margins.hpp), a lower bound on the distance of the bodies, while it finds them apart, and
-/// which triangles cross (GapMeasure). See traversal.hpp for the members of a traversal's memory.
+/// What a traversal of two wide trees records for the next frame: nothing (NoRecord); or, for
+/// wide_margins.hpp, a lower bound on the distance of disjoint bodies, one pair of intersecting
+/// triangles, and a front (GapMeasure). See traversal.hpp for the members of a traversal's memory.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace bvlab {
 
-/// Triangles that share a point, by their indices in their meshes.
+/// A pair of intersecting triangles that the last traversal found, by their indices in their meshes.
 struct Crossing {
   std::uint32_t a, b;
   bool certain;  ///< the filter in float decided it; otherwise the query's own test did

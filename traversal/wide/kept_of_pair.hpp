@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What margins keep of a pair of bodies (wide_margins.hpp).
+/// The state that WideMargins keeps for each pair of bodies: the last answer and until when it is
+/// valid (PairAnswer), and what is needed to renew it (KeptOfPair).
 #pragma once
 
 #include <cstdint>

@@ -6,7 +6,8 @@
 /// The members of a kernel, which defines a step of two trees:
 ///   Hierarchy<V, F>, Body<V, F>
 ///   nearest_child_first    whether a step's nearest child is taken next, or the nearest of all
-///   PairFrame<V, F>        two bodies:
+///   PairFrame<V, F>        two bodies; S, a register of lanes; `parts`, the registers of a step;
+///                          ContactSieve, the first test of triangles where all hits are sought:
 ///     begin(a, b), a_to_b()
 ///     roots()                          the pair to start with
 ///     retry(touched, nodes, triangles) queues the pair that touched in the last frame first
@@ -19,6 +20,7 @@
 ///       reference_sphere()               a sphere around one of the nodes, in both frames
 ///     prefetch(pair)                   begins to load what a step will read
 ///     sift(sieve, triangles, ...)      where all hits are sought (contact_sieve.hpp)
+///     triangle(side, number)           the mesh's index of a triangle that a batch numbers
 ///     triangles(pair)                  triangles tested at once, of pairs that `push` found:
 ///       lanes(), corners(part) of a and of b, of_a(lane), of_b(lane)
 ///       gap(counter), reference_sphere() a lower bound on their distance, and its sphere
@@ -83,10 +85,8 @@ struct SiblingsKernel {
       triangles.push(touched, 0);
     }
 
-    template <class Counter>
     struct Step {
       const PairFrame& pair_frame;
-      Counter& counter;
       std::size_t side;                   ///< whose nodes are in the lanes
       std::array<std::uint32_t, 2> node;  ///< of that side, one is its parent
       bool leaves;
@@ -166,7 +166,7 @@ struct SiblingsKernel {
       const std::size_t side = larger(a, b);
       const std::array<const Node*, 2> nodes{&a, &b};
       const std::array<std::uint32_t, 2> node{pair.a, pair.b};
-      test(Step<Counter>{*this, counter, side, node, leaves != 0, *nodes[side],
+      test(Step{*this, side, node, leaves != 0, *nodes[side],
                          frame_.posed_node(1 - side, node[1 - side], counter)});
     }
 
@@ -271,7 +271,7 @@ struct SiblingsKernel {
                                      Counter& counter) const {
       sieve.sift(hierarchies_, a_to_b(), triangles, batch, counter);
     }
-    /// The mesh's index of a triangle of a `side`, by the number that a batch has.
+    /// The mesh's index of a triangle of `side`, by the number that a batch has.
     std::uint32_t triangle(std::size_t side, std::uint32_t number) const {
       return hierarchies_[side]->triangle(number);
     }

@@ -33,7 +33,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "traversal/front.hpp"
+#include "traversal/node_pair.hpp"
 #include "traversal/wide/relative_frame.hpp"
 
 namespace bvlab {

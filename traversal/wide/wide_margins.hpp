@@ -168,7 +168,7 @@ class WideMargins {
     Answer& answer = answers_[p];
     Kept& kept = kept_[p];
     answer = {unknown, bodies_.epochs(pair), found.touched().has_value()};
-    if constexpr (keeps_answer<Query>) answer.touching = query.touching();
+    if constexpr (AnswersYesOrNo<Query>) answer.touching = query.answer();
     kept.deadline = 0;
     kept.crossing.reset();
     kept.touched_twice = answer.touching && !kept.was_apart;

@@ -30,10 +30,6 @@ struct WideWorkspace {
   ContactBatch batch;   ///< pairs of triangles that may touch, where all hits are sought
 };
 
-/// Whether a query wants every pair of triangles that touch.
-template <class Query>
-inline constexpr bool all_hits = !Query::one_hit_is_enough && !wants_bound<Query>();
-
 template <BoundingVolume V, int F, class Kernel>
 class WidePair {
  public:
@@ -42,7 +38,7 @@ class WidePair {
   using Body = typename Kernel::template Body<V, F>;
   template <class Query, class Counter, class Memory>
   using Leaves =
-      std::conditional_t<all_hits<Query>, SiftedTriangles<PairFrame, Body, Query, Counter, Memory>,
+      std::conditional_t<FindsAllHits<Query>, SiftedTriangles<PairFrame, Body, Query, Counter, Memory>,
                          FilteredTriangles<PairFrame, Body, Query, Counter, Memory>>;
   static_assert(std::is_same_v<typename V::scalar, float>,
                 "orders and the filter of triangles are float32");
@@ -73,7 +69,7 @@ class WidePair {
       const NodePair pair = nodes_.take_least(order);
       // Where it is positive, `order` is a lower bound on the distance of the pair.
       if (!(order > 0 && bits(query.culls(order)))) step<Query>(pair, counter, visit);
-    } else if constexpr (all_hits<Query>) {
+    } else if constexpr (FindsAllHits<Query>) {
       several<Query>(counter, visit);
     } else {
       if (!triangles_.empty()) return;  // those of the pair that touched come first
@@ -102,7 +98,7 @@ class WidePair {
         __attribute__((always_inline)) {
       visit(Step<KernelStep>{step, pair});
     };
-    if constexpr (all_hits<Query>) {
+    if constexpr (FindsAllHits<Query>) {
       frame_.step(pair, counter, sieve_, named);
     } else {
       struct {
@@ -135,8 +131,8 @@ class WidePair {
   [[gnu::always_inline]] void pass_on(const Step& step, const Found& found, std::uint64_t lanes,
                                       Entry, Memory&, Leaves&, Query&, Counter&) {
     constexpr bool ordered =
-        Kernel::nearest_child_first && Query::one_hit_is_enough && !wants_bound<Query>();
-    if constexpr (all_hits<Query>)
+        Kernel::nearest_child_first && DecidedByOneHit<Query>;
+    if constexpr (FindsAllHits<Query>)
       step.of.push(nodes_, triangles_, lanes, NoOrder(), NextPair::any);
     else
       step.of.push(nodes_, triangles_, lanes, found.order,
@@ -154,7 +150,7 @@ class WidePair {
     std::array<NodePair, at_once> taken;
     const std::size_t count = std::min(nodes_.size(), at_once);
     for (std::size_t k = 0; k < count; ++k) taken[k] = nodes_.take_last();
-    if constexpr (all_hits<Query>)
+    if constexpr (FindsAllHits<Query>)
       for (std::size_t k = 1; k < count; ++k) frame_.prefetch(taken[k]);
     for (std::size_t k = 0; k < count; ++k) step<Query>(taken[k], counter, visit);
   }

@@ -225,10 +225,10 @@ class WidePairs {
   std::vector<const TriangleMesh*> meshes_;
   EarlyCulling culling_;
   std::vector<Worker> workers_;
-  Vec3<double> origin_ = Vec3<double>::Zero();  // Where all bodies move, their centre at first.
+  Vec3<double> origin_ = Vec3<double>::Zero();  // of the spheres in culling_; set by begin_all
   [[no_unique_address]] Memory memory_;
   std::span<const Pose> poses_;
-  std::vector<std::uint32_t> moved_;  // the last movers, of pairs in slots
+  std::vector<std::uint32_t> moved_;  // in the frame that `begin` began last
 };
 
 }  // namespace bvlab
