@@ -151,7 +151,7 @@ def draw_coherence(cells, shares, out, figure=None, axes=None, names=("deferred"
         line[0].set_ylabel(f"speedup in {label}")
     for axis, strategy in zip(axes[0], names):
         axis.set_title(strategy)
-    figure.supxlabel("share of the front that the next frame finds again, % (at rest, 0.03, 0.3, 5, 45 degrees a frame)",
+    figure.supxlabel("share of the front that the next frame finds again, % (at rest, 0.03, 0.3, 5, 45 degrees per frame)",
                      fontsize=plt.rcParams["axes.labelsize"])
     style.legend_below(figure, *style.labelled(axes.flat))
     return style.save(figure, out, name)
