@@ -17,17 +17,20 @@ def all_records(folder):
         raise Refused(f"{folder}: there are no records")
     machines = [json.loads((folder / name / "machine.json").read_text()) for name in names]
     alone = timed = 0
-    longest = 0
+    longest, shared = 0, []
     for name in names:
         rows = pd.read_csv(folder / name / f"{name}.csv", usecols=lambda column: column in ("alone", "wall_per_processor"))
         if "wall_per_processor" in rows:
             longest = max(longest, pd.to_numeric(rows.wall_per_processor, errors="coerce").max())
         if "alone" in rows:
             timed, alone = timed + rows.alone.notna().sum(), alone + (rows.alone == "yes").sum()
+            if (rows.alone == "no").any():
+                shared.append(name)
     processors = pd.Series([machine["processor"].replace("(R)", "").removesuffix(" Processor") for machine in machines]).value_counts()
     claim({str(machine["cores"]) for machine in machines} == {"2"}, "machines of two cores")
     made = [provenance.made(machine) for machine in machines]
     claim(all(by.commit and not by.changes for by in made), "every record names its commit, without changes")
+    claim(set(shared) == {"tournament", "talk-scalar"}, "all rows but those of tournament and talk-scalar were timed alone")
     claim(longest <= 1.1, "no run lost more than a tenth to other work")
     by_processor = {name for name, machine in zip(names, machines) if machine.get("clock", "wall") != "wall"}
     claim(not by_processor, "times are by the wall clock")
@@ -36,4 +39,5 @@ def all_records(folder):
     claim(len({machine["compiler"] for machine in machines}) == 1, "one compiler")
     changing = pd.read_csv(folder / "boxes-changes" / "boxes-changes.csv", usecols=["method"]).method
     claim({"jolt", "physx-abp", "physx-pabp", "physx-sap"} <= set(changing), "PhysX and Jolt are in the record of changing boxes")
-    return {"count": len(names), "processors": [f"{name} ({count})" for name, count in processors.items()], "timed": timed, "alone": 100 * alone / timed}
+    commits = pd.Series([by.commit for by in made]).value_counts()
+    return {"older": len(names) - int(commits.iloc[0]), "count": len(names), "processors": [f"{name} ({count})" for name, count in processors.items()], "timed": timed, "alone": 100 * alone / timed}
