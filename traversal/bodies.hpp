@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The bodies of a scene over one kind of volume. StrategyPairs uses no more than this interface, so
-/// that the bvlab program can substitute bodies whose volume is chosen at run time (AnyBodies).
+/// The bodies of a scene over one kind of volume. StrategyPairs uses no more than this interface,
+/// so that the bvlab program can substitute bodies whose volume is chosen at run time (AnyBodies).
 #pragma once
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The front of the bounding volume test tree (BVTT), which li1998incremental calls separation list:
-/// the pairs of nodes at which the last recursion stopped. Every run tests all of them, a witness
-/// first.
+/// The front of the bounding volume test tree (BVTT), which li1998incremental calls separation
+/// list: the pairs of nodes at which the last recursion stopped. Every run tests all of them, a
+/// witness first.
 ///
-/// Invariant: the entries partition the product of the two bodies' leaves, so that every pair of leaves
-/// lies below exactly one entry. Their order is free; entry 0 is tested first. A front never
+/// Invariant: the entries partition the product of the two bodies' leaves, so that every pair of
+/// leaves lies below exactly one entry. Their order is free; entry 0 is tested first. A front never
 /// shrinks.
 #pragma once
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The recommended configuration for the queries touching and contacts, where triangles are about
-/// as long as wide, as in scans and simulations: slab-boxes (slab_box.hpp) in wide trees, as many children per
-/// node as a register has lanes, tested in the bodies' own frames, with margins from frame to
-/// frame. recommended_for.hpp has others and chooses, as `bvlab replay --recommended` does. For
-/// distances see recommended_distances.hpp.
+/// as long as wide, as in scans and simulations: slab-boxes (slab_box.hpp) in wide trees, as many
+/// children per node as a register has lanes, tested in the bodies' own frames, with margins from
+/// frame to frame. recommended_for.hpp has others and chooses, as `bvlab replay --recommended`
+/// does. For distances see recommended_distances.hpp.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// An upper bound on how much nearer two bodies, or any parts of them, can have come to each other
-/// since `restart`, in units of the mesh. It serves as a clock: a gap g that is measured now has its
-/// deadline at now() + g. The bound is derived in reference_pose.hpp.
+/// since `restart`, in units of the mesh. It serves as a clock: a gap g that is measured now has
+/// its deadline at now() + g. The bound is derived in reference_pose.hpp.
 #pragma once
 
 #include <utility>

@@ -2,12 +2,12 @@
 /// The concept of a front: the traversal starts from it and keeps it up to date.
 ///
 /// The front is where the last recursion stopped in the bounding volume test tree (BVTT): the pairs
-/// of nodes that were culled, and the pairs of leaves. A front decides what it keeps of a pair, which
-/// entries a run tests, in which order, and which culled pairs it opens nevertheless.
+/// of nodes that were culled, and the pairs of leaves. A front decides what it keeps of a pair,
+/// which entries a run tests, in which order, and which culled pairs it opens nevertheless.
 ///
-/// Invariant: in every run the entries tested, with what is known of the others, decide the query; and
-/// the entries partition the product of the two bodies' leaves, so that every pair of leaves lies
-/// below exactly one. A front that keeps nothing (NoFront) starts from the roots.
+/// Invariant: in every run the entries tested, with what is known of the others, decide the query;
+/// and the entries partition the product of the two bodies' leaves, so that every pair of leaves
+/// lies below exactly one. A front that keeps nothing (NoFront) starts from the roots.
 #pragma once
 
 #include <concepts>

@@ -27,8 +27,7 @@ template <class T, int W>
                                                      const Lanes<T, W>& high) {
   return [&]<int... I>(std::integer_sequence<int, I...>) {
     return __builtin_shufflevector(low, high, I...);
-  }
-  (std::make_integer_sequence<int, 2 * W>{});
+  }(std::make_integer_sequence<int, 2 * W>{});
 }
 
 /// Within every group of four lanes: a[P], b[P], a[Q], b[Q] (kPairs = 1), or a[P], a[Q], b[P],
@@ -44,8 +43,7 @@ template <int W, int P, int Q, int kPairs>
       return group + (second ? Q : P) + (of_b ? W : 0);
     };
     return __builtin_shufflevector(a, b, from(I)...);
-  }
-  (std::make_integer_sequence<int, W>{});
+  }(std::make_integer_sequence<int, W>{});
 }
 
 /// Reads four numbers from each of eight rows; `column[c]` gets the c-th of every row.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The 33 pairs of features at which two disjoint triangles can be nearest: 18 of a corner and an
-/// edge, 9 of two edges, 6 of a corner and a face. Each is computed in T, float64 or double-double, with a
-/// bound on its rounding error and whether float64 is reliable for it. The error bounds are derived
-/// in triangle_distance.hpp.
+/// edge, 9 of two edges, 6 of a corner and a face. Each is computed in T, float64 or double-double,
+/// with a bound on its rounding error and whether float64 is reliable for it. The error bounds are
+/// derived in triangle_distance.hpp.
 #pragma once
 
 #include <algorithm>

@@ -14,7 +14,8 @@
 
 namespace bvlab {
 
-/// A pair of intersecting triangles that the last traversal found, by their indices in their meshes.
+/// A pair of intersecting triangles that the last traversal found, by their indices in their
+/// meshes.
 struct Crossing {
   std::uint32_t a, b;
   bool certain;  ///< the filter in float decided it; otherwise the query's own test did

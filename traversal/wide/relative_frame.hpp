@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Tests of two bodies in each other's frames (RelativeFrame), and what they need: a body (WideBody),
-/// the transform of its corners (CornerTransform), and a node's sphere in both frames
-/// (ReferenceSphere). Volumes stay in the frames of their meshes, and one
-/// node at a time is posed into the frame of the other body. No posed volume is kept; the relative
-/// pose is formed once per traversal.
+/// Tests of two bodies in each other's frames (RelativeFrame), and what they need: a body
+/// (WideBody), the transform of its corners (CornerTransform), and a node's sphere in both frames
+/// (ReferenceSphere). Volumes stay in the frames of their meshes, and one node at a time is posed
+/// into the frame of the other body. No posed volume is kept; the relative pose is formed once per
+/// traversal.
 #pragma once
 
 #include <algorithm>

@@ -167,7 +167,7 @@ struct SiblingsKernel {
       const std::array<const Node*, 2> nodes{&a, &b};
       const std::array<std::uint32_t, 2> node{pair.a, pair.b};
       test(Step{*this, side, node, leaves != 0, *nodes[side],
-                         frame_.posed_node(1 - side, node[1 - side], counter)});
+                frame_.posed_node(1 - side, node[1 - side], counter)});
     }
 
     /// Begins to load what the step of a pair will read.

@@ -37,9 +37,9 @@ class WidePair {
   using Workspace = WideWorkspace;
   using Body = typename Kernel::template Body<V, F>;
   template <class Query, class Counter, class Memory>
-  using Leaves =
-      std::conditional_t<FindsAllHits<Query>, SiftedTriangles<PairFrame, Body, Query, Counter, Memory>,
-                         FilteredTriangles<PairFrame, Body, Query, Counter, Memory>>;
+  using Leaves = std::conditional_t<FindsAllHits<Query>,
+                                    SiftedTriangles<PairFrame, Body, Query, Counter, Memory>,
+                                    FilteredTriangles<PairFrame, Body, Query, Counter, Memory>>;
   static_assert(std::is_same_v<typename V::scalar, float>,
                 "orders and the filter of triangles are float32");
 
@@ -130,8 +130,7 @@ class WidePair {
   template <class Step, class Entry, class Memory, class Leaves, class Query, class Counter>
   [[gnu::always_inline]] void pass_on(const Step& step, const Found& found, std::uint64_t lanes,
                                       Entry, Memory&, Leaves&, Query&, Counter&) {
-    constexpr bool ordered =
-        Kernel::nearest_child_first && DecidedByOneHit<Query>;
+    constexpr bool ordered = Kernel::nearest_child_first && DecidedByOneHit<Query>;
     if constexpr (FindsAllHits<Query>)
       step.of.push(nodes_, triangles_, lanes, NoOrder(), NextPair::any);
     else
