@@ -116,6 +116,36 @@ TEST(World, FarFromTheOriginAndWithoutBodies) {
   EXPECT_EQ(play_frames(*world, none.trace, Answers::kept).answers.size(), 3u);
 }
 
+/// As `replay` writes touching, by a world of one of the recommended configurations.
+template <class Best, class Counter>
+std::vector<std::uint8_t> touching_in_world(const Played& scene, Counter& counter) {
+  std::vector<typename Best::Hierarchy> trees;
+  trees.reserve(scene.meshes.size());
+  for (const auto& mesh : scene.meshes) trees.push_back(Best::hierarchy(mesh));
+  std::vector<typename Best::Shape> shapes;
+  for (std::size_t i = 0; i < scene.trace.objects; ++i)
+    shapes.push_back({&scene.meshes[i % trees.size()], &trees[i % trees.size()]});
+  World<typename Best::Pairs> world{typename Best::Pairs(shapes)};
+  TouchingPairs touching;
+  std::vector<Pose> poses(scene.trace.objects);
+  std::vector<std::uint8_t> found;
+  for (std::size_t frame = 0; frame < scene.trace.frames; ++frame) {
+    scene.trace.poses(frame, poses);
+    for (std::uint32_t i = 0; i < poses.size(); ++i) world.move(i, poses[i]);
+    world.update(
+        counter, [](const ObjectPair&) { return Touching(); },
+        [&](std::uint32_t slot, const ObjectPair& pair, const Touching& query) {
+          touching.put(slot, pair, query.touching());
+        },
+        [&](std::uint32_t slot) { touching.drop(slot); });
+    const std::size_t n = scene.trace.objects, first = found.size();
+    found.resize(first + scene.trace.pairs());
+    for (const auto& [i, j] : touching.pairs())
+      ++found[first + i * n - i * (i + 1) / 2 + (j - i - 1)];
+  }
+  return found;
+}
+
 /// In C++, chosen by the meshes: by their triangles, as long as wide, or twenty times as long.
 TEST(World, RecommendedForItsMeshesGivesTheAnswersOfAllPairs) {
   for (const double stretch : {1.0, 20.0}) {
@@ -125,35 +155,24 @@ TEST(World, RecommendedForItsMeshesGivesTheAnswersOfAllPairs) {
     const auto truth = replay(scene.meshes, scene.trace, {}, {}).touching;
     with_recommended(scene.meshes, [&]<class Best>(std::type_identity<Best>) {
       EXPECT_EQ((std::is_same_v<Best, RecommendedOriented>), stretch > 1);
-      std::vector<typename Best::Hierarchy> trees;
-      trees.reserve(scene.meshes.size());
-      for (const auto& mesh : scene.meshes) trees.push_back(Best::hierarchy(mesh));
-      std::vector<typename Best::Shape> shapes;
-      for (std::size_t i = 0; i < scene.trace.objects; ++i)
-        shapes.push_back({&scene.meshes[i % trees.size()], &trees[i % trees.size()]});
-      World<typename Best::Pairs> world{typename Best::Pairs(shapes)};
-      TouchingPairs touching;
       NotCounting counter;
-      std::vector<Pose> poses(scene.trace.objects);
-      std::vector<std::uint8_t> found;
-      for (std::size_t frame = 0; frame < scene.trace.frames; ++frame) {
-        scene.trace.poses(frame, poses);
-        for (std::uint32_t i = 0; i < poses.size(); ++i) world.move(i, poses[i]);
-        world.update(
-            counter, [](const ObjectPair&) { return Touching(); },
-            [&](std::uint32_t slot, const ObjectPair& pair, const Touching& query) {
-              touching.put(slot, pair, query.touching());
-            },
-            [&](std::uint32_t slot) { touching.drop(slot); });
-        const std::size_t n = scene.trace.objects, first = found.size();
-        found.resize(first + scene.trace.pairs());
-        for (const auto& [i, j] : touching.pairs())
-          ++found[first + i * n - i * (i + 1) / 2 + (j - i - 1)];
-      }
+      const auto found = touching_in_world<Best>(scene, counter);
       EXPECT_EQ(found, truth);
       EXPECT_GT(std::count(found.begin(), found.end(), 1), 0);
     });
   }
+}
+
+/// The spheres by which pairs are culled early are relative to the origin that the world chooses.
+TEST(World, FarFromTheOriginMakesAsManyTests) {
+  Played scene = played(more_settings()[2]);
+  Counting near, far;
+  touching_in_world<Recommended>(scene, near);
+  for (std::size_t i = 0; i < scene.trace.values.size(); i += 7)
+    for (int axis = 0; axis < 3; ++axis) scene.trace.values[i + axis] += 1e7;
+  touching_in_world<Recommended>(scene, far);
+  EXPECT_GT(near.n_v, 1000u);
+  EXPECT_LT(static_cast<double>(far.n_v), 1.02 * static_cast<double>(near.n_v));
 }
 
 /// Bodies worlds apart: boxes that no float holds are boxes everywhere.

@@ -73,13 +73,13 @@ class WidePairs {
     if (workers_.size() < threads.count()) workers_.resize(threads.count());
   }
 
-  /// Begins a frame in which every body may have moved, and moves all. `poses` must remain valid
-  /// until its end.
+  /// Begins a frame in which every body may have moved, and moves all. `poses` and `origin` must
+  /// remain valid until its end.
   template <class Counter, class MakeQuery>
   void begin_all(std::span<const Pose> poses, const Vec3<double>& origin, Threads& threads,
                  Counter&, MakeQuery& make_query) {
     make_room(threads);
-    poses_ = poses, origin_ = origin;
+    poses_ = poses, origin_ = &origin;
     memory_.template begin_frame<std::remove_cvref_t<decltype(make_query(0, ObjectPair{}))>>();
     if (threads.count() == 1)
       for (std::size_t i = 0; i < bodies_.size(); ++i) move(i);
@@ -89,13 +89,13 @@ class WidePairs {
       });
   }
 
-  /// Begins a frame in which `movers` have moved. `poses`, of all bodies, must remain valid until
-  /// its end.
+  /// Begins a frame in which `movers` have moved. `poses`, of all bodies, and `origin` must remain
+  /// valid until its end; `origin` need not be known yet.
   template <class Query>
   void begin(std::span<const std::uint32_t> movers, std::span<const Pose> poses,
-             const Vec3<double>&, const Threads& threads) {
+             const Vec3<double>& origin, const Threads& threads) {
     make_room(threads);
-    poses_ = poses;
+    poses_ = poses, origin_ = &origin;
     memory_.template begin_frame<Query>();
     for (const auto i : moved_) memory_.rest(i);
     moved_.assign(movers.begin(), movers.end());
@@ -137,7 +137,7 @@ class WidePairs {
     PairSieve sieve;
   };
 
-  void move(std::size_t i) { memory_.move(i, bodies_[i], poses_[i], culling_, origin_); }
+  void move(std::size_t i) { memory_.move(i, bodies_[i], poses_[i], culling_, *origin_); }
 
   /// Decides pairs by early tests, and traverses the rest.
   template <class Query, class Slots, class Counter, class MakeQuery, class Take>
@@ -225,7 +225,7 @@ class WidePairs {
   std::vector<const TriangleMesh*> meshes_;
   EarlyCulling culling_;
   std::vector<Worker> workers_;
-  Vec3<double> origin_ = Vec3<double>::Zero();  // of the spheres in culling_; set by begin_all
+  const Vec3<double>* origin_ = nullptr;  // of the spheres in culling_
   [[no_unique_address]] Memory memory_;
   std::span<const Pose> poses_;
   std::vector<std::uint32_t> moved_;  // in the frame that `begin` began last
