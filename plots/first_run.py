@@ -52,11 +52,11 @@ def beside_lines(record):
     peers = [name for name in dict.fromkeys(rows[rows.peer != ""].method) if name in time]
     wrong = rows[(rows.peer != "") & (rows.differing > 0)].groupby(["work", "method"]).size()
     shown = [TOUCHING, *peers]
-    width = max(14, *(len(name) + 2 for name in shown))
-    yield f"{'Do two bunnies touch? Microseconds a pair':44}" + "".join(f"{name:>{width}}" for name in shown)
+    widths = [max(8, len(name) + 2) for name in shown]
+    yield f"{'Do two bunnies touch? Microseconds per pair':44}" + "".join(f"{name:>{width}}" for name, width in zip(shown, widths))
     for work in time.index:
         cells = [f"{quoting.written(time.loc[work, name], '.2g')}{'*' if (work, name) in wrong.index else ''}" for name in shown]
-        yield f"{'  ' + work:44}" + "".join(f"{cell:>{width}}" for cell in cells)
+        yield f"{'  ' + work:44}" + "".join(f"{cell:>{width}}" for cell, width in zip(cells, widths))
     yield "Every answer was compared with the exact one: none of ours differs" + (
         "; a star marks a library whose answers do." if len(wrong) else ", and none of theirs does here.")
 
