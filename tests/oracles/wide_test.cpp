@@ -354,7 +354,7 @@ class SlotAnswers {
   }
   const std::vector<std::uint8_t>& frame(const std::vector<std::uint32_t>& movers,
                                          const PosesOfFrame& poses) {
-    world_.template begin<Touching>(movers, poses, Vec3<double>::Zero(), threads_);
+    world_.template begin<Touching>(movers, poses, origin_, threads_);
     for (const auto i : movers) world_.set_pose(i);
     std::vector<std::uint32_t> due;
     for (std::uint32_t slot = 0; slot < pairs_.size(); ++slot)
@@ -376,6 +376,7 @@ class SlotAnswers {
   Pairs world_;
   std::vector<ObjectPair> pairs_;
   std::vector<std::uint8_t> touching_;
+  Vec3<double> origin_ = Vec3<double>::Zero();
   Threads threads_{1};
 };
 
