@@ -56,7 +56,7 @@ def read(record, table="", needs=(), clock="wall"):
         units = {column: words.unit_of(column) for column in rows} if settings else {}
         if settings:
             rows["peer"] = ""
-            rows["variant"] = variant_names(rows)
+            rows = with_variants(rows)
             rows = in_order(rows, definition, settings)
         rows.attrs.update(name=name, kind=kind, definition=definition, settings=settings, units=units, clock="",
                           unfinished=unfinished)
@@ -78,8 +78,7 @@ def read(record, table="", needs=(), clock="wall"):
         rows[column], units[column] = as_lengths(rows[column], units[column])
     if kind == "worlds":
         units.update(step="radii", side="radii")
-    if "variant" not in rows:
-        rows["variant"] = variant_names(rows)
+    rows = with_variants(rows)
     units.setdefault("variant", "")
     if missing := [column for column in needs if column not in rows]:
         raise Refused(f"{record}: has no {', '.join(missing)}: it is the record of something else")
@@ -252,6 +251,11 @@ def as_lengths(column, unit):
             if column.str.endswith(suffix).all() and numbers.notna().all():
                 return numbers.astype(float), name
     return column, unit
+
+
+def with_variants(rows):
+    """With a column `variant`, that of the table if it has one."""
+    return rows if "variant" in rows else rows.assign(variant=variant_names(rows))
 
 
 def variant_names(rows):

@@ -295,7 +295,9 @@ class Frames(unittest.TestCase):
     def test_coherence_and_frames(self):
         rows = records.read(committed("best-rebuilds"))
         self.assertTrue(rows.best_tests.notna().all())
-        self.assertEqual(len(records.read(committed("nine-bunnies"), "frames")), 18000)
+        frames = records.read(committed("nine-bunnies"), "frames")
+        self.assertEqual(len(frames), 18000)
+        self.assertEqual(set(frames.variant), {"recursive", "separation-list", "deferred"})
 
 
 if __name__ == "__main__":
