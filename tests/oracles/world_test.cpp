@@ -105,10 +105,15 @@ TEST(World, WhatStandsIsNotAskedAgain) {
   EXPECT_EQ(run.queried, 0u);
 }
 
-TEST(World, FarFromTheOriginAndWithoutBodies) {
-  Played scene = played(settings(50)[0]);
+/// The scene, moved by ten million in each coordinate.
+Played far_away(Played scene) {
   for (std::size_t i = 0; i < scene.trace.values.size(); i += 7)
     for (int axis = 0; axis < 3; ++axis) scene.trace.values[i + axis] += 1e7;
+  return scene;
+}
+
+TEST(World, FarFromTheOriginAndWithoutBodies) {
+  const Played scene = far_away(played(settings(50)[0]));
   expect_all_pairs_answers(scene, "far", "sphere", "recursive");
   Played none = scene;
   none.trace = {3, 0, {}};
@@ -165,12 +170,10 @@ TEST(World, RecommendedForItsMeshesGivesTheAnswersOfAllPairs) {
 
 /// The spheres by which pairs are culled early are relative to the origin that the world chooses.
 TEST(World, FarFromTheOriginMakesAsManyTests) {
-  Played scene = played(more_settings()[2]);
+  const Played scene = played(more_settings()[2]);
   Counting near, far;
   touching_in_world<Recommended>(scene, near);
-  for (std::size_t i = 0; i < scene.trace.values.size(); i += 7)
-    for (int axis = 0; axis < 3; ++axis) scene.trace.values[i + axis] += 1e7;
-  touching_in_world<Recommended>(scene, far);
+  touching_in_world<Recommended>(far_away(scene), far);
   EXPECT_GT(near.n_v, 1000u);
   EXPECT_LT(static_cast<double>(far.n_v), 1.02 * static_cast<double>(near.n_v));
 }

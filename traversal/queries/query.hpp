@@ -51,11 +51,6 @@ template <class Q>
 concept AnswersYesOrNo = requires(const Q& query) {
   { query.answer() } -> std::same_as<bool>;
 };
-/// A query whose answer is a number.
-template <class Q>
-concept AnswersByNumber = requires(const Q& query) {
-  { query.answer() } -> std::same_as<double>;
-};
 /// A query that a single hit decides.
 template <class Q>
 concept DecidedByOneHit = Q::one_hit_is_enough && !wants_bound<Q>();

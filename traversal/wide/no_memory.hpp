@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "hierarchies/wide/fitting.hpp"
+#include "traversal/queries/query.hpp"
 #include "traversal/wide/early_culling.hpp"
 #include "traversal/wide/gap_measure.hpp"
 
@@ -77,21 +78,18 @@ class NoMemory {
 
   template <class Query>
   TraversalStart start(std::size_t p, const ObjectPair&) const {
-    if constexpr (AnswersTouching<Query>)
+    // The last answer is the one to expect next.
+    if constexpr (AnswersYesOrNo<Query>)
       return {touched_[p] ? Expect::touching : Expect::apart};
     else
       return {};
   }
   template <class Query>
   void remember(std::size_t p, const ObjectPair&, const Query& query, const NoRecord&) {
-    if constexpr (AnswersTouching<Query>) touched_[p] = query.touching();
+    if constexpr (AnswersYesOrNo<Query>) touched_[p] = query.answer();
   }
 
  private:
-  /// Queries answered by yes or no: the last answer is the one to expect next.
-  template <class Query>
-  static constexpr bool AnswersTouching = requires(Query query) { query.touching(); };
-
   std::vector<MeshSphere> spheres_;
   std::vector<std::uint8_t> touched_;  // in the last frame; affects only the order of steps
 };

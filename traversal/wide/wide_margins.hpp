@@ -40,6 +40,7 @@
 #include <string_view>
 #include <vector>
 
+#include "traversal/queries/query.hpp"
 #include "traversal/relative_motion_bound.hpp"
 #include "traversal/wide/crossing_batch.hpp"
 #include "traversal/wide/followed_bodies.hpp"
