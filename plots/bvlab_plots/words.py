@@ -8,7 +8,7 @@ CALLED = {
     "time_ns": "time", "first_ns": "time of the first frame", "later_ns": "time",
     "build_ns": "time to build", "frame_ns": "time per frame", "ns_per_frame": "time per frame",
     "ns_per_call": "time per call",
-    "pose_ns": "time to pose a volume", "test_ns": "time to test two volumes", "fan_out": "children a node",
+    "pose_ns": "time to pose a volume", "test_ns": "time to test two volumes", "fan_out": "children per node",
     "begin_ns": "time before a pair's first volume", "shared_bytes": "memory that bodies share",
     "wall_ns": "wall time per frame", "middle_ns": "median time of a frame",
     "survival": "share of the front that survives a frame", "p99_ns": "99th percentile of a frame's time",
@@ -28,7 +28,7 @@ CALLED_IN = {
     "tightness": {"mean": "distance left out, over the node's diameter"},
     "budget": {"mean_deepest_per_radius": "mean bound on depth, over the radius"},
 }
-# Of which one is counted: "time / pairs" is time a pair.
+# Of which one is counted: "time / pairs" is time per pair.
 ONE_OF = {"pairs": "pair", "later_pairs": "pair after the first frame", "frames": "frame", "answers": "answer",
           "objects": "body", "boxes": "box", "overlaps": "overlapping pair", "n_v": "volume test",
           "n_p": "triangle test"}

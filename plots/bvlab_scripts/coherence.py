@@ -159,7 +159,7 @@ def draw_margins(rows, out):
                           markersize=3.5, markeredgecolor=look["color"], markerfacecolor=fill,
                           markeredgewidth=0.7, label=volume if fill != "none" else None)
         axis.axhline(1, color="black", linewidth=0.8)
-        axis.set(xscale="log", yscale="log", xlabel="motion a frame, in leaf sizes")
+        axis.set(xscale="log", yscale="log", xlabel="motion per frame, in leaf sizes")
     leaves = np.geomspace(group.leaves.min(), group.leaves.max(), 50)
     if margins:
         axes[0].plot(leaves, np.minimum(1, margins[0] * leaves ** margins[1]), color="black", linewidth=1.4,

@@ -67,7 +67,7 @@ def draw_split(rows, out):
         axis.plot(group.volume, group.time_ns / group.pairs / 1e3, "x", color="#b0413e", label="measured")
         axis.set_title(f"{query}, {density}")
         axis.tick_params(axis="x", rotation=90)
-    axes[0, 0].set_ylabel("time a pair (µs)")
+    axes[0, 0].set_ylabel("time per pair (µs)")
     figure.tight_layout()
     style.legend_below(figure, *axes[0, 0].get_legend_handles_labels())
     return style.save(figure, out, "cost-model-split")

@@ -85,7 +85,7 @@ def draw(middle, out, name):
     for axis in list(axes.flat)[len(sets):]:
         axis.set_visible(False)
     for axis in axes[-1, :]:
-        axis.set_xlabel("ns a call")
+        axis.set_xlabel("ns per call")
     for axis in axes[:, 0]:
         axis.set_ylabel("wrong per million")
     handles = {}

@@ -83,10 +83,9 @@ def first_call(record):
     ratio = time.drop(columns="").min(axis=1) / time[""]
     least = ratio.idxmin()
     pairs = rows.groupby(["set", "boxes"]).overlaps.median()
-    larger = ratio[least[0]].idxmax()
-    claim(larger != least[1], "the set has another size")
-    return {"ratio": Interval(ratio), "pairs": short(pairs[least]), "set": least[0], "peers": peers_of(rows), "larger": ratio[least[0]][larger],
-            "larger_pairs": short(pairs[least[0]][larger])}
+    other = ratio[least[0]].drop(least[1]).idxmax()
+    return {"ratio": Interval(ratio), "pairs": short(pairs[least]), "set": least[0], "peers": peers_of(rows), "other": ratio[least[0]][other],
+            "other_pairs": short(pairs[least[0]][other])}
 
 
 @quotes("boxes-peers")
