@@ -15,7 +15,7 @@
 
 #include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/threads.hpp"
-#include "traversal/body_pair.hpp"
+#include "traversal/shape.hpp"
 
 namespace bvlab {
 

@@ -12,15 +12,12 @@
 #include "traversal/body.hpp"
 #include "traversal/body_pair.hpp"
 #include "traversal/gather.hpp"
+#include "traversal/shape.hpp"
 
 namespace bvlab {
 
-/// A mesh and the hierarchy over it.
 template <BoundingVolume V>
-struct Shape {
-  const TriangleMesh* mesh;
-  const Hierarchy<V>* hierarchy;
-};
+using Shape = ShapeOver<Hierarchy<V>>;
 
 /// The centre of the box around all translations. Float volumes are posed relative to it, so that
 /// their precision does not depend on where in the world the bodies are.

@@ -12,17 +12,10 @@
 /// members without naming a volume.
 #pragma once
 
-#include <cstdint>
-
 #include "traversal/no_front.hpp"
 #include "traversal/traverse.hpp"
 
 namespace bvlab {
-
-/// Two objects, by their indices; i < j.
-struct ObjectPair {
-  std::uint32_t i, j;
-};
 
 /// B is the scalar or batch in which volumes are tested.
 template <class B, BoundingVolume V, class QueryType, class Counter>

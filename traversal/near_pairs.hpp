@@ -18,8 +18,8 @@
 #include "broadphase/structures/radix_sort.hpp"
 #include "hierarchies/geometry/morton.hpp"
 #include "hierarchies/geometry/threads.hpp"
-#include "traversal/body_pair.hpp"
 #include "traversal/rotated_mesh_box.hpp"
+#include "traversal/shape.hpp"
 
 namespace bvlab {
 

@@ -75,11 +75,8 @@ using MarginsOver = WideConfiguration<Trees, WideMargins>;
 template <class Trees>
 using RootsOf = WideConfiguration<Trees, NoMemory>;
 
-/// A wider node would be tested in several steps; none is narrower than two.
-inline constexpr int recommended_fan_out = std::clamp(native_width<float>, 2, 16);
-
 using Recommended =
-    MarginsOver<WideTrees<SlabBox<float>, recommended_fan_out, SiblingsKernel,
-                          builds::TopDownSurfaceArea, Fit::published, recommended_fan_out>>;
+    MarginsOver<WideTrees<SlabBox<float>, native_fan_out<float>, SiblingsKernel,
+                          builds::TopDownSurfaceArea, Fit::published, native_fan_out<float>>>;
 
 }  // namespace bvlab

@@ -44,7 +44,7 @@ using RecommendedOriented =
 
 /// Slab-boxes in smaller leaves, for bodies that come near each other at few triangles.
 using RecommendedSmallLeaves =
-    MarginsOver<WideTrees<SlabBox<float>, recommended_fan_out, SiblingsKernel,
+    MarginsOver<WideTrees<SlabBox<float>, native_fan_out<float>, SiblingsKernel,
                           builds::BottomUpLocal, Fit::published, 4>>;
 
 /// Slab-boxes and oriented boxes from the roots: for bodies so fast, or so often in contact,

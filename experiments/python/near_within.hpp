@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "experiments/replay/box_methods.hpp"
-#include "traversal/body_pair.hpp"
+#include "traversal/shape.hpp"
 #include "traversal/rotated_mesh_box.hpp"
 
 namespace bvlab {

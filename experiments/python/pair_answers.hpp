@@ -11,7 +11,7 @@
 
 #include "experiments/replay/replay.hpp"
 #include "hierarchies/geometry/pose.hpp"
-#include "traversal/body_pair.hpp"
+#include "traversal/shape.hpp"
 
 namespace bvlab {
 

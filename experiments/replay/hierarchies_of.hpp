@@ -36,11 +36,7 @@ class HierarchiesOf final : public AnyHierarchies {
 
   /// Object i uses mesh i mod the number of meshes.
   std::vector<Shape<V>> shapes(std::size_t objects) const {
-    std::vector<Shape<V>> shapes;
-    shapes.reserve(objects);
-    for (std::size_t i = 0; i < objects; ++i)
-      shapes.push_back({&meshes_[i % all_.size()], &all_[i % all_.size()]});
-    return shapes;
+    return shapes_over(meshes_, all_, objects);
   }
 
  private:

@@ -18,10 +18,6 @@ namespace bvlab {
 
 namespace detail {
 
-/// A wider node would be tested in several steps; none is narrower than two.
-template <class T>
-inline constexpr int native_fan_out = std::clamp(native_width<T>, 2, 16);
-
 /// How many children per node has.
 template <class Kernel, class T>
 inline constexpr int fan_out_of = native_fan_out<T>;

@@ -20,6 +20,11 @@
 
 namespace bvlab {
 
+/// The fan-out of trees where none is asked for: as many children as a register has lanes. A wider
+/// node would be tested in several steps; none is narrower than two.
+template <class T>
+inline constexpr int native_fan_out = std::clamp(native_width<T>, 2, 16);
+
 template <BoundingVolume V, int F>
 class WideHierarchy {
   static_assert(F == 2 || F == 4 || F == 8 || F == 16);

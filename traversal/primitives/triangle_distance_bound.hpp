@@ -119,8 +119,8 @@ class DistanceBound {
     const Mask<S> inner = s > S(0), behind = s >= S(1);
     const S inner_size = size + 2 * abs(s) * edges.size[j];
     const S square =
-        pick<S>(behind, dot<S>(at_end, at_end), pick<S>(inner, dot<S>(r, r), dot<S>(w, w)));
-    offer(square, pick<S>(behind, size_at_end, pick<S>(inner, inner_size, size)));
+        select<S>(behind, dot<S>(at_end, at_end), select<S>(inner, dot<S>(r, r), dot<S>(w, w)));
+    offer(square, select<S>(behind, size_at_end, select<S>(inner, inner_size, size)));
   }
 
   /// Offers the least |w - s e - t f|, if its s and t are inside, or nearly so.
@@ -146,11 +146,11 @@ class DistanceBound {
     const S rounding = w_size + 2 * (abs(s) * e_size + abs(t) * f_size);
     const S lowered =
         dot<S>(r, r) - (S(8 * u) * (rounding * rounding) + S(0x1p-96) * (over_sine * (m * m)));
-    square_ = min(square_, pick<S>(wide && inside, lowered, square_));
+    square_ = min(square_, select<S>(wide && inside, lowered, square_));
     // Twice min(|e|, |f|)^2 (2 sin^2 + 2^-98), without a division.
     const S narrow =
         4 * (square * min(over_e_square, over_f_square)) + S(0x1p-97) * min(e_square, f_square);
-    skipped_ = max(skipped_, pick<S>(normal && !wide, narrow, S(0)));
+    skipped_ = max(skipped_, select<S>(normal && !wide, narrow, S(0)));
   }
 
   Vector<S> w_[3][3];
@@ -169,7 +169,7 @@ S distance_bound(const Corners<S>& a, const Corners<S>& b) {
     for (const auto& p : *t) largest = max(largest, max(max(abs(p[0]), abs(p[1])), abs(p[2])));
   const Mask<S> safe = largest < S(0x1p100) && largest > S(0x1p-100);
   const Mask<S> apart = certainly<S>(a, b).apart && safe;
-  return pick<S>(apart, DistanceBound<S>(a, b).lower(), S(0));
+  return select<S>(apart, DistanceBound<S>(a, b).lower(), S(0));
 }
 
 }  // namespace bvlab

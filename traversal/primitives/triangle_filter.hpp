@@ -43,17 +43,6 @@ using stdx::abs;
 
 // Always inlined, since whole registers are passed between these small functions.
 
-/// `condition ? yes : no`, lane by lane.
-template <Scalar S>
-[[gnu::always_inline]] inline S pick(const Mask<S>& condition, S yes, S no) {
-  if constexpr (Batched<S>) {
-    stdx::where(condition, no) = yes;
-    return no;
-  } else {
-    return condition ? yes : no;
-  }
-}
-
 // By value, so that this compiles to one instruction and no branch.
 template <Scalar S>
 [[gnu::always_inline]] inline S min(S x, S y) {
@@ -99,8 +88,8 @@ template <Scalar S>
 template <Scalar S>
 [[gnu::always_inline]] inline Vector<S> choose(const Mask<S>& condition, const Vector<S>& yes,
                                                const Vector<S>& no) {
-  return {pick<S>(condition, yes[0], no[0]), pick<S>(condition, yes[1], no[1]),
-          pick<S>(condition, yes[2], no[2])};
+  return {select<S>(condition, yes[0], no[0]), select<S>(condition, yes[1], no[1]),
+          select<S>(condition, yes[2], no[2])};
 }
 
 /// Whether the boxes are apart (a comparison of corners, hence exact, and valid for the given
@@ -139,7 +128,7 @@ struct BoxAndBound {
                                    side[0] * side[1] * wrong[2]) +
                               (30 * u) * ((side[0] * side[1]) * side[2])) +
               underflow;
-    bound = pick<S>(longest < S(reach), bound, S(std::numeric_limits<T>::infinity()));
+    bound = select<S>(longest < S(reach), bound, S(std::numeric_limits<T>::infinity()));
   }
 };
 
@@ -259,7 +248,7 @@ template <Scalar S>
                                  side[0] * side[1] * wrong[2]) +
                             (30 * u) * ((side[0] * side[1]) * side[2])) +
             tiny * longest;
-  bound = pick<S>(longest < S(reach), bound, S(std::numeric_limits<T>::infinity()));
+  bound = select<S>(longest < S(reach), bound, S(std::numeric_limits<T>::infinity()));
   return decided_by_signs<S>(a, b, apart, bound);
 }
 

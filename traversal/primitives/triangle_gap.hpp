@@ -34,7 +34,7 @@ template <Batched S>
   const S squared = dot<S>(n, n);
   const S apart = max(low[1] - high[0], low[0] - high[1]);
   const Mask<S> valid = squared > S(T(0x1p-100)) && squared < S(std::numeric_limits<T>::max());
-  return pick<S>(valid, apart / stdx::sqrt(squared), S(0));
+  return select<S>(valid, apart / stdx::sqrt(squared), S(0));
 }
 
 }  // namespace filter
@@ -64,7 +64,7 @@ template <Batched S>
                       gap_along<S>(between, from_first));
   const S gap = apart * S(1 - 8 * u) - (S(10 * u) * longest + S(8) * off + S(T(0x1p-90)));
   // Written so that NaN gives 0.
-  return pick<S>(gap > S(0), gap, S(0));
+  return select<S>(gap > S(0), gap, S(0));
 }
 
 }  // namespace bvlab

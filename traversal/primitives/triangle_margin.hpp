@@ -52,7 +52,6 @@ using filter::cross;
 using filter::dot;
 using filter::max;
 using filter::min;
-using filter::pick;
 using filter::operator-;
 template <class S>
 using Vector = filter::Vector<S>;
@@ -78,7 +77,7 @@ template <Scalar S>
   const S low_b = min(b0, min(b1, b2)), high_b = max(b0, max(b1, b2));
   const S square = dot<S>(n, n);
   const S distance = max(low_b - high_a, low_a - high_b) / root(square);
-  return pick<S>(square > S(0x1p-40f), distance * S(1 - 8 * u) - S(64 * u), S(0));
+  return select<S>(square > S(0x1p-40f), distance * S(1 - 8 * u) - S(64 * u), S(0));
 }
 
 template <Scalar S>
@@ -113,7 +112,7 @@ template <Scalar S>
       for (int k = 0; k < 3; ++k) d[k] = r[k] + s * of_a[i][k] - t * of_b[j][k];
       const S square = dot<S>(d, d);
       const Mask<S> nearer = square < least_square;
-      least_square = pick<S>(nearer, square, least_square);
+      least_square = select<S>(nearer, square, least_square);
       nearest = filter::choose<S>(nearer, d, nearest);
     }
   return nearest;
@@ -132,7 +131,7 @@ template <Scalar S>
 template <Scalar S>
 [[gnu::always_inline]] inline S over_norm(const Vector<S>& n) {
   const S square = dot<S>(n, n);
-  return pick<S>(square > S(0x1p-40f), S(1 - 8 * u) / (root(square) + S(64 * u)), S(0));
+  return select<S>(square > S(0x1p-40f), S(1 - 8 * u) / (root(square) + S(64 * u)), S(0));
 }
 
 /// The best margin of the edges of `edges` as crossings of `t`; not positive where no edge

@@ -52,12 +52,12 @@ struct RefinedBounds {
     const S infinite(std::numeric_limits<double>::infinity());
     flat = min(min(side[0], side[1]), side[2]) == S(0);
     determinant =
-        pick<S>(in_reach, (determinant_error * u2) * volume + (64 * least) * longest, infinite);
+        select<S>(in_reach, (determinant_error * u2) * volume + (64 * least) * longest, infinite);
     on_grid = 2 * determinant < 0x1p-91 * volume;
     on_grid_2 = in_reach;
     for (int k = 0; k < 3; ++k) {
       const S area = side[(k + 1) % 3] * side[(k + 2) % 3];
-      plane[k] = pick<S>(in_reach, (minor_error * u2) * area + S(64 * least), infinite);
+      plane[k] = select<S>(in_reach, (minor_error * u2) * area + S(64 * least), infinite);
       on_grid_2 = on_grid_2 && ((2 * plane[k] < 0x1p-61 * area) || (area == S(0)));
     }
     for (int k = 0; k < 3; ++k) {
@@ -84,7 +84,7 @@ template <Scalar S>
   const Mask<S> above = determinant > bounds.determinant, below = determinant < -bounds.determinant;
   // A flat box has volume 0, but an error bound above it for underflow.
   const Mask<S> zero = bounds.flat || (bounds.on_grid && !(above || below));
-  return {pick<S>(zero, S(0), pick<S>(above, S(1), pick<S>(below, S(-1), S(0)))),
+  return {select<S>(zero, S(0), select<S>(above, S(1), select<S>(below, S(-1), S(0)))),
           above || below || zero};
 }
 
@@ -120,15 +120,15 @@ struct RefinedTurned {
     const auto alone = [&](const S& s, const S& x, const S& y) {
       return ((s != zero) && (s * x <= zero) && (s * y <= zero)) || ((s == zero) && (x * y > zero));
     };
-    const auto effective = [&](const S& s, const S& x) { return pick<S>(s == zero, -x, s); };
+    const auto effective = [&](const S& s, const S& x) { return select<S>(s == zero, -x, s); };
     const Mask<S> first = alone(side[0], side[1], side[2]);
     const Mask<S> second = !first && alone(side[1], side[2], side[0]);
     apex = choose<S>(first, t[0], choose<S>(second, t[1], t[2]));
     next = choose<S>(first, t[1], choose<S>(second, t[2], t[0]));
     last = choose<S>(first, t[2], choose<S>(second, t[0], t[1]));
-    above =
-        pick<S>(first, effective(side[0], side[1]),
-                pick<S>(second, effective(side[1], side[2]), effective(side[2], side[0]))) > zero;
+    above = select<S>(first, effective(side[0], side[1]),
+                      select<S>(second, effective(side[1], side[2]), effective(side[2], side[0]))) >
+            zero;
   }
 };
 
@@ -142,7 +142,7 @@ template <Scalar S>
   const S x = abs(normal_a[0].high), y = abs(normal_a[1].high), z = abs(normal_a[2].high);
   const Mask<S> along_x = (x >= y) && (x >= z), along_y = !along_x && (y >= z);
   const auto by_axis = [&](const S& if_x, const S& if_y, const S& if_z) {
-    return pick<S>(along_x, if_x, pick<S>(along_y, if_y, if_z));
+    return select<S>(along_x, if_x, select<S>(along_y, if_y, if_z));
   };
   const auto turn_of = [&](const PairVector<S>& n) {
     return by_axis(n[0].high + n[0].low, n[1].high + n[1].low, n[2].high + n[2].low);
@@ -161,7 +161,8 @@ template <Scalar S>
       for (int c = 0; c < 2; ++c) across[i][j][c] = exact_difference<S>(q[j][c], p[i][c]);
   // How far the other reaches to the inner side of the most separating edge.
   S inside(std::numeric_limits<double>::infinity());
-  const S way_a = pick<S>(turn_a > S(0), S(1), S(-1)), way_b = pick<S>(turn_b > S(0), S(1), S(-1));
+  const S way_a = select<S>(turn_a > S(0), S(1), S(-1)),
+          way_b = select<S>(turn_b > S(0), S(1), S(-1));
   for (int i = 0; i < 3; ++i) {
     const int k = (i + 1) % 3;
     const Pair<S> ex = exact_difference<S>(p[k][0], p[i][0]),

@@ -137,10 +137,10 @@ class TransformedLeaf {
     const Mask<S> known = grown < S(most_known);
     const S least = min(min(along[0], along[1]), along[2]) - grown,
             most = max(max(along[0], along[1]), along[2]) + grown;
-    pick<S>(known, least, S(-infinity)).copy_to(least_.data(), stdx::vector_aligned);
-    pick<S>(known, most, S(infinity)).copy_to(most_.data(), stdx::vector_aligned);
+    select<S>(known, least, S(-infinity)).copy_to(least_.data(), stdx::vector_aligned);
+    select<S>(known, most, S(infinity)).copy_to(most_.data(), stdx::vector_aligned);
     for (std::size_t k = 0; k < 3; ++k)
-      pick<S>(known, normal[k], S(0)).copy_to(normal_[k].data(), stdx::vector_aligned);
+      select<S>(known, normal[k], S(0)).copy_to(normal_[k].data(), stdx::vector_aligned);
   }
 
   using Lanes = std::array<float, F>;

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "traversal/body_pair.hpp"
+#include "traversal/shape.hpp"
 #include "traversal/wide/separating_direction.hpp"
 
 namespace bvlab {

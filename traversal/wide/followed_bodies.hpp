@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "traversal/body_pair.hpp"
 #include "traversal/moving_body.hpp"
+#include "traversal/shape.hpp"
 
 namespace bvlab {
 

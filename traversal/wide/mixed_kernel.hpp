@@ -62,16 +62,9 @@ struct MixedKernel {
 
     void begin(Body<V, F>& a, Body<V, F>& b) {
       trees_ = {&a.hierarchy(), &b.hierarchy()};
-      const RelativePose a_from_b(a.orthonormal_pose(), b.orthonormal_pose());
-      const RelativePose b_from_a(b.orthonormal_pose(), a.orthonormal_pose());
-      const double reach_a = trees_[0]->reach(), reach_b = trees_[1]->reach();
-      // Constructed in place: a copy in wider pieces than were written would stall.
-      ::new (&frame_change_[1]) FrameChange(SiblingTest::frame_change(a_from_b, reach_a, reach_b));
-      ::new (&frame_change_[0]) FrameChange(SiblingTest::frame_change(b_from_a, reach_b, reach_a));
-      transforms_[0].begin(a_from_b, reach_a, reach_b);
-      transforms_[1].begin(b_from_a, reach_b, reach_a);
+      frames_.begin(a, b);
     }
-    const CornerTransform& a_to_b() const { return transforms_[0]; }
+    const CornerTransform& a_to_b() const { return frames_.transform[0]; }
     NodePair roots() const { return {trees_[0]->root(), trees_[1]->root()}; }
     /// `touched` is a pair of leaves.
     void retry(const NodePair& touched, WorkQueue&, WorkQueue& triangles) const {
@@ -89,7 +82,7 @@ struct MixedKernel {
       [[gnu::always_inline]] Over<V, S> posed(std::size_t part) const {
         return SiblingTest::in_lanes(
             volumes([&](std::size_t k) { return each_of_four(row_a.volume[k].data(), part); }),
-            pair_frame.frame_change_[1]);
+            pair_frame.frames_.change[1]);
       }
       [[gnu::always_inline]] Over<V, S> others(std::size_t part) const {
         return volumes([&](std::size_t k) { return four_repeated(row_b.volume[k].data(), part); });
@@ -98,15 +91,15 @@ struct MixedKernel {
         return each_of_four(row_a.size.data(), part) + four_repeated(row_b.size.data(), part);
       }
       [[gnu::always_inline]] OverlapLanes<S> overlap(std::size_t part) const {
-        return SiblingTest::template overlap<S>(posed(part), pair_frame.frame_change_[1],
+        return SiblingTest::template overlap<S>(posed(part), pair_frame.frames_.change[1],
                                                 others(part), sizes(part));
       }
       [[gnu::always_inline]] GapLanes<S> separation(std::size_t part) const {
-        return separation_by<S>(posed(part), pair_frame.frame_change_[1], others(part),
+        return separation_by<S>(posed(part), pair_frame.frames_.change[1], others(part),
                                 sizes(part));
       }
       [[gnu::always_inline]] S gaps(std::size_t part) const {
-        return SiblingTest::template gaps<S>(posed(part), pair_frame.frame_change_[1],
+        return SiblingTest::template gaps<S>(posed(part), pair_frame.frames_.change[1],
                                              others(part));
       }
       template <class Order>
@@ -117,7 +110,7 @@ struct MixedKernel {
                    four_repeated(row_b.name.data()), order, next);
       }
       ReferenceSphere reference_sphere() const {
-        return reference_sphere_of_smaller(pair_frame.trees_, node, pair_frame.transforms_);
+        return reference_sphere_of_smaller(pair_frame.trees_, node, pair_frame.frames_.transform);
       }
     };
 
@@ -138,15 +131,15 @@ struct MixedKernel {
         return of_sixteen(block.size.data(), part);
       }
       [[gnu::always_inline]] OverlapLanes<S> overlap(std::size_t part) const {
-        return SiblingTest::template overlap<S>(posed, pair_frame.frame_change_[side], others(part),
-                                                sizes(part));
+        return SiblingTest::template overlap<S>(posed, pair_frame.frames_.change[side],
+                                                others(part), sizes(part));
       }
       [[gnu::always_inline]] GapLanes<S> separation(std::size_t part) const {
-        return separation_by<S>(posed, pair_frame.frame_change_[side], others(part),
+        return separation_by<S>(posed, pair_frame.frames_.change[side], others(part),
                                 sizes(part) + S(posed.size));
       }
       [[gnu::always_inline]] S gaps(std::size_t part) const {
-        return SiblingTest::template gaps<S>(posed, pair_frame.frame_change_[side], others(part));
+        return SiblingTest::template gaps<S>(posed, pair_frame.frames_.change[side], others(part));
       }
       template <class Order>
       [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles,
@@ -158,7 +151,7 @@ struct MixedKernel {
       }
       ReferenceSphere reference_sphere() const {
         return reference_sphere_of(pair_frame.trees_[1 - side]->node_sphere(single), 1 - side,
-                                   pair_frame.transforms_);
+                                   pair_frame.frames_.transform);
       }
     };
 
@@ -181,10 +174,10 @@ struct MixedKernel {
       counter.posed(1);
       if (!a.leaf && (b.leaf || a.size > b.size))
         test(OneBySixteen{*this, 0, trees_[0]->block(a.first), j, pair.b, a.grandchildren,
-                          SiblingTest::posed_node(b.volume, b.size, frame_change_[0])});
+                          SiblingTest::posed_node(b.volume, b.size, frames_.change[0])});
       else
         test(OneBySixteen{*this, 1, trees_[1]->block(b.first), i, pair.a, b.grandchildren,
-                          SiblingTest::posed_node(a.volume, a.size, frame_change_[1])});
+                          SiblingTest::posed_node(a.volume, a.size, frames_.change[1])});
     }
 
     /// Begins to load what the step of a pair of nodes will read.
@@ -205,7 +198,7 @@ struct MixedKernel {
 
     using Triangles = BlockTriangles<V>;
     [[gnu::always_inline]] Triangles triangles(const NodePair& pair) const {
-      return {trees_, transforms_, pair};
+      return {trees_, frames_.transform, pair};
     }
 
     template <class Counter>
@@ -255,8 +248,7 @@ struct MixedKernel {
     }
 
     std::array<const Tree*, 2> trees_;
-    std::array<FrameChange, 2> frame_change_;    // into the frame of that side
-    std::array<CornerTransform, 2> transforms_;  // of a to b, and back
+    TwoFrames<SiblingTest> frames_;
   };
 };
 

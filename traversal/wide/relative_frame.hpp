@@ -118,6 +118,29 @@ struct ReferenceSphere {
   return reference;
 }
 
+/// What takes volumes and corners of two bodies, a and b, into each other's frames. A side is 0 for
+/// a and 1 for b.
+template <class SiblingTest>
+struct TwoFrames {
+  using FrameChange = typename SiblingTest::FrameChange;
+
+  std::array<FrameChange, 2> change;         ///< of volumes, into the frame of that side
+  std::array<CornerTransform, 2> transform;  ///< of corners, from the frame of that side
+
+  /// The bodies are WideBody, over any hierarchy.
+  template <class Body>
+  void begin(const Body& a, const Body& b) {
+    const RelativePose a_from_b(a.orthonormal_pose(), b.orthonormal_pose());
+    const RelativePose b_from_a(b.orthonormal_pose(), a.orthonormal_pose());
+    const double reach_a = a.hierarchy().reach(), reach_b = b.hierarchy().reach();
+    // Constructed in place: a copy in wider pieces than were written would stall.
+    ::new (&change[1]) FrameChange(SiblingTest::frame_change(a_from_b, reach_a, reach_b));
+    ::new (&change[0]) FrameChange(SiblingTest::frame_change(b_from_a, reach_b, reach_a));
+    transform[0].begin(a_from_b, reach_a, reach_b);
+    transform[1].begin(b_from_a, reach_b, reach_a);
+  }
+};
+
 /// Two bodies over wide trees. A side is 0 for a and 1 for b.
 template <BoundingVolume V, int F>
 class RelativeFrame {
@@ -131,15 +154,7 @@ class RelativeFrame {
 
   void begin(WideBody<Hierarchy>& a, WideBody<Hierarchy>& b) {
     hierarchies_ = {&a.hierarchy(), &b.hierarchy()};
-    const RelativePose a_from_b(a.orthonormal_pose(), b.orthonormal_pose());
-    const double reach_a = a.hierarchy().reach(), reach_b = b.hierarchy().reach();
-    const RelativePose b_from_a(b.orthonormal_pose(), a.orthonormal_pose());
-    // Constructed in place: a copy in wider pieces than were written would stall.
-    using FrameChange = typename SiblingTest::FrameChange;
-    ::new (&frame_change_[1]) FrameChange(SiblingTest::frame_change(a_from_b, reach_a, reach_b));
-    ::new (&frame_change_[0]) FrameChange(SiblingTest::frame_change(b_from_a, reach_b, reach_a));
-    transforms_[0].begin(a_from_b, reach_a, reach_b);
-    transforms_[1].begin(b_from_a, reach_b, reach_a);
+    frames_.begin(a, b);
   }
 
   /// A node of `side`, in the frame of the other side.
@@ -148,7 +163,7 @@ class RelativeFrame {
                                               Counter& counter) const {
     counter.posed(1);
     const auto& of = hierarchies_[side]->node(node);
-    return SiblingTest::posed_node(of.volume, of.size, frame_change_[1 - side]);
+    return SiblingTest::posed_node(of.volume, of.size, frames_.change[1 - side]);
   }
   /// The child of a node of `side` in a lane.
   template <class Counter>
@@ -157,18 +172,18 @@ class RelativeFrame {
     const auto& of = hierarchies_[side]->children(node);
     return SiblingTest::posed_node(lane_of<V>(of.volumes, lane),
                                    T(of.size[static_cast<std::size_t>(lane)]),
-                                   frame_change_[1 - side]);
+                                   frames_.change[1 - side]);
   }
 
   /// Tests `posed`, of the other side, against all children of a node of `side`.
   [[gnu::always_inline]] OverlapLanes<S> overlap(std::size_t side, std::uint32_t node,
                                                  const PosedNode& posed) const {
     const auto& lanes = hierarchies_[side]->children(node);
-    return SiblingTest::template overlap<S>(posed, frame_change_[side], lanes.volumes, lanes.size);
+    return SiblingTest::template overlap<S>(posed, frames_.change[side], lanes.volumes, lanes.size);
   }
   [[gnu::always_inline]] S gaps(std::size_t side, std::uint32_t node,
                                 const PosedNode& posed) const {
-    return SiblingTest::template gaps<S>(posed, frame_change_[side],
+    return SiblingTest::template gaps<S>(posed, frames_.change[side],
                                          hierarchies_[side]->children(node).volumes);
   }
   /// A lower bound on the distance to each lane, negative where they may overlap; cheaper than
@@ -177,24 +192,23 @@ class RelativeFrame {
                                                 const PosedNode& posed) const {
     const auto& lanes = hierarchies_[side]->children(node);
     if constexpr (requires {
-                    SiblingTest::template separation<S>(posed, frame_change_[side], lanes.volumes);
+                    SiblingTest::template separation<S>(posed, frames_.change[side], lanes.volumes);
                   }) {
-      const S gap = SiblingTest::template separation<S>(posed, frame_change_[side], lanes.volumes);
+      const S gap = SiblingTest::template separation<S>(posed, frames_.change[side], lanes.volumes);
       return {gap, gap * roughly_one_over<S>(lanes.size + S(posed.size))};
     } else {
       return {gaps(side, node, posed), overlap(side, node, posed).order};
     }
   }
 
-  const CornerTransform& a_to_b() const { return transforms_[0]; }
+  const CornerTransform& a_to_b() const { return frames_.transform[0]; }
   ReferenceSphere reference_sphere(std::size_t side, std::uint32_t node) const {
-    return reference_sphere_of(hierarchies_[side]->node_sphere(node), side, transforms_);
+    return reference_sphere_of(hierarchies_[side]->node_sphere(node), side, frames_.transform);
   }
 
  private:
   std::array<const Hierarchy*, 2> hierarchies_;
-  std::array<typename SiblingTest::FrameChange, 2> frame_change_;  // into the frame of that side
-  std::array<CornerTransform, 2> transforms_;                      // of a to b, and back
+  TwoFrames<SiblingTest> frames_;
 };
 
 }  // namespace bvlab

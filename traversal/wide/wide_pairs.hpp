@@ -17,32 +17,15 @@
 #include <vector>
 
 #include "hierarchies/geometry/threads.hpp"
+#include "traversal/shape.hpp"
 #include "traversal/wide/siblings_kernel.hpp"
 #include "traversal/wide/wide_margins.hpp"
 #include "traversal/wide/wide_pair.hpp"
 
 namespace bvlab {
 
-/// A mesh and the wide hierarchy over it.
-template <class Hierarchy>
-struct ShapeOver {
-  const TriangleMesh* mesh;
-  const Hierarchy* hierarchy;
-};
 template <BoundingVolume V, int F, class Kernel = SiblingsKernel>
 using WideShape = ShapeOver<typename Kernel::template Hierarchy<V, F>>;
-
-/// The shapes of bodies of which body i has mesh i modulo the number of meshes. Meshes and
-/// hierarchies must outlive them.
-template <class Hierarchy>
-std::vector<ShapeOver<Hierarchy>> shapes_over(std::span<const TriangleMesh> meshes,
-                                              const std::vector<Hierarchy>& hierarchies,
-                                              std::size_t bodies) {
-  std::vector<ShapeOver<Hierarchy>> shapes;
-  for (std::size_t i = 0; i < bodies; ++i)
-    shapes.push_back({&meshes[i % meshes.size()], &hierarchies[i % meshes.size()]});
-  return shapes;
-}
 
 template <BoundingVolume V, int F, class Memory = NoMemory, class Kernel = SiblingsKernel>
 class WidePairs {
