@@ -36,9 +36,10 @@ using deduce_t = lanes<W>;
 /// Calls f(0), f(1), ... f(W - 1), each index a constant.
 template <int W, class F>
 [[gnu::always_inline]] constexpr void each_lane(F&& f) {
-  [&]<int... i>(std::integer_sequence<int, i...>) {
+  [&]<int... i>(std::integer_sequence<int, i...>) __attribute__((always_inline)) {
     (f(std::integral_constant<int, i>()), ...);
-  }(std::make_integer_sequence<int, W>());
+  }
+  (std::make_integer_sequence<int, W>());
 }
 
 template <class T, class Abi>
@@ -46,43 +47,57 @@ class simd_mask {
  public:
   static constexpr int W = Abi::width;
   simd_mask() = default;
-  explicit simd_mask(bool all) { lane_.fill(all); }
+  [[gnu::always_inline]] explicit simd_mask(bool all) {
+    each_lane<W>([&](auto i) __attribute__((always_inline)) { lane_[i] = all; });
+  }
   static constexpr std::size_t size() { return W; }
 
-  bool operator[](std::size_t i) const { return lane_[i]; }
-  bool& operator[](std::size_t i) { return lane_[i]; }
+  [[gnu::always_inline]] bool operator[](std::size_t i) const { return lane_[i]; }
+  [[gnu::always_inline]] bool& operator[](std::size_t i) { return lane_[i]; }
   /// Bit i is set where lane i is true.
-  std::uint64_t bits() const {
+  [[gnu::always_inline]] std::uint64_t bits() const {
     std::uint64_t result = 0;
-    each_lane<W>([&](auto i) { result |= static_cast<std::uint64_t>(lane_[i]) << i; });
+    each_lane<W>([&](auto i) __attribute__((always_inline)) {
+      result |= static_cast<std::uint64_t>(lane_[i]) << i;
+    });
     return result;
   }
 
-  friend simd_mask operator&&(const simd_mask& a, const simd_mask& b) {
-    return of([&](auto i) { return static_cast<bool>(int{a.lane_[i]} & int{b.lane_[i]}); });
+  [[gnu::always_inline]] friend simd_mask operator&&(const simd_mask& a, const simd_mask& b) {
+    return of([&](auto i) __attribute__((always_inline)) {
+      return static_cast<bool>(int{a.lane_[i]} & int{b.lane_[i]});
+    });
   }
-  friend simd_mask operator||(const simd_mask& a, const simd_mask& b) {
-    return of([&](auto i) { return static_cast<bool>(int{a.lane_[i]} | int{b.lane_[i]}); });
+  [[gnu::always_inline]] friend simd_mask operator||(const simd_mask& a, const simd_mask& b) {
+    return of([&](auto i) __attribute__((always_inline)) {
+      return static_cast<bool>(int{a.lane_[i]} | int{b.lane_[i]});
+    });
   }
-  friend simd_mask operator&(const simd_mask& a, const simd_mask& b) { return a && b; }
-  friend simd_mask operator|(const simd_mask& a, const simd_mask& b) { return a || b; }
-  friend simd_mask operator^(const simd_mask& a, const simd_mask& b) { return a != b; }
-  friend simd_mask operator!=(const simd_mask& a, const simd_mask& b) {
-    return of([&](auto i) { return a.lane_[i] != b.lane_[i]; });
+  [[gnu::always_inline]] friend simd_mask operator&(const simd_mask& a, const simd_mask& b) {
+    return a && b;
   }
-  friend simd_mask operator==(const simd_mask& a, const simd_mask& b) {
-    return of([&](auto i) { return a.lane_[i] == b.lane_[i]; });
+  [[gnu::always_inline]] friend simd_mask operator|(const simd_mask& a, const simd_mask& b) {
+    return a || b;
   }
-  simd_mask operator!() const {
-    return of([&](auto i) { return !lane_[i]; });
+  [[gnu::always_inline]] friend simd_mask operator^(const simd_mask& a, const simd_mask& b) {
+    return a != b;
   }
-  simd_mask& operator&=(const simd_mask& b) { return *this = *this && b; }
-  simd_mask& operator|=(const simd_mask& b) { return *this = *this || b; }
+  [[gnu::always_inline]] friend simd_mask operator!=(const simd_mask& a, const simd_mask& b) {
+    return of([&](auto i) __attribute__((always_inline)) { return a.lane_[i] != b.lane_[i]; });
+  }
+  [[gnu::always_inline]] friend simd_mask operator==(const simd_mask& a, const simd_mask& b) {
+    return of([&](auto i) __attribute__((always_inline)) { return a.lane_[i] == b.lane_[i]; });
+  }
+  [[gnu::always_inline]] simd_mask operator!() const {
+    return of([&](auto i) __attribute__((always_inline)) { return !lane_[i]; });
+  }
+  [[gnu::always_inline]] simd_mask& operator&=(const simd_mask& b) { return *this = *this && b; }
+  [[gnu::always_inline]] simd_mask& operator|=(const simd_mask& b) { return *this = *this || b; }
 
   template <class F>
   [[gnu::always_inline]] static simd_mask of(F&& f) {
     simd_mask mask;
-    each_lane<W>([&](auto i) { mask.lane_[i] = f(i); });
+    each_lane<W>([&](auto i) __attribute__((always_inline)) { mask.lane_[i] = f(i); });
     return mask;
   }
 
@@ -101,73 +116,79 @@ class alignas(sizeof(T) * Abi::width) simd {
   simd() = default;
   template <class N>
     requires std::is_arithmetic_v<N>
-  simd(N all) {
-    lane_.fill(static_cast<T>(all));
+  [[gnu::always_inline]] simd(N all) {
+    each_lane<W>([&](auto i) __attribute__((always_inline)) { lane_[i] = static_cast<T>(all); });
   }
   template <class F>
     requires requires(F f) { f(std::integral_constant<std::size_t, 0>()); }
-  explicit simd(F&& f) {
-    each_lane<W>([&](auto i) {
+  [[gnu::always_inline]] explicit simd(F&& f) {
+    each_lane<W>([&](auto i) __attribute__((always_inline)) {
       lane_[i] =
           static_cast<T>(f(std::integral_constant<std::size_t, static_cast<std::size_t>(i())>()));
     });
   }
   template <Alignment Tag>
-  simd(const T* from, Tag tag) {
+  [[gnu::always_inline]] simd(const T* from, Tag tag) {
     copy_from(from, tag);
   }
   static constexpr std::size_t size() { return W; }
 
-  T operator[](std::size_t i) const { return lane_[i]; }
-  T& operator[](std::size_t i) { return lane_[i]; }
+  [[gnu::always_inline]] T operator[](std::size_t i) const { return lane_[i]; }
+  [[gnu::always_inline]] T& operator[](std::size_t i) { return lane_[i]; }
   template <Alignment Tag>
-  void copy_from(const T* from, Tag) {
-    each_lane<W>([&](auto i) { lane_[i] = from[i]; });
+  [[gnu::always_inline]] void copy_from(const T* from, Tag) {
+    each_lane<W>([&](auto i) __attribute__((always_inline)) { lane_[i] = from[i]; });
   }
   template <Alignment Tag>
-  void copy_to(T* to, Tag) const {
-    each_lane<W>([&](auto i) { to[i] = lane_[i]; });
+  [[gnu::always_inline]] void copy_to(T* to, Tag) const {
+    each_lane<W>([&](auto i) __attribute__((always_inline)) { to[i] = lane_[i]; });
   }
 
-  simd operator-() const {
-    return of([&](auto i) { return -lane_[i]; });
+  [[gnu::always_inline]] simd operator-() const {
+    return of([&](auto i) __attribute__((always_inline)) { return -lane_[i]; });
   }
-  friend simd operator+(const simd& a, const simd& b) {
-    return of([&](auto i) { return a.lane_[i] + b.lane_[i]; });
+  [[gnu::always_inline]] friend simd operator+(const simd& a, const simd& b) {
+    return of([&](auto i) __attribute__((always_inline)) { return a.lane_[i] + b.lane_[i]; });
   }
-  friend simd operator-(const simd& a, const simd& b) {
-    return of([&](auto i) { return a.lane_[i] - b.lane_[i]; });
+  [[gnu::always_inline]] friend simd operator-(const simd& a, const simd& b) {
+    return of([&](auto i) __attribute__((always_inline)) { return a.lane_[i] - b.lane_[i]; });
   }
-  friend simd operator*(const simd& a, const simd& b) {
-    return of([&](auto i) { return a.lane_[i] * b.lane_[i]; });
+  [[gnu::always_inline]] friend simd operator*(const simd& a, const simd& b) {
+    return of([&](auto i) __attribute__((always_inline)) { return a.lane_[i] * b.lane_[i]; });
   }
-  friend simd operator/(const simd& a, const simd& b) {
-    return of([&](auto i) { return a.lane_[i] / b.lane_[i]; });
+  [[gnu::always_inline]] friend simd operator/(const simd& a, const simd& b) {
+    return of([&](auto i) __attribute__((always_inline)) { return a.lane_[i] / b.lane_[i]; });
   }
-  simd& operator+=(const simd& b) { return *this = *this + b; }
-  simd& operator-=(const simd& b) { return *this = *this - b; }
-  simd& operator*=(const simd& b) { return *this = *this * b; }
-  simd& operator/=(const simd& b) { return *this = *this / b; }
+  [[gnu::always_inline]] simd& operator+=(const simd& b) { return *this = *this + b; }
+  [[gnu::always_inline]] simd& operator-=(const simd& b) { return *this = *this - b; }
+  [[gnu::always_inline]] simd& operator*=(const simd& b) { return *this = *this * b; }
+  [[gnu::always_inline]] simd& operator/=(const simd& b) { return *this = *this / b; }
 
-  friend mask_type operator<(const simd& a, const simd& b) {
-    return mask_type::of([&](auto i) { return a.lane_[i] < b.lane_[i]; });
+  [[gnu::always_inline]] friend mask_type operator<(const simd& a, const simd& b) {
+    return mask_type::of([&](auto i)
+                             __attribute__((always_inline)) { return a.lane_[i] < b.lane_[i]; });
   }
-  friend mask_type operator<=(const simd& a, const simd& b) {
-    return mask_type::of([&](auto i) { return a.lane_[i] <= b.lane_[i]; });
+  [[gnu::always_inline]] friend mask_type operator<=(const simd& a, const simd& b) {
+    return mask_type::of([&](auto i)
+                             __attribute__((always_inline)) { return a.lane_[i] <= b.lane_[i]; });
   }
-  friend mask_type operator>(const simd& a, const simd& b) { return b < a; }
-  friend mask_type operator>=(const simd& a, const simd& b) { return b <= a; }
-  friend mask_type operator==(const simd& a, const simd& b) {
-    return mask_type::of([&](auto i) { return a.lane_[i] == b.lane_[i]; });
+  [[gnu::always_inline]] friend mask_type operator>(const simd& a, const simd& b) { return b < a; }
+  [[gnu::always_inline]] friend mask_type operator>=(const simd& a, const simd& b) {
+    return b <= a;
   }
-  friend mask_type operator!=(const simd& a, const simd& b) {
-    return mask_type::of([&](auto i) { return a.lane_[i] != b.lane_[i]; });
+  [[gnu::always_inline]] friend mask_type operator==(const simd& a, const simd& b) {
+    return mask_type::of([&](auto i)
+                             __attribute__((always_inline)) { return a.lane_[i] == b.lane_[i]; });
+  }
+  [[gnu::always_inline]] friend mask_type operator!=(const simd& a, const simd& b) {
+    return mask_type::of([&](auto i)
+                             __attribute__((always_inline)) { return a.lane_[i] != b.lane_[i]; });
   }
 
   template <class F>
   [[gnu::always_inline]] static simd of(F&& f) {
     simd x;
-    each_lane<W>([&](auto i) { x.lane_[i] = f(i); });
+    each_lane<W>([&](auto i) __attribute__((always_inline)) { x.lane_[i] = f(i); });
     return x;
   }
 
@@ -176,26 +197,30 @@ class alignas(sizeof(T) * Abi::width) simd {
 };
 
 template <class T, class Abi>
-simd<T, Abi> abs(const simd<T, Abi>& x) {
-  return simd<T, Abi>::of([&](auto i) { return std::abs(x[i]); });
+[[gnu::always_inline]] inline simd<T, Abi> abs(const simd<T, Abi>& x) {
+  return simd<T, Abi>::of([&](auto i) __attribute__((always_inline)) { return std::abs(x[i]); });
 }
 template <class T, class Abi>
-simd<T, Abi> sqrt(const simd<T, Abi>& x) {
-  return simd<T, Abi>::of([&](auto i) { return std::sqrt(x[i]); });
+[[gnu::always_inline]] inline simd<T, Abi> sqrt(const simd<T, Abi>& x) {
+  return simd<T, Abi>::of([&](auto i) __attribute__((always_inline)) { return std::sqrt(x[i]); });
 }
 /// Lane by lane; where an operand is NaN, the result is `b`.
 template <class T, class Abi>
-simd<T, Abi> min(const simd<T, Abi>& a, const simd<T, Abi>& b) {
-  return simd<T, Abi>::of([&](auto i) { return a[i] < b[i] ? a[i] : b[i]; });
+[[gnu::always_inline]] inline simd<T, Abi> min(const simd<T, Abi>& a, const simd<T, Abi>& b) {
+  return simd<T, Abi>::of([&](auto i)
+                              __attribute__((always_inline)) { return a[i] < b[i] ? a[i] : b[i]; });
 }
 template <class T, class Abi>
-simd<T, Abi> max(const simd<T, Abi>& a, const simd<T, Abi>& b) {
-  return simd<T, Abi>::of([&](auto i) { return a[i] > b[i] ? a[i] : b[i]; });
+[[gnu::always_inline]] inline simd<T, Abi> max(const simd<T, Abi>& a, const simd<T, Abi>& b) {
+  return simd<T, Abi>::of([&](auto i)
+                              __attribute__((always_inline)) { return a[i] > b[i] ? a[i] : b[i]; });
 }
 
 template <class To, class T, class Abi>
-To static_simd_cast(const simd<T, Abi>& x) {
-  return To::of([&](auto i) { return static_cast<typename To::value_type>(x[i]); });
+[[gnu::always_inline]] inline To static_simd_cast(const simd<T, Abi>& x) {
+  return To::of([&](auto i) __attribute__((always_inline)) {
+    return static_cast<typename To::value_type>(x[i]);
+  });
 }
 
 template <class T>
@@ -210,10 +235,12 @@ inline constexpr bool is_simd_v<simd<T, Abi>> = true;
 template <class T, class Abi>
 class Where {
  public:
-  Where(const simd_mask<T, Abi>& mask, simd<T, Abi>& value) : mask_(mask), value_(value) {}
-  void operator=(const simd<T, Abi>& other) {
-    each_lane<Abi::width>(
-        [&](auto i) { value_[i] = mask_[i] ? other[i] : std::as_const(value_)[i]; });
+  [[gnu::always_inline]] Where(const simd_mask<T, Abi>& mask, simd<T, Abi>& value)
+      : mask_(mask), value_(value) {}
+  [[gnu::always_inline]] void operator=(const simd<T, Abi>& other) {
+    each_lane<Abi::width>([&](auto i) __attribute__((always_inline)) {
+      value_[i] = mask_[i] ? other[i] : std::as_const(value_)[i];
+    });
   }
 
  private:
@@ -221,28 +248,31 @@ class Where {
   simd<T, Abi>& value_;
 };
 template <class T, class Abi>
-Where<T, Abi> where(const simd_mask<T, Abi>& mask, simd<T, Abi>& value) {
+[[gnu::always_inline]] inline Where<T, Abi> where(const simd_mask<T, Abi>& mask,
+                                                  simd<T, Abi>& value) {
   return {mask, value};
 }
 
 template <class T, class Abi>
-bool all_of(const simd_mask<T, Abi>& mask) {
+[[gnu::always_inline]] inline bool all_of(const simd_mask<T, Abi>& mask) {
   return (!mask).bits() == 0;
 }
 template <class T, class Abi>
-bool any_of(const simd_mask<T, Abi>& mask) {
+[[gnu::always_inline]] inline bool any_of(const simd_mask<T, Abi>& mask) {
   return mask.bits() != 0;
 }
 template <class T, class Abi>
-T hmin(const simd<T, Abi>& x) {
+[[gnu::always_inline]] inline T hmin(const simd<T, Abi>& x) {
   T least = x[0];
-  each_lane<Abi::width>([&](auto i) { least = std::min(least, x[i]); });
+  each_lane<Abi::width>([&](auto i)
+                            __attribute__((always_inline)) { least = std::min(least, x[i]); });
   return least;
 }
 template <class T, class Abi>
-T hmax(const simd<T, Abi>& x) {
+[[gnu::always_inline]] inline T hmax(const simd<T, Abi>& x) {
   T most = x[0];
-  each_lane<Abi::width>([&](auto i) { most = std::max(most, x[i]); });
+  each_lane<Abi::width>([&](auto i)
+                            __attribute__((always_inline)) { most = std::max(most, x[i]); });
   return most;
 }
 
