@@ -16,6 +16,7 @@
 
 #include "traversal/body_pair.hpp"
 #include "traversal/fronts.hpp"
+#include "traversal/shape.hpp"
 
 namespace bvlab {
 

@@ -3,8 +3,11 @@
 /// batch, and one volume broadcast to all lanes.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 #include "hierarchies/bounding_volume.hpp"
 
@@ -95,6 +98,23 @@ V lane_of(const Lanes& lanes, int lane) {
                 reinterpret_cast<const char*>(&lanes) + sizeof(T) * (field * width + lane),
                 sizeof(T));
   return volume;
+}
+
+/// Calls `what(part)` for the registers of a step of `parts` registers of S, whose `lanes` are in
+/// use. Few are unrolled: a loop, even of one pass, would keep its results in memory. Of many,
+/// those without a lane in use are left out.
+template <Batched S, std::size_t parts, class Do>
+[[gnu::always_inline]] inline void for_each_part([[maybe_unused]] std::uint64_t lanes, Do&& what) {
+  if constexpr (parts <= 4) {
+    [&]<std::size_t... part>(std::index_sequence<part...>) __attribute__((always_inline)) {
+      (what(part), ...);
+    }
+    (std::make_index_sequence<parts>());
+  } else {
+    constexpr std::uint64_t all = (std::uint64_t{1} << S::size()) - 1;
+    for (std::size_t part = 0; part < parts; ++part)
+      if (lanes >> (part * S::size()) & all) what(part);
+  }
 }
 
 /// The same volume in every lane of S.

@@ -74,10 +74,12 @@ class BlockTriangles {
   template <class Counter>
   [[gnu::noinline]] float gap(Counter&) const {
     float least = std::numeric_limits<float>::infinity();
-    for (std::size_t part = 0; part < parts; ++part) {
-      const auto [x, y] = corners(part);
-      least = std::min(least, stdx::hmin(triangle_gap<S>(x, y, S(transforms_[0].error_bound()))));
-    }
+    for_each_part<S, parts>(
+        lanes(), [&](std::size_t part) __attribute__((always_inline)) {
+          const auto [x, y] = corners(part);
+          least =
+              std::min(least, stdx::hmin(triangle_gap<S>(x, y, S(transforms_[0].error_bound()))));
+        });
     return least;
   }
   ReferenceSphere reference_sphere() const {

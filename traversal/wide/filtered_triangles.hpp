@@ -59,12 +59,13 @@ class FilteredTriangles {
     const std::uint64_t lanes = triangles.lanes();
     counter_.primitives(static_cast<std::uint64_t>(std::popcount(lanes)));
     std::uint64_t met = 0, apart = 0;
-    for_each_part([&](std::size_t part) __attribute__((always_inline)) {
-      const auto [x, y] = triangles.corners(part);
-      const auto verdict = certainly_within<S>(x, y, S(frame_.a_to_b().error_bound()));
-      met |= bits(verdict.meeting) << (part * width);
-      apart |= bits(verdict.apart) << (part * width);
-    });
+    for_each_part<S, parts>(
+        lanes, [&](std::size_t part) __attribute__((always_inline)) {
+          const auto [x, y] = triangles.corners(part);
+          const auto verdict = certainly_within<S>(x, y, S(frame_.a_to_b().error_bound()));
+          met |= bits(verdict.meeting) << (part * width);
+          apart |= bits(verdict.apart) << (part * width);
+        });
     for (std::uint64_t rest = met &= lanes; rest; rest &= rest - 1) {
       const int lane = std::countr_zero(rest);
       if (!query_.known(triangles.of_a(lane), triangles.of_b(lane))) continue;
@@ -101,15 +102,6 @@ class FilteredTriangles {
 
  private:
   static constexpr std::size_t at_most = 16;
-
-  /// Unrolled: a loop, even of one pass, would keep its results in memory.
-  template <class Do>
-  [[gnu::always_inline]] static void for_each_part(Do&& what) {
-    [&]<std::size_t... part>(std::index_sequence<part...>) __attribute__((always_inline)) {
-      (what(part), ...);
-    }
-    (std::make_index_sequence<parts>());
-  }
 
   /// As test, where a distance is sought: the query tests the pairs whose volumes are near enough.
   [[gnu::noinline]] bool measure(const NodePair& pair) {

@@ -119,11 +119,10 @@ class WidePair {
     using S = typename Found::S;
     Found found;
     found.apart = 0, found.least = S(std::numeric_limits<float>::infinity());
-    // Unrolled: a loop, even of one pass, would keep its results in memory.
-    [&]<std::size_t... part>(std::index_sequence<part...>) __attribute__((always_inline)) {
-      ((found.apart |= test_part<wanted>(step.of, query, part, found) << (part * S::size())), ...);
-    }
-    (std::make_index_sequence<PairFrame::parts>());
+    for_each_part<S, PairFrame::parts>(
+        step.lanes(), [&](std::size_t part) __attribute__((always_inline)) {
+          found.apart |= test_part<wanted>(step.of, query, part, found) << (part * S::size());
+        });
     return found;
   }
 
