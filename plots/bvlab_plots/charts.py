@@ -175,6 +175,9 @@ def draw_named(points, axes, looks, labels, scale, figure):
         if barred:
             axis.bar(place, middle - base, width, bottom=base, label=label, **style.bar_style(looks[key]))
             axis.errorbar(place, middle, yerr=[middle - low, high - middle], fmt="none", ecolor="black", elinewidth=0.7)
+            # A bar of no height is told from none.
+            for x in place[middle == base] if base == 0 else []:
+                axis.annotate("0", (x, 0), xytext=(0, 1), textcoords="offset points", ha="center", fontsize=6, color=GREY)
         else:
             axis.errorbar(place, middle, yerr=[middle - low, high - middle], label=label, markersize=4.5,
                           elinewidth=0.7, **style.marker_style(looks[key]))

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
 
+import markdown
 import pandas as pd
 
 from bvlab_plots import board, findings, provenance, records, words
@@ -17,6 +18,7 @@ from bvlab_plots import board, findings, provenance, records, words
 PLOTS = Path(__file__).resolve().parents[1]
 MOST_ROWS = 1000  # of a table; the record has them all
 LINK = re.compile(r"\]\((?:\.\./)?record/")
+COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 MARKS = re.compile(r"[^\w.-]+")
 
 
@@ -54,7 +56,7 @@ def story():
     """The pages of results, in the order in which they are read: their paragraphs."""
     folder = PLOTS.parent / "experiments"
     pages = [folder / "results.md", folder / "seeds.md", *sorted((folder / "results").glob("*.md"))]
-    return [part for page in pages for part in read_text(page).split("\n\n")]
+    return [part for page in pages for part in COMMENT.sub("", read_text(page)).strip().split("\n\n")]
 
 
 def mentions(part, record):
@@ -67,14 +69,14 @@ def is_ours(record):
 
 def paragraphs_on(record):
     """Those that link to this record, and what follows under the same heading until another record is linked to; their
-    numbers are held against the records by a test."""
-    found, here = [], False
+    numbers are held against the records by a test. Limits are those of all records."""
+    found, here, of_all = [], False, False
     for part in story() if is_ours(record) else []:
         if part.startswith("#"):
-            here = False
-        elif not part.startswith("!") and LINK.search(part):
+            here, of_all = False, part.startswith("## Limits")
+        elif not part.startswith("!") and not of_all and LINK.search(part):
             here = bool(mentions(part, record))
-        if here and not part.startswith(("|", "!", "#", "*")) or here and part.startswith("**"):
+        if here and not part.startswith(("!", "#")):
             found.append(part)
     return found
 
@@ -151,13 +153,13 @@ def table_of(section):
 
 
 def from_markdown(part):
-    """A paragraph of a page as HTML: links without addresses, bold, code; HTML that stands in it stays."""
-    part = re.sub(r"^#+ (.*)", r"**\1**", part)
+    """A paragraph, list or table of a page as HTML, links without addresses."""
     part = re.sub(r"\(\[record\]\([^)]*\)(?:[:,;] )?", "(", part).replace(" ()", "")
     part = re.sub(r"^\(\)\s*", "", part)
     part = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", part).replace("N<sub>", "<i>N</i><sub>")
-    part = re.sub(r"\*\*(.*?)\*\*", r"<b>\1</b>", part)
-    return re.sub(r"`([^`]*)`", r"<code>\1</code>", part)
+    # What stood in parentheses beside the link to the record begins the paragraph.
+    part = re.sub(r"^\(([^()]*?)\.?\)\.?\s*", lambda m: f"{m[1][:1].upper()}{m[1][1:]}. ", part)
+    return markdown.markdown(part, extensions=["tables"])
 
 
 def head(column, unit, kind):
@@ -191,7 +193,7 @@ def html_of(section, anchor):
             f'<p class="asks">{text(section.description)}</p>'
             + (f"<p><strong>Unfinished: {text(unfinished)}.</strong></p>" if unfinished else "")
             + (f'<p class="says">{text(said)}</p>' if said else "")
-            + "".join(f'<p class="results">{from_markdown(part)}</p>' for part in section.results)
+            + (f'<div class="results">{"".join(map(from_markdown, section.results))}</div>' if section.results else "")
             + f'<div class="figures">{figures}</div>{table_of(section)}{facts_of(section)}</section>')
 
 

@@ -74,7 +74,9 @@ def number(value):
 
 
 def plain(name):
-    """A name as it is, in a legend and without formulas."""
+    """A name as it is, in a legend and without formulas; of a file of poses or boxes, that of the file."""
+    if name.endswith(".npy"):
+        name = name.rpartition("/")[2].removesuffix(".npy")
     return (" " if name.startswith("_") else "") + name.replace("$", "\\$").replace("\r", " ")
 
 

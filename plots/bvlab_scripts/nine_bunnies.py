@@ -164,7 +164,7 @@ def draw_runs(runs, out):
         axis.set_title(title)
         axis.grid(axis="x", visible=False)
     axes[0].set_ylabel("speedup over recursive")
-    axes[1].legend(loc="lower center", ncol=2, frameon=True, framealpha=1)
+    style.legend_below(figure, *axes[0].get_legend_handles_labels())
     return style.save(figure, out, "nine-bunnies-runs")
 
 
