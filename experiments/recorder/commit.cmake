@@ -1,6 +1,6 @@
 # Run at every build: which commit the program is built from, and whether what it is built from has changed since.
 # What is written and drawn about records (pages, plots, the paper, tests, records themselves) changes no measurement.
-# Code from outside the tree is named with its hash, and is a change: the commit does not have it.
+# Code that the commit does not have, from outside the tree or not tracked, is named with its hash, and is a change.
 # cmake -DSOURCE=... -DHEADER=... [-DGIT=...] [-DOUTSIDE=a.hpp,b.hpp] -P commit.cmake
 set(commit "")
 set(changes unknown)
@@ -32,6 +32,12 @@ endif()
 set(outside "")
 string(REPLACE "," ";" files "${OUTSIDE}")
 foreach(file ${files})
+  if(commit AND GIT)
+    execute_process(COMMAND ${git} ls-files --error-unmatch -- ${file} OUTPUT_QUIET ERROR_QUIET RESULT_VARIABLE untracked)
+    if(untracked EQUAL 0)
+      continue()
+    endif()
+  endif()
   file(SHA256 "${file}" hash)
   string(APPEND outside "\n    {R\"(${file})\", \"${hash}\"},")
   set(changes yes)

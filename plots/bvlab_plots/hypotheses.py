@@ -7,3 +7,11 @@ def print_hypotheses(found):
     print("\nHypotheses:")
     for number, holds, why in found:
         print(f"  {number}: {'holds' if holds else 'fails'}: {why}")
+
+
+def told(found, names):
+    """Those that hold and those that fail, each by its name and number; `names` in the order of numbers, from 1."""
+    sides = {True: [], False: []}
+    for number, holds, _ in found:
+        sides[bool(holds)].append(f"{names[int(number) - 1]} ({number})")
+    return {"held": "; ".join(sides[True]), "failed": "; ".join(sides[False])}

@@ -46,13 +46,13 @@ def survival(record, volumes=None):
 def read(record):
     """A row for each cell: tests and time of every strategy, summed over seeds, times medians of repetitions."""
     rows = records.read(record)
-    missing = {*CELL, "strategy", "seed", "n_v", "n_p", "time_ns", "front"} - set(rows)
+    missing = {*CELL, "strategy", "seed", "n_u", "n_v", "n_p", "time_ns", "front"} - set(rows)
     if missing:
         raise Refused(f"{record}: no record of fan-outs, for it has no column {sorted(missing)[0]}")
     records.wrong_answers(rows)
-    middle = rows.groupby([*CELL, "strategy", "seed"])[["n_v", "n_p", "time_ns", "front", "pairs"]].median().reset_index()
+    middle = rows.groupby([*CELL, "strategy", "seed"])[["n_u", "n_v", "n_p", "time_ns", "front", "pairs"]].median().reset_index()
     middle["entries"] = middle.front * middle.pairs
-    return middle.groupby([*CELL, "strategy"])[["n_v", "n_p", "time_ns", "entries", "pairs"]].sum()
+    return middle.groupby([*CELL, "strategy"])[["n_u", "n_v", "n_p", "time_ns", "entries", "pairs"]].sum()
 
 
 def savings(cells, of, strategy):

@@ -3,9 +3,16 @@
 
 import numpy as np
 
+from bvlab_plots.hypotheses import told
 from bvlab_scripts import predict
 from bvlab_scripts.predict import HALF, KEEPING, LESS
 from quoting import claim, quotes
+
+# What the hypotheses of the definition say, in the order of their numbers.
+HYPOTHESES = ["volume tests of all strategies together are off by less than 5 %", "volume tests of each strategy by itself are off by less than 5 %",
+              "triangle tests are off by less than 5 %", "the strategy that is named is within 1.1 of the fastest in nine of ten cells",
+              "no strategy that is always taken is within 1.1 more often", "times are off by less than 10 %",
+              "lists are predicted too short where less than half survives", "a prediction takes less than two thirds of the time of playing all"]
 
 
 def cells_of(record):
@@ -40,4 +47,4 @@ def predictions(record):
             "half": predict.middle(predict.errors(cells, regime=HALF)), "less": predict.middle(predict.errors(cells, regime=LESS)),
             "named": predict.near(cells.chosen.times), "worst": cells.chosen.times.max(), "always": share[best], "best": f"`{best}`",
             "taken": 100 * np.median(cells.taken),
-            "held": [number for number, holds, _ in predict.hypotheses(cells) if holds]}
+            **told(predict.hypotheses(cells), HYPOTHESES)}

@@ -101,6 +101,22 @@ def reuse_table(record):
     return {"rows": lines}
 
 
+COUNTED = {"recursive": "recursion", "separation-list": "list", "margins": "margins"}
+
+
+@quotes("fan-outs")
+def counts(record):
+    """The terms of the cost per pair and frame in world coordinates, medians over volumes."""
+    cells = fan_outs.read(record).xs("world", level="frame")
+    lines = []
+    for motion in fan_outs.MOTIONS:
+        for name, shown in COUNTED.items():
+            found = cells.xs((motion, name), level=("motion", "strategy"))
+            numbers = [found[term].div(found.pairs).groupby("fan_out").median()[fan_out] for fan_out in (2, 16) for term in ("n_u", "n_v", "n_p")]
+            lines.append([fan_outs.LABELS[motion] if name == "recursive" else "", shown, *(f"{n:.0f}" if n >= 9.5 else f"{n:.1f}" for n in numbers)])
+    return {"rows": lines}
+
+
 def cycle(ratio, deferral):
     """What a list saves at rest: a rebuild, at recursion's cost, after every `deferral` runs without growth."""
     return (deferral + 1) * ratio / (ratio + deferral)

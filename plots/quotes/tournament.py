@@ -23,12 +23,13 @@ def cells(record):
     def beside(ours, theirs, column="ns"):
         return tournament.tournament(rows, ours, theirs, column).set_index(tournament.PLACES)
     fresh = [called(name, SOURCE) for name in ("OPCODE", "PhysX", "FCL, obb", "Coal, obb")]
+    scalar = [called("OPCODE", ONE), called("FCL, obb", ONE)]
     return rows, {
         "sixteen": beside(called(OURS, SOURCE), fresh), "eight": beside(called(OURS, EIGHT), fresh),
-        "one": beside(called(OURS, ONE), fresh), "roots": beside(called("wide, from the roots", SOURCE), fresh),
-        "roots, one": beside(called("wide, from the roots", ONE), fresh),
+        "one": beside(called(OURS, ONE), scalar), "roots": beside(called("wide, from the roots", SOURCE), fresh),
+        "roots, one": beside(called("wide, from the roots", ONE), scalar), "one, native": beside(called(OURS, ONE), [called("OPCODE", SOURCE)]),
         "coherent": beside(called(OURS, SOURCE), [called("OPCODE, coherent", SOURCE)]),
-        "one, coherent": beside(called(OURS, ONE), [called("OPCODE, coherent", SOURCE)]),
+        "one, coherent": beside(called(OURS, ONE), [called("OPCODE, coherent", ONE)]),
         "fcl": beside(called("FCL, obb", SOURCE), [called("FCL, obb", SHIPPED)]),
         "cold": beside(called(OURS, SOURCE), fresh, "cold_ns"), "tail": beside(called(OURS, SOURCE), fresh, "tail_ns")}
 
