@@ -39,8 +39,8 @@ class GatheredPair {
  public:
   using Node = typename Hierarchy<V>::Node;
   using Workspace = bvlab::Workspace;
-  template <class Query, class Counter, class Memory>
-  using Leaves = HeldPrimitives<V, Query, Counter, typename Memory::Front>;
+  template <class Query, class Counter, class Recorder>
+  using Leaves = HeldPrimitives<V, Query, Counter, typename Recorder::Front>;
   static constexpr std::size_t W = width<B>();
 
   GatheredPair(Body<V>& a, Body<V>& b, Workspace& workspace)
@@ -100,26 +100,26 @@ class GatheredPair {
 
   /// Replaces the pairs in `lanes` by pairs of their children; of two leaves, the primitives are
   /// held for a test. Entries are told that they are replaced, or kept as near.
-  template <bool kGaps, class Entries, class Memory, class Leaves, class Query, class Counter>
+  template <bool kGaps, class Entries, class Recorder, class Leaves, class Query, class Counter>
   [[gnu::always_inline]] void pass_on(const Step<kGaps>& step, LanesApart, std::uint64_t lanes,
-                                      const Entries& entries, Memory& memory, Leaves& leaves,
+                                      const Entries& entries, Recorder& recorder, Leaves& leaves,
                                       Query&, Counter& counter) {
     open_.reserve(room);
     step.pairs.template for_each_near<Query>(
         lanes, [&](std::size_t i) __attribute__((always_inline)) {
-          open_up(step.pairs, i, entries, memory, leaves, counter);
+          open_up(step.pairs, i, entries, recorder, leaves, counter);
         });
   }
-  template <class Pairs, class Entries, class Memory, class Leaves, class Counter>
+  template <class Pairs, class Entries, class Recorder, class Leaves, class Counter>
   [[gnu::always_inline]] void open_up(const Pairs& pairs, std::size_t i, const Entries& entries,
-                                      Memory& memory, Leaves& leaves, Counter& counter) {
+                                      Recorder& recorder, Leaves& leaves, Counter& counter) {
     const NodePair pair = pairs[i];
     const Node &a = a_.hierarchy().node(pair.a), &b = b_.hierarchy().node(pair.b);
     if (a.count && b.count) {
       leaves.hold(a, b, entries.keep(pairs, i, EntryState::near, 0));
     } else {
       entries.replace(i);
-      descend(pair, a, b, memory.descent(a, b), counter);
+      descend(pair, a, b, recorder.descent(a, b), counter);
     }
   }
 

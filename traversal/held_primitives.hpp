@@ -30,10 +30,10 @@ class HeldPrimitives {
         front_(front),
         pending_(workspace.pending) {}
   /// The leaf stage of a traversal from a front (see traversal.hpp).
-  template <class Pair, class Memory>
+  template <class Pair, class Recorder>
   HeldPrimitives(Body<V>& a, Body<V>& b, const Pair&, Query& query, Counter& counter,
-                 Workspace& workspace, const Memory& memory)
-      : HeldPrimitives(a, b, query, counter, workspace, memory.front()) {
+                 Workspace& workspace, const Recorder& recorder)
+      : HeldPrimitives(a, b, query, counter, workspace, recorder.front()) {
     pending_.clear();
   }
 

@@ -38,7 +38,8 @@ enum class EntryState {
 
 /// The members. FrontDefaults has those that a simple front need not define. A slot is the number
 /// under which the front knows an entry.
-///   sweep(traversal)         tests entries by FrontSweep::test_entries (front_memory.hpp); returns
+///   sweep(traversal)         tests entries by FrontSweep::test_entries (front_recorder.hpp);
+///   returns
 ///                            whether the query is satisfied
 ///   front[slot]              the pair
 ///   keep(slot, state, gap)   a tested entry is kept; `state` is the result of its test

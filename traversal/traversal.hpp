@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The loop over two hierarchies, for every kernel, query and memory.
+/// The loop over two hierarchies, for every kernel, query and recorder.
 ///
-/// A step takes pairs of nodes, tests their volumes in the lanes of registers, has the memory
+/// A step takes pairs of nodes, tests their volumes in the lanes of registers, has the recorder
 /// record what is apart, and passes the rest on: pairs of leaves to the leaf stage, which tests
 /// their triangles, and all others back to the queue of open pairs. A traversal from the two roots
 /// is the recursive algorithm. From a front, the steps of its entries come first.
 ///
-/// The parts. GatheredPair goes with FrontMemory, WidePair with NoRecord and GapMeasure:
-///   the pair    two bodies as a kernel sees them, and the open pairs: what a step tests, and what
-///               comes next (GatheredPair, WidePair)
-///   the memory  what is kept of tested pairs (FrontMemory; NoRecord and GapMeasure of wide trees)
-///   the leaves  the pair's leaf stage (HeldPrimitives; FilteredTriangles or SiftedTriangles)
+/// The parts. GatheredPair goes with FrontRecorder, WidePair with NoRecord and GapMeasure:
+///   the pair      two bodies as a kernel sees them, and the open pairs: what a step tests, and
+///                 what comes next (GatheredPair, WidePair)
+///   the recorder  what a run keeps of tested pairs (FrontRecorder; of wide trees NoRecord and
+///                 GapMeasure, from which WideMargins keeps answers until the next frame)
+///   the leaves    the pair's leaf stage (HeldPrimitives; FilteredTriangles or SiftedTriangles)
 ///
 /// Members of a pair. `visit(step)` is the loop's; the lanes of a step are bits of a mask.
 ///   done()                            whether no pair is open
 ///   next<wanted>(query, counter, visit)   visits the next step, several, or none
 ///   test<wanted>(step, query, counter)    what is apart: a LanesApart, or more in a derived class
-///   pass_on(step, found, lanes, entries, memory, leaves, query, counter)
+///   pass_on(step, found, lanes, entries, recorder, leaves, query, counter)
 ///                                     queues what a step has found near
-/// Members of a memory:
+/// Members of a recorder:
 ///   measures_gaps                     whether steps measure gaps for it
 ///   begin(pair)                       queues the first pairs, unless sweep() does that
 ///   no_entries()                      what `entries` is for a step whose pairs are not yet entries
@@ -54,27 +55,27 @@ struct LanesApart {
 
 /// One run, made in one go or step by step, so that a caller can interleave several pairs of
 /// bodies: while one waits for a result, another is computed.
-template <class PairType, class QueryType, class Counter, class Memory>
+template <class PairType, class QueryType, class Counter, class Recorder>
 class Traversal {
  public:
   using Pair = PairType;
   using Query = QueryType;
-  using Leaves = typename Pair::template Leaves<Query, Counter, Memory>;
-  static constexpr TestFor wanted = wants_bound<Query>()    ? TestFor::bound
-                                    : Memory::measures_gaps ? TestFor::margins
-                                                            : TestFor::overlap;
+  using Leaves = typename Pair::template Leaves<Query, Counter, Recorder>;
+  static constexpr TestFor wanted = wants_bound<Query>()      ? TestFor::bound
+                                    : Recorder::measures_gaps ? TestFor::margins
+                                                              : TestFor::overlap;
 
-  /// The memory is constructed from `start`; a FrontMemory refers to it. All must outlive this.
+  /// The recorder is constructed from `start`; a FrontRecorder refers to it. All must outlive this.
   template <class Body, class Start>
   Traversal(Body& a, Body& b, Query& query, Counter& counter, typename Pair::Workspace& workspace,
             Start&& start)
       : query_(query),
         counter_(counter),
         workspace_(workspace),
-        memory_(start),
+        recorder_(start),
         pair_(a, b, workspace),
-        leaves_(a, b, pair_, query, counter, workspace, memory_) {
-    memory_.begin(pair_);
+        leaves_(a, b, pair_, query, counter, workspace, recorder_) {
+    recorder_.begin(pair_);
   }
   Traversal(const Traversal&) = delete;
   Traversal& operator=(const Traversal&) = delete;
@@ -96,15 +97,15 @@ class Traversal {
     count_tests(static_cast<std::size_t>(std::popcount(lanes)));
     const auto found = pair_.template test<wanted>(step, query_, counter_);
     const std::uint64_t near =
-        memory_.record(pair_, step, found, lanes & ~found.apart, entries, query_);
-    pair_.pass_on(step, found, near, entries, memory_, leaves_, query_, counter_);
+        recorder_.record(pair_, step, found, lanes & ~found.apart, entries, query_);
+    pair_.pass_on(step, found, near, entries, recorder_, leaves_, query_, counter_);
   }
 
   /// Visits what the kernel takes next; returns whether the query is satisfied.
   bool next() {
     pair_.template next<wanted>(
         query_, counter_, [this](auto&& step) __attribute__((always_inline)) {
-          visit(step, memory_.no_entries());
+          visit(step, recorder_.no_entries());
         });
     return leaves_.test_due();
   }
@@ -119,22 +120,22 @@ class Traversal {
   Query& query() const { return query_; }
   Counter& counter() const { return counter_; }
   typename Pair::Workspace& workspace() const { return workspace_; }
-  Memory& memory() { return memory_; }
+  Recorder& recorder() { return recorder_; }
   Leaves& leaves() { return leaves_; }
 
  private:
   [[gnu::always_inline]] bool step() {
-    satisfied_ = memory_.sweep_is_due() ? memory_.sweep(*this) : next();
+    satisfied_ = recorder_.sweep_is_due() ? recorder_.sweep(*this) : next();
     if (!satisfied_ && !pair_.done()) return true;
     satisfied_ = satisfied_ || leaves_.finish();
-    memory_.finish(pair_, leaves_, satisfied_);
+    recorder_.finish(pair_, leaves_, satisfied_);
     return false;
   }
 
   Query& query_;
   Counter& counter_;
   typename Pair::Workspace& workspace_;
-  [[no_unique_address]] Memory memory_;
+  [[no_unique_address]] Recorder recorder_;
   Pair pair_;
   Leaves leaves_;
   std::size_t tests_ = 0;

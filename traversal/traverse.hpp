@@ -4,7 +4,7 @@
 
 #include <type_traits>
 
-#include "traversal/front_memory.hpp"
+#include "traversal/front_recorder.hpp"
 #include "traversal/gathered_kernel.hpp"
 #include "traversal/no_front.hpp"
 #include "traversal/traversal.hpp"
@@ -17,12 +17,12 @@ namespace bvlab {
 template <class B, class V, class Query, class Counter, class Front>
 TraversalStatistics traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
                              Workspace& workspace, Front&& front) {
-  using Memory = FrontMemory<std::remove_reference_t<Front>>;
+  using Recorder = FrontRecorder<std::remove_reference_t<Front>>;
   static_assert(
       !requires { front.stays(std::size_t(), EntryState::culled, 0.0); },
       "a front's `stays` is now named `keep`: `stays` would never be called");
-  return Traversal<GatheredPair<B, V>, Query, Counter, Memory>(a, b, query, counter, workspace,
-                                                               front)
+  return Traversal<GatheredPair<B, V>, Query, Counter, Recorder>(a, b, query, counter, workspace,
+                                                                 front)
       .run();
 }
 

@@ -19,8 +19,8 @@
 
 namespace bvlab {
 
-/// PairFrame is a kernel's; Memory records what is found (GapMeasure, NoRecord).
-template <class PairFrame, class Body, class Query, class Counter, class Memory>
+/// PairFrame is a kernel's; Recorder records what is found (GapMeasure, NoRecord).
+template <class PairFrame, class Body, class Query, class Counter, class Recorder>
 class FilteredTriangles {
   using S = typename PairFrame::S;
   static constexpr std::size_t parts = PairFrame::parts, width = S::size();
@@ -28,11 +28,11 @@ class FilteredTriangles {
  public:
   template <class Pair, class Workspace>
   FilteredTriangles(Body& a, Body& b, const Pair& pair, Query& query, Counter& counter,
-                    Workspace& workspace, Memory& memory)
+                    Workspace& workspace, Recorder& recorder)
       : frame_(pair.frame()),
         query_(query),
         counter_(counter),
-        memory_(memory),
+        recorder_(recorder),
         queue_(workspace.triangles),
         bodies_{&a, &b} {}
 
@@ -69,13 +69,13 @@ class FilteredTriangles {
     for (std::uint64_t rest = met &= lanes; rest; rest &= rest - 1) {
       const int lane = std::countr_zero(rest);
       if (!query_.known(triangles.of_a(lane), triangles.of_b(lane))) continue;
-      memory_.record_triangles(pair, true, entry);
-      memory_.record_crossing({triangles.of_a(lane), triangles.of_b(lane), true});
+      recorder_.record_triangles(pair, true, entry);
+      recorder_.record_crossing({triangles.of_a(lane), triangles.of_b(lane), true});
       return true;
     }
     std::uint64_t open = lanes & ~apart & ~met;
-    if (memory_.record_triangles(pair, (open | met) != 0, entry))
-      memory_.set_triangle_gap(triangles, counter_, entry);
+    if (recorder_.record_triangles(pair, (open | met) != 0, entry))
+      recorder_.set_triangle_gap(triangles, counter_, entry);
     for (; open; open &= open - 1) {
       const int lane = std::countr_zero(open);
       if (hold(triangles.of_a(lane), triangles.of_b(lane))) return true;
@@ -97,7 +97,7 @@ class FilteredTriangles {
   const PairFrame& frame_;
   Query& query_;
   Counter& counter_;
-  Memory& memory_;
+  Recorder& recorder_;
   WorkQueue& queue_;
 
  private:
@@ -122,7 +122,7 @@ class FilteredTriangles {
     const Outcome outcome = query_.primitives(std::span(candidates_).first(count));
     if constexpr (Query::one_hit_is_enough)
       if (outcome.witness < count)
-        memory_.record_crossing(
+        recorder_.record_crossing(
             {candidates_[outcome.witness].a, candidates_[outcome.witness].b, false});
     return outcome.satisfied;
   }

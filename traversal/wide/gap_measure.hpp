@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// What a traversal of two wide trees records for the next frame: nothing (NoRecord); or, for
 /// wide_margins.hpp, a lower bound on the distance of disjoint bodies, one pair of intersecting
-/// triangles, and a front (GapMeasure). See traversal.hpp for the members of a traversal's memory.
+/// triangles, and a front (GapMeasure). See traversal.hpp for the members of a traversal's
+/// recorder.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +34,7 @@ struct TraversalStart {
   double rotation = 0;  ///< sum of the bounds on both bodies' rotations since the first frame
 };
 
-/// Records nothing: the memory of a traversal (see traversal.hpp) that starts from the roots.
+/// Records nothing: the recorder of a traversal (see traversal.hpp) that starts from the roots.
 class NoRecord {
  public:
   static constexpr bool measures_gaps = false;

@@ -11,17 +11,17 @@
 
 namespace bvlab {
 
-template <class PairFrame, class Body, class Query, class Counter, class Memory>
-class SiftedTriangles : public FilteredTriangles<PairFrame, Body, Query, Counter, Memory> {
-  using Filtered = FilteredTriangles<PairFrame, Body, Query, Counter, Memory>;
-  using Filtered::frame_, Filtered::query_, Filtered::counter_, Filtered::memory_, Filtered::queue_,
-      Filtered::hold;
+template <class PairFrame, class Body, class Query, class Counter, class Recorder>
+class SiftedTriangles : public FilteredTriangles<PairFrame, Body, Query, Counter, Recorder> {
+  using Filtered = FilteredTriangles<PairFrame, Body, Query, Counter, Recorder>;
+  using Filtered::frame_, Filtered::query_, Filtered::counter_, Filtered::recorder_,
+      Filtered::queue_, Filtered::hold;
 
  public:
   template <class Pair, class Workspace>
   SiftedTriangles(Body& a, Body& b, Pair& pair, Query& query, Counter& counter,
-                  Workspace& workspace, Memory& memory)
-      : Filtered(a, b, pair, query, counter, workspace, memory),
+                  Workspace& workspace, Recorder& recorder)
+      : Filtered(a, b, pair, query, counter, workspace, recorder),
         sieve_(pair.sieve()),
         batch_(workspace.batch) {
     batch_.clear(), sieve_.begin();
@@ -30,9 +30,9 @@ class SiftedTriangles : public FilteredTriangles<PairFrame, Body, Query, Counter
   /// Makes the first test of all queued triangles, and filters the batch if full. Returns whether
   /// the query is satisfied.
   [[gnu::always_inline]] bool test_due() {
-    if constexpr (Memory::measures_gaps)
+    if constexpr (Recorder::measures_gaps)
       for (std::size_t i = 0; i < queue_.size(); ++i)
-        memory_.record_triangles(queue_[i], false, Memory::no_entries());
+        recorder_.record_triangles(queue_[i], false, Recorder::no_entries());
     while (!queue_.empty()) {
       frame_.sift(sieve_, queue_, batch_, counter_);
       if (batch_.full() && decide(ContactBatch::Decide::full_registers)) return true;
@@ -47,7 +47,7 @@ class SiftedTriangles : public FilteredTriangles<PairFrame, Body, Query, Counter
         which, frame_.a_to_b().error_bound(),
         [&](std::uint32_t number_a, std::uint32_t number_b, bool meeting) {
           const std::uint32_t a = frame_.triangle(0, number_a), b = frame_.triangle(1, number_b);
-          memory_.record_touching({number_a, number_b});
+          recorder_.record_touching({number_a, number_b});
           return meeting ? query_.known(a, b) : hold(a, b);
         });
   }

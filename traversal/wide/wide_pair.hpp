@@ -36,10 +36,10 @@ class WidePair {
   using PairFrame = typename Kernel::template PairFrame<V, F>;
   using Workspace = WideWorkspace;
   using Body = typename Kernel::template Body<V, F>;
-  template <class Query, class Counter, class Memory>
+  template <class Query, class Counter, class Recorder>
   using Leaves = std::conditional_t<FindsAllHits<Query>,
-                                    SiftedTriangles<PairFrame, Body, Query, Counter, Memory>,
-                                    FilteredTriangles<PairFrame, Body, Query, Counter, Memory>>;
+                                    SiftedTriangles<PairFrame, Body, Query, Counter, Recorder>,
+                                    FilteredTriangles<PairFrame, Body, Query, Counter, Recorder>>;
   static_assert(std::is_same_v<typename V::scalar, float>,
                 "orders and the filter of triangles are float32");
 
@@ -126,9 +126,9 @@ class WidePair {
     return found;
   }
 
-  template <class Step, class Entry, class Memory, class Leaves, class Query, class Counter>
+  template <class Step, class Entry, class Recorder, class Leaves, class Query, class Counter>
   [[gnu::always_inline]] void pass_on(const Step& step, const Found& found, std::uint64_t lanes,
-                                      Entry, Memory&, Leaves&, Query&, Counter&) {
+                                      Entry, Recorder&, Leaves&, Query&, Counter&) {
     constexpr bool ordered = Kernel::nearest_child_first && DecidedByOneHit<Query>;
     if constexpr (FindsAllHits<Query>)
       step.of.push(nodes_, triangles_, lanes, NoOrder(), NextPair::any);

@@ -192,7 +192,7 @@ class WidePairs {
           continue;
         }
         counter.queried(before);
-        memory_.remember(now.pair, pairs_[now.pair], *now.query, now.traversal->memory());
+        memory_.remember(now.pair, pairs_[now.pair], *now.query, now.traversal->recorder());
         take(now.pair, *now.query);
         if (next < near.size()) {
           begin(k++);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The memory of a traversal that starts from a TrackedFront, for the gathered kernel: each lane of
-/// a step is an entry of its own. FrontSweep is what a front may call in its sweep.
+/// The recorder of a traversal that starts from a TrackedFront, for the gathered kernel: each lane
+/// of a step is an entry of its own. FrontSweep is what a front may call in its sweep.
 #pragma once
 
 #include <algorithm>
@@ -97,7 +97,7 @@ class FrontSweep {
     pair().open().reserve(4);
     Step step;
     step.pairs.put(0, nodes);
-    pair().open_up(step.pairs, 0, traversal_.memory().no_entries(), traversal_.memory(),
+    pair().open_up(step.pairs, 0, traversal_.recorder().no_entries(), traversal_.recorder(),
                    traversal_.leaves(), traversal_.counter());
   }
 
@@ -141,7 +141,7 @@ class FrontSweep {
 
   template <class Slot>
   [[gnu::always_inline]] bool test_batch_of_entries(std::size_t count, const Slot& slot) {
-    auto& front = traversal_.memory().front();
+    auto& front = traversal_.recorder().front();
     Step step = gathered(count, [&](std::size_t i) { return front[slot(i)]; });
     traversal_.visit(step,
                      EntriesInSlots<std::remove_reference_t<decltype(front)>, Slot>{front, slot});
@@ -152,13 +152,13 @@ class FrontSweep {
 };
 
 template <class FrontType>
-class FrontMemory {
+class FrontRecorder {
  public:
   using Front = FrontType;
   static constexpr bool measures_gaps = Front::measures_gaps;
 
   /// The front is updated and remains a partition even if the query ends the run early.
-  explicit FrontMemory(Front& front) : front_(front) {}
+  explicit FrontRecorder(Front& front) : front_(front) {}
 
   Front& front() const { return front_; }
   template <class Pair>
