@@ -68,3 +68,8 @@ def fault_of(record, root=ROOT):
     if git("merge-base", "--is-ancestor", kept, "HEAD", root=root).returncode:
         return f"was made from {kept[:12]}, which is not in the history"
     return ""
+
+
+def processor_of(machine):
+    """The processor's name as pages say it."""
+    return machine["processor"].replace("(R)", "").removesuffix(" Processor")

@@ -48,6 +48,8 @@ def reuse(record):
     claim((triangles < savings(cells, "n_v", "margins", fan_outs.SLOW)).all(), "margins save fewer triangle tests than volume tests at 0.03 degrees")
     for fan_out in (2, 16):
         found[f"margins_triangles_{WORDS[fan_out]}"] = Interval(triangles.xs(fan_out, level="fan_out"))
+    middle_triangles = 1 / savings(cells, "n_p", "margins", "0.003 / 0.3")
+    found["middle_triangles"], found["middle_triangles_median"] = Interval(middle_triangles), middle_triangles.median()
     found["list_triangles"] = Interval([v for name in ("separation-list", "deferred") for v in fan_outs.savings(cells, "n_p", name)])
     change = savings(cells, "n_v", "margins", fan_outs.SLOW).unstack("fan_out")
     change = change[16] / change[2]

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The fair tournament: ours by lanes, others with the same flags and as shipped, each side by configurations fixed beforehand."""
 
+import json
 from functools import cache
 
-from bvlab_plots import records
+from bvlab_plots import provenance, records
 from bvlab_scripts import tournament
 from quoting import Interval, claim, quotes, two_digits
 
@@ -28,6 +29,7 @@ def cells(record):
         "sixteen": beside(called(OURS, SOURCE), fresh), "eight": beside(called(OURS, EIGHT), fresh),
         "one": beside(called(OURS, ONE), scalar), "roots": beside(called("wide, from the roots", SOURCE), fresh),
         "roots, one": beside(called("wide, from the roots", ONE), scalar), "one, native": beside(called(OURS, ONE), [called("OPCODE", SOURCE)]),
+        "one, physx": beside(called(OURS, ONE), [called("PhysX", SOURCE)]),
         "coherent": beside(called(OURS, SOURCE), [called("OPCODE, coherent", SOURCE)]),
         "one, coherent": beside(called(OURS, ONE), [called("OPCODE, coherent", ONE)]),
         "fcl": beside(called("FCL, obb", SOURCE), [called("FCL, obb", SHIPPED)]),
@@ -71,7 +73,15 @@ def tournament_headline(record):
     ours = rows[rows.method.str.startswith(f"{OURS}, ")]
     claim(set(ours.volume) <= {"slab-box", "obb"}, "recommended takes slab-boxes or oriented boxes")
     names = [name for name in dict.fromkeys(method.split(",")[0] for method in libraries(rows))]
-    return {"libraries": names, "coherent": Interval(beside_all(record).ratio), "contact_frames": rows[contacts].frames.max(), "rows": len(rows), "shared": int((rows.alone == "no").sum()),
+    chosen = ours.groupby(["program", *tournament.PLACES, "seed"])[["volume", "strategy"]].first()
+    other = (chosen.loc[SOURCE] != chosen.loc[ONE]).any(axis=1)
+    slower = found["one, physx"].ratio < 1
+    claim(set(slower[slower].index.get_level_values("work")) <= {"5 degrees", "near", "contacts, near"}, "PhysX is faster than one lane where motion is not coherent")
+    wrong = rows[rows.differing > 0].groupby("peer").differing.max()
+    claim(set(wrong.index) == {"coal-obb", "opcode", "physx"} and set(rows[rows.differing > 0].work) == {"contacts, near"}, "Coal, OPCODE and PhysX differ, in contacts alone")
+    machine = json.loads((record / "machine.json").read_text())
+    return {"libraries": names, "other_choice": int(other.sum()), "choices": len(other), "one_physx": Interval(found["one, physx"].ratio), "one_physx_faster": int(slower.sum()),
+            "coal_wrong": int(wrong["coal-obb"]), "opcode_wrong": int(wrong["opcode"]), "physx_wrong": int(wrong["physx"]), "processor": provenance.processor_of(machine), "coherent": Interval(beside_all(record).ratio), "contact_frames": rows[contacts].frames.max(), "rows": len(rows), "shared": int((rows.alone == "no").sum()),
             "repetitions": rows.repetition.nunique(), "cells": len(found["one"]), "roots_one_slower": int((found["roots, one"].ratio < 1).sum()),
             "tests": Interval(beside_opcode(rows, "n_v")), "triangles": Interval(beside_opcode(rows, "n_p")), "one_native": Interval(found["one, native"].ratio),
             **{key: Interval(found[name].ratio) for key, name in (("one_coherent", "one, coherent"), ("sixteen", "sixteen"), ("eight", "eight"), ("one", "one"),
