@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
 
-import markdown
+import markdown  # type: ignore[import]
 import pandas as pd
 
 from bvlab_plots import board, findings, provenance, records, words
