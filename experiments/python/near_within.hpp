@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "experiments/replay/box_methods.hpp"
-#include "traversal/shape.hpp"
 #include "traversal/rotated_mesh_box.hpp"
+#include "traversal/shape.hpp"
 
 namespace bvlab {
 
