@@ -2,7 +2,6 @@
 /// All that is compiled for a volume in wide trees under one query.
 #pragma once
 
-#include <algorithm>
 #include <memory>
 #include <type_traits>
 #include <vector>

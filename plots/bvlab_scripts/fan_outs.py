@@ -16,6 +16,7 @@ from bvlab_plots.arguments import record_arguments
 from bvlab_plots.hypotheses import print_hypotheses
 from bvlab_plots.refused import Refused
 
+MEASURED = ["n_u", "n_v", "n_p", "time_ns"]
 CELL = ["mesh", "motion", "volume", "fan_out", "frame"]
 SLOW, FAST = "0.0003 / 0.03", ["0.03 / 5", "0.3 / 45"]
 KEEPING = ["separation-list", "deferred", "raise", "margins"]
@@ -46,13 +47,13 @@ def survival(record, volumes=None):
 def read(record):
     """A row for each cell: tests and time of every strategy, summed over seeds, times medians of repetitions."""
     rows = records.read(record)
-    missing = {*CELL, "strategy", "seed", "n_u", "n_v", "n_p", "time_ns", "front"} - set(rows)
+    missing = {*CELL, "strategy", "seed", *MEASURED, "front"} - set(rows)
     if missing:
         raise Refused(f"{record}: no record of fan-outs, for it has no column {sorted(missing)[0]}")
     records.wrong_answers(rows)
-    middle = rows.groupby([*CELL, "strategy", "seed"])[["n_u", "n_v", "n_p", "time_ns", "front", "pairs"]].median().reset_index()
+    middle = rows.groupby([*CELL, "strategy", "seed"])[[*MEASURED, "front", "pairs"]].median().reset_index()
     middle["entries"] = middle.front * middle.pairs
-    return middle.groupby([*CELL, "strategy"])[["n_u", "n_v", "n_p", "time_ns", "entries", "pairs"]].sum()
+    return middle.groupby([*CELL, "strategy"])[[*MEASURED, "entries", "pairs"]].sum()
 
 
 def savings(cells, of, strategy):

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """All records together: how many, on what machine, and how many of their times were measured alone."""
 
-import json
-
 import pandas as pd
 
 from bvlab_plots import provenance
@@ -10,26 +8,17 @@ from quoting import ALL, claim, quotes
 from bvlab_plots.refused import Refused
 
 
-def having(folder, names, peers):
-    """The records in whose table one of these peers stands."""
-    found = set()
-    for name in names:
-        rows = pd.read_csv(folder / name / f"{name}.csv", usecols=lambda column: column == "peer")
-        if "peer" in rows and rows.peer.isin(peers).any():
-            found.add(name)
-    return found
-
-
 @quotes(ALL)
 def all_records(folder):
     names = sorted(path.parent.name for path in folder.glob("*/definition.toml"))
     if not names:
         raise Refused(f"{folder}: there are no records")
-    machines = [json.loads((folder / name / "machine.json").read_text()) for name in names]
+    machines = [provenance.machine_of(folder / name) for name in names]
     alone = timed = 0
-    longest, shared = 0, []
+    longest, shared, peers_of = 0, [], {}
     for name in names:
-        rows = pd.read_csv(folder / name / f"{name}.csv", usecols=lambda column: column in ("alone", "wall_per_processor"))
+        rows = pd.read_csv(folder / name / f"{name}.csv", usecols=lambda column: column in ("alone", "wall_per_processor", "peer"))
+        peers_of[name] = set(rows.peer) if "peer" in rows else set()
         if "wall_per_processor" in rows:
             longest = max(longest, pd.to_numeric(rows.wall_per_processor, errors="coerce").max())
         if "alone" in rows:
@@ -52,8 +41,7 @@ def all_records(folder):
     # What most of them were made by, and what was made before.
     most = pd.Series([by.commit for by in made]).mode()[0]
     begun = min(by.date for by in made if by.commit == most)
-    older = [name for name, by in zip(names, made) if by.date < begun]
-    physx = having(folder, names, ["physx"])
+    physx, coal = ({name for name in names if peers_of[name] & peers} for peers in ({"physx"}, {"coal-obb", "coal-obbrss", "coal-rss"}))
     claim(physx == {"tournament", "tournament-peers", "peers-meshes", "real-motions"}, "PhysX is in four records of the narrow phase, and in the stability map")
-    claim(having(folder, names, ["coal-obb", "coal-obbrss", "coal-rss"]) - physx == {"narrow-phase", "distances"}, "Coal is in two records more")
-    return {"older": len(older),  "count": len(names), "processors": [f"{name} ({count})" for name, count in processors.items()], "timed": timed, "shared": timed - alone}
+    claim(coal - physx == {"narrow-phase", "distances"}, "Coal is in two records more")
+    return {"older": sum(by.date < begun for by in made), "count": len(names), "processors": [f"{name} ({count})" for name, count in processors.items()], "timed": timed, "shared": timed - alone}

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What was published as it was: the talk's tree and prices, the motions of boxes."""
 
-import json
-
 import numpy as np
 
 from bvlab_scripts import nine_bunnies
@@ -140,13 +138,12 @@ def talk_scalar(record):
     runs = rows.groupby([*cell, "seed", "strategy"]).time_ns.median().unstack("strategy")
     runs = runs.rdiv(runs.recursive, axis=0)
     both = (runs["separation-list"] >= 1.40) & (runs.deferred >= 1.84)
-    machine = json.loads((record / "machine.json").read_text())
     claim(reached["separation-list"].max() >= 1.40 and reached.deferred.max() < 1.84, "unoptimised code reaches the list's speedup, not deferring's")
 
     def of(what, program, readings, name):
         return Interval(found[what].loc[program].loc[readings][name])
     rejecting = ["one body, one freedom, rejecting"]
-    return {"both": int(both.loc["unoptimised"].sum()), "both_optimised": int(both.loc["optimised"].sum()), "runs": len(both.loc["unoptimised"]), "processor": provenance.processor_of(machine),
+    return {"both": int(both.loc["unoptimised"].sum()), "runs": len(both.loc["unoptimised"]), "processor": provenance.processor_of(provenance.machine_of(record)),
             "reject_list": of("time", "unoptimised", rejecting, "separation-list"), "reject_deferred": of("time", "unoptimised", rejecting, "deferred"),
             "reached": int((reached["separation-list"] >= 1.40).sum()), "cells": len(reached), "plain": dear["unoptimised"], "optimised": dear["optimised"],
             "plain_list": of("time", "unoptimised", one, "separation-list"), "list": of("time", "optimised", one, "separation-list"),
@@ -175,7 +172,6 @@ def boxes_sorts(record):
     third = left[left <= 2 / 3]
     claim(set(third.index.droplevel(["set", "boxes", "motion", "method"])) == {("optimised", "comparison")} and set(third.index.get_level_values("boxes")) == {1000},
           "sweeps save a third only after a comparison sort of a thousand boxes in optimised code")
-    cells = left.loc["optimised"].loc["comparison"]
     claim(max(found["optimised_middle"], found["plain_middle"]) < 0.9 < min(found["plain_radix_middle"], found["radix_middle"]),
           "after a comparison sort coherence saves sweeps more than after a radix sort")
-    return {**found, "saved": 100 * (1 - left.min()), "third": len(third), "cells": len(cells)}
+    return {**found, "saved": 100 * (1 - left.min()), "third": len(third), "cells": len(left.loc["optimised"].loc["comparison"])}

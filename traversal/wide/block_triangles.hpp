@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "hierarchies/wide/block_hierarchy.hpp"
+#include "hierarchies/wide/lanes.hpp"
 #include "traversal/node_pair.hpp"
 #include "traversal/primitives/triangle_filter.hpp"
 #include "traversal/primitives/triangle_gap.hpp"

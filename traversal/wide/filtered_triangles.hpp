@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "hierarchies/wide/lanes.hpp"
 #include "traversal/primitives/triangle_filter.hpp"
 #include "traversal/queries/candidate.hpp"
 #include "traversal/queries/query.hpp"

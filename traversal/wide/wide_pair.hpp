@@ -14,6 +14,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "hierarchies/wide/lanes.hpp"
 #include "traversal/traversal.hpp"
 #include "traversal/wide/contact_batch.hpp"
 #include "traversal/wide/filtered_triangles.hpp"
