@@ -2,8 +2,8 @@
 /// The recommended configuration for given meshes, or for given meshes and their motion, for the
 /// queries touching and contacts.
 ///
-/// There are three kinds of trees, with margins or (two of them) from the roots in every frame:
-/// five candidates. Which one is fastest depends on the motion as much as on the meshes: where
+/// There are four kinds of trees, with margins or (two of them) from the roots in every frame: six
+/// candidates. Which one is fastest depends on the motion as much as on the meshes: where
 /// surfaces run closely along each other, oriented boxes win on any mesh; where hardly an answer
 /// outlasts a frame, margins cost more than they save; and no property of meshes that was tried
 /// predicts either. So where the motion is known, all candidates replay short samples of it, and
@@ -41,6 +41,12 @@ namespace bvlab {
 /// plates and beams, and for surfaces that run closely along each other.
 using RecommendedOriented =
     MarginsOver<WideTrees<Obb<float>, 4, MixedKernel, builds::BottomUpLocal, Fit::tight, 4>>;
+
+/// Oriented boxes, one against as many as a register has lanes: for surfaces that follow each other
+/// closely throughout a motion, as in narrow passages.
+using RecommendedWideOriented =
+    MarginsOver<WideTrees<Obb<float>, native_fan_out<float>, SiblingsKernel, builds::BottomUpLocal,
+                          Fit::tight, std::min(8, native_fan_out<float>)>>;
 
 /// Slab-boxes in smaller leaves, for bodies that come near each other at few triangles.
 using RecommendedSmallLeaves =
@@ -97,8 +103,11 @@ struct RecommendedCandidate {
 /// The fit weights the ratios between the best candidates of each motion more than the times
 /// themselves, so these are not the costs of single tests. Costs from the roots were then raised,
 /// by 3 % for slab-boxes and 10 % for oriented boxes, since samples have more new fronts than whole
-/// motions. On other seeds the choice took 1.02 times as long as the best candidate in the mean,
-/// and at most 1.13 times.
+/// motions. Those of wide oriented boxes were fitted later, to two processors.
+///
+/// experiments/fit_candidates says what the choice costs on motions of a record, and fits again. On
+/// two processors of different makers the best candidate differs: no unit costs come within a tenth
+/// of the best on all motions of both.
 inline constexpr std::tuple recommended_candidates{
     RecommendedCandidate<Recommended>{"slab-boxes", {36.6, 1.6, 6.5, 1.5}, {17.3, 4.0, 4.8, 3.4}},
     RecommendedCandidate<RecommendedRoots>{
@@ -108,7 +117,9 @@ inline constexpr std::tuple recommended_candidates{
     RecommendedCandidate<RecommendedOriented>{
         "oriented boxes", {40.3, 2.3, 6.9, 6.7}, {20.8, 8.0, 9.1, 4.7}},
     RecommendedCandidate<RecommendedOrientedRoots>{
-        "oriented boxes from the roots", {3.3, 0, 8.0, 1.6}, {75.0, 0, 9.1, 3.7}}};
+        "oriented boxes from the roots", {3.3, 0, 8.0, 1.6}, {75.0, 0, 9.1, 3.7}},
+    RecommendedCandidate<RecommendedWideOriented>{
+        "wide oriented boxes", {67.7, 0.6, 6.8, 10.1}, {5.0, 1.2, 7.1, 10.4}}};
 
 /// Calls `what` with each candidate, in order.
 template <class Do>
@@ -146,7 +157,7 @@ struct SampledFrames {
   std::size_t size() const { return frames.size() / run * (run - uncounted); }
 };
 /// The sampled frames for a motion of `frames` frames. None where the meshes have more than 200 000
-/// triangles in all, since building three kinds of trees would take too long.
+/// triangles in all, since building four kinds of trees would take too long.
 inline SampledFrames samples_of(std::span<const TriangleMesh> meshes, std::size_t frames) {
   std::size_t triangles = 0;
   for (const auto& mesh : meshes) triangles += mesh.triangles.size();
@@ -199,7 +210,7 @@ double expected_cost(std::span<const typename Best::Shape> shapes,
 }
 
 /// `with_recommended` for a motion that is known: `frames[k]` has the poses of all bodies in frame
-/// k, body i has mesh i modulo the number of meshes. Builds three hierarchies of each mesh.
+/// k, body i has mesh i modulo the number of meshes. Builds four hierarchies of each mesh.
 template <class MakeQuery, class Visit>
 decltype(auto) with_recommended(std::span<const TriangleMesh> meshes,
                                 std::span<const std::vector<Pose>> frames, MakeQuery&& make_query,

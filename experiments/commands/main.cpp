@@ -13,6 +13,7 @@
 
 #include "experiments/commands/commands.hpp"
 #include "experiments/files/unusable.hpp"
+#include "experiments/recorder/record.hpp"
 #include "experiments/scenes/public/public_scenes.hpp"
 
 namespace bvlab {
@@ -62,6 +63,8 @@ int parsed(CLI::App& app, int argc, char** argv) {
     return app.exit(help);
   } catch (const CLI::CallForAllHelp& help) {
     return app.exit(help);
+  } catch (const CLI::CallForVersion& version) {
+    return app.exit(version);
   } catch (const CLI::ParseError& error) {
     return complain(2, shown(app, error, argc > 1 ? argv[1] : ""));
   } catch (const Unusable& error) {
@@ -78,6 +81,7 @@ int main(int argc, char** argv) {
   using namespace bvlab;
   CLI::App app("bvlab: measures collision detection with bounding-volume hierarchies and boxes");
   app.require_subcommand(1);
+  app.set_version_flag("--version", program_version(), "version, commit and compiler");
   try {
     add_replay(app);
     add_predict(app);

@@ -351,4 +351,12 @@ void open_record(const std::filesystem::path& record, const std::string& definit
   if (commands.empty() || (is_other && !is_known)) write("command.txt", commands + command + "\n");
 }
 
+std::string program_version() {
+  const std::string commit = build_facts::commit, changes = build_facts::changes;
+  std::string said = std::string("bvlab ") + build_facts::version;
+  if (!commit.empty())
+    said += ", commit " + commit.substr(0, 12) + (changes == "yes" ? " with changes" : "");
+  return said + ", " + build_facts::compiler + " " + build_facts::flags;
+}
+
 }  // namespace bvlab

@@ -68,4 +68,7 @@ using Extends = std::function<void(const std::string& held, const std::string& d
 void open_record(const std::filesystem::path& record, const std::string& definition,
                  const std::string& command, const Extends& extends);
 
+/// The program that makes records: its version, commit and compiler, in one line.
+std::string program_version();
+
 }  // namespace bvlab

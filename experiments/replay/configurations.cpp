@@ -60,9 +60,10 @@ constexpr Configuration list[] = {
      "touching and contacts: the cheapest, in counted samples of the motion, of (1) slab-box, "
      "kernel siblings, built top-down-surface-area, leaves as large as a register; (2) obb, kernel "
      "mixed, built bottom-up, fit tight, leaves of 4; either of them with margins or recursive; "
-     "(3) slab-box with margins, built bottom-up, leaves of 4. Where the motion is not known, (1) "
-     "or (2) with margins, by the shape of the triangles. distance: rss in binary trees, frame "
-     "body, built bottom-up, fit tight, leaves of 1, witness",
+     "with margins (3) slab-box, kernel siblings, built bottom-up, leaves of 4; (4) obb, kernel "
+     "siblings, built bottom-up, fit tight, leaves of 8. Where the motion is not known, (1) or (2) "
+     "with margins, by the shape of the triangles. distance: rss in binary trees, frame body, built "
+     "bottom-up, fit tight, leaves of 1, witness",
      set_recommended},
     {"as-published",
      "the talk's (Li and Chen 1998): spheres in binary trees, one triangle per leaf, and a "

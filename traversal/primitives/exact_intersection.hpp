@@ -171,13 +171,6 @@ inline Corners<double> corners_of(const Triangle& t) {
   return {{{t[0][0], t[0][1], t[0][2]}, {t[1][0], t[1][1], t[1][2]}, {t[2][0], t[2][1], t[2][2]}}};
 }
 
-inline bool share_a_corner(const Triangle& a, const Triangle& b) {
-  for (const Point& p : a)
-    for (const Point& q : b)
-      if (p == q) return true;
-  return false;
-}
-
 /// The whole test of one pair: boxes, the filter's determinants, and exact ones where needed.
 inline bool exactly_intersect(const Triangle& a, const Triangle& b) {
   const Corners<double> x = corners_of(a), y = corners_of(b);
@@ -189,7 +182,7 @@ inline bool exactly_intersect(const Triangle& a, const Triangle& b) {
   if (filter::all_beyond<double>(computed_a, box.bound)) return false;
   if (!(filter::all_known<double>(computed_a, box.bound) &&
         filter::all_known<double>(computed_b, box.bound)) &&
-      share_a_corner(a, b))
+      filter::share_a_corner<double>(x, y))
     return true;
   const auto sides_b = exact_sides(a, b, computed_b, box.bound);
   constexpr std::array<int, 3> in_plane{};

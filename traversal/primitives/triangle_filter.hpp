@@ -86,6 +86,14 @@ template <Scalar S>
 }
 
 template <Scalar S>
+[[gnu::always_inline]] inline Mask<S> share_a_corner(const Corners<S>& a, const Corners<S>& b) {
+  Mask<S> shared(false);
+  for (const auto& p : a)
+    for (const auto& q : b) shared = shared || ((p[0] == q[0]) && (p[1] == q[1]) && (p[2] == q[2]));
+  return shared;
+}
+
+template <Scalar S>
 [[gnu::always_inline]] inline Vector<S> choose(const Mask<S>& condition, const Vector<S>& yes,
                                                const Vector<S>& no) {
   return {select<S>(condition, yes[0], no[0]), select<S>(condition, yes[1], no[1]),

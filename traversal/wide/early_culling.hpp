@@ -115,8 +115,8 @@ class EarlyCulling {
                                  Apart&& apart) const {
     return sieve.sift_batches(skips, [&](const Indices& numbers, std::size_t used) {
       const auto batch = pairs_of(pairs, numbers, used);
-      auto direction = SeparatingDirections::normalized(batch.between);
-      const auto gaps = directions_.gaps(batch, direction, most_directions);
+      const auto gaps = directions_.gaps(batch, SeparatingDirections::normalized(batch.between),
+                                         most_directions);
       const std::uint64_t near = ~bits(gaps > 0.0f);
       for (std::size_t lane = 0; lane < used; ++lane)
         if (!(near >> lane & 1)) apart(static_cast<std::size_t>(numbers[lane]), gaps[lane]);

@@ -91,8 +91,8 @@ class SeparatingDirections {
   }
 
   /// A lower bound on the distance of each pair, 0 where no direction separates it. Up to `most`
-  /// directions are tried, starting with `d`; the separating one is written to `d`.
-  [[gnu::always_inline]] S gaps(const Pairs& p, Vec3<S>& d, int most) const {
+  /// directions are tried, starting with `first`.
+  [[gnu::always_inline]] S gaps(const Pairs& p, const Vec3<S>& first, int most) const {
     constexpr float e = unit_roundoff<float>;
     const auto rotation_a = rotation(p.a), rotation_b = rotation(p.b);
     const Indices map_a = map(p.a), map_b = map(p.b);
@@ -100,15 +100,13 @@ class SeparatingDirections {
                       S(8 * e) * stdx::sqrt(squared_norm<S>(p.between))) *
                      S(1 + 16 * e);
     S found(0.0f);
-    Vec3<S> next = d;
+    Vec3<S> next = first;
     for (int tried = 1;; ++tried) {
       const Vec3<S> minus(-next[0], -next[1], -next[2]);
       const Support a = support(map_a, rotated_back(rotation_a, next));
       const Support b = support(map_b, rotated_back(rotation_b, minus));
       const S gap = ((dot<S>(next, p.between) - a.height) - b.height) - margin;
-      const auto better = gap > found;
-      stdx::where(better, found) = gap * S(1 - 16 * e);
-      for (int i = 0; i < 3; ++i) stdx::where(better, d[i]) = next[i];
+      stdx::where(gap > found, found) = gap * S(1 - 16 * e);
       if (tried == most || stdx::all_of(found > S(0.0f))) return found;
       Vec3<S> w = p.between;
       const Vec3<S> to_b = rotated(rotation_b, b.point), to_a = rotated(rotation_a, a.point);
