@@ -81,7 +81,7 @@ def recommended_rule(record):
     rows = rows.assign(us=(rows.time_ns - rows.first_ns) / (rows.pairs * (1 - 1 / rows.frames)) / 1e3)
     us = rows.groupby(["motion", "method"]).us.median().unstack()
     candidates = us[["slab-boxes", "slab-boxes, from the roots", "slab-boxes in small leaves", "oriented boxes",
-                     "oriented boxes, from the roots"]].min(axis=1)
+                     "oriented boxes, from the roots", "wide oriented boxes"]].min(axis=1)
     over, among = us["recommended"] / us.min(axis=1), us["recommended"] / candidates
     fixed = us["slab-boxes"] / us.min(axis=1)
     spread = rows.groupby(["motion", "method"]).us.agg(lambda each: each.max() / each.min())
@@ -98,6 +98,25 @@ def recommended_rule(record):
     return {"motions": len(over), "cells": us.shape[1] - 1, "near": int((over <= NEAR).sum()), "worst": over.max(), "worst_at": over.idxmax(),
             "spread": 100 * (spread > 1.1).mean(), "spread_most": spread.max(), "twins": Interval(twins), "over": int((over > NEAR).sum()), "roots": int(roots),
             "among": int((among <= NEAR).sum()), "most_among": among.max(), "bunnies": over[bunnies].max(), "fixed": fixed.max()}
+
+
+@quotes("recommended-costs")
+def recommended_costs(record):
+    rows = records.read(record)
+    claim((rows.differing == 0).all(), "answers of ours agree")
+    claim((rows.alone == "yes").all(), "the rows were timed alone")
+    rows = rows.assign(us=(rows.time_ns - rows.first_ns) / (rows.pairs * (1 - 1 / rows.frames)))
+    us = rows.groupby(["motion", "candidate"]).us.median().unstack()
+    contacts = us.index.str.endswith(", contacts")
+    best = us.drop(columns="recommended").min(axis=1)
+    over = us["recommended"] / best
+    touching, unseen = over[~contacts], over[~contacts & us.index.str.contains(" of ")]
+    others = us[~contacts].drop(columns=["recommended", "wide oriented boxes"]).min(axis=1) / best[~contacts]
+    named = others.sort_values(ascending=False)
+    claim(named.index[0] == "apartment" and named.index[1] == "escape", "wide oriented boxes save most on apartment and escape")
+    return {"motions": len(touching), "near": int((touching <= NEAR).sum()), "worst": touching.max(), "worst_at": touching.idxmax(),
+            "unseen": len(unseen), "unseen_near": int((unseen <= NEAR).sum()), "unseen_worst": unseen.max(),
+            "contacts": int(contacts.sum()), "contacts_worst": over[contacts].max(), "apartment": named.iloc[0], "escape": named.iloc[1]}
 
 
 def changing(record):
