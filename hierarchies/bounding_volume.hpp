@@ -5,6 +5,7 @@
 #include <concepts>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "hierarchies/geometry/placement.hpp"
 #include "hierarchies/geometry/scalar.hpp"

@@ -102,8 +102,6 @@ class Hierarchy {
     const std::uint32_t* groups_;
   };
   std::size_t sibling_groups() const { return above_.size(); }
-  /// The parent of a node that is not the root.
-  std::uint32_t parent(std::uint32_t node) const { return above_[group(node)].parent; }
   /// What siblings have in common.
   struct Above {
     std::uint32_t parent;

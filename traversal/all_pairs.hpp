@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <ranges>
 #include <span>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -42,8 +41,8 @@ class AllPairsOf {
   }
 
   /// Moves every body to its pose and runs every pair's query. `make_query(p)` returns the query
-  /// for pair p (an index into `pairs()`); `take(p, query)` receives it with its answer, in the
-  /// order of pairs over binary trees, in any order over wide ones. More queries may be made than
+  /// for pair p (an index into `pairs()`); `take(p, query)` receives it with its answer:
+  /// StrategyPairs in the order of pairs, WidePairs in any order. More queries may be made than
   /// are taken: to test roots of all pairs at once, or triangles that a pair kept.
   ///
   /// With several threads, all queries run before the first `take`, the order is that of pairs, and

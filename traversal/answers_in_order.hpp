@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Runs queries on several threads and delivers their answers to one, in an order that does not
-/// depend on the threads. Each thread keeps copies of its answered queries in a list; a table by
-/// slot says which thread has an answer, and where.
+/// Runs queries on several threads and delivers their answers to one, in the order of the pairs. On
+/// one thread, answers are delivered as they are found. Each thread keeps copies of its answered
+/// queries in a list; a table by slot says which thread has an answer, and where.
 #pragma once
 
 #include <algorithm>
@@ -21,9 +21,9 @@ namespace bvlab {
 
 class AnswersInOrder {
  public:
-  /// Queries the pairs in `slots`, each below `count`, on the threads: `pairs` is as in WorldOf. The
-  /// calling thread then takes the answers in the order of `slots`, and counters are added up. One
-  /// thread delivers each answer as it is found.
+  /// Queries the pairs in `slots`, each below `count`, on the threads: `pairs` is as in WorldOf.
+  /// The calling thread then takes the answers in the order of `slots`, and counters are added up.
+  /// One thread delivers each answer as it is found.
   template <class Pairs, class Slots, class Counter, class MakeQuery, class Take>
   void run_pairs(Pairs& pairs, Threads& threads, const Slots& slots, std::size_t count,
                  Counter& counter, MakeQuery& make_query, Take&& take) {

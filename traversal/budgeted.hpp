@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Time-critical collision detection, as hubbard1996approximating proposed for sphere trees: a
-/// traversal with a budget of volume tests, the most promising pairs first. The answer is
-/// touching, apart, or not known yet, with a bound on how deep one surface can have penetrated the
-/// other.
+/// traversal with a budget of volume tests. The answer is touching, apart, or not known yet, with a
+/// bound on the size of a crossing that has not been found yet.
 ///
-/// The bound. An open pair of nodes stands for two patches of surface. Let D be the smaller patch's
-/// diameter in the world. If the patches share a point, no point of that patch is farther than D
-/// from it, so none is deeper than D behind the other surface there. Open pairs are kept in the
-/// order of D, and the largest is expanded first: its D bounds them all.
+/// The bound. An undecided pair of nodes stands for two patches of surface. Let D be the smaller
+/// patch's diameter in the world. If the patches share a point, every point of that patch is within
+/// D of it, so the patch reaches at most D behind the other surface. It is not a bound on the depth
+/// of penetration: parts of a body that lie deep inside another one are apart from its surface, and
+/// their pairs are culled. Pairs are expanded in the order of D, largest first: the D of the next
+/// one bounds all others.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -60,7 +62,7 @@ enum class BudgetVerdict : std::uint8_t { apart, touching, not_yet };
 
 struct BudgetedAnswer {
   BudgetVerdict verdict = BudgetVerdict::not_yet;
-  double deepest = 0;       ///< bound on the penetration, in units of the mesh; 0 unless not_yet
+  double deepest = 0;       ///< the largest D, in units of the mesh; 0 unless not_yet
   std::uint64_t tests = 0;  ///< volume tests made
 };
 

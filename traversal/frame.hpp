@@ -10,8 +10,9 @@ namespace bvlab {
 /// world: all bodies are posed into one frame. A volume is posed when it is first needed, at most
 /// once between two moves of its body, and serves all pairs. body: nothing is kept. Whenever two
 /// volumes are tested, that of the first body is posed into the frame of the second, whose volumes
-/// are used as stored. So N_u = N_v in a body's frame. In the world frame N_u <= 2 F N_v, with F
-/// the fan-out, since siblings are posed together; it is far less where volumes serve many pairs.
+/// are used as stored. So the gathered kernel has N_u = N_v in a body's frame; wide kernels pose
+/// one volume for all tests of a step. In the world frame N_u <= 2 F N_v, with F the fan-out, since
+/// siblings are posed together; it is far less where volumes serve many pairs.
 enum class Frame : std::uint8_t { world, body };
 
 constexpr std::string_view name_of(Frame frame) { return frame == Frame::world ? "world" : "body"; }

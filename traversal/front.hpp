@@ -4,8 +4,8 @@
 /// witness first.
 ///
 /// Invariant: the entries partition the product of the two bodies' leaves, so that every pair of
-/// leaves lies below exactly one entry. Their order is free; entry 0 is tested first. A front never
-/// shrinks.
+/// leaves lies below exactly one entry. Their order is free; entry 0 is tested first. It grows
+/// until `restart`; RisingFront, which is derived from it, also shrinks.
 #pragma once
 
 #include <cstdint>

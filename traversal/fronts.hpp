@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The fronts shared by several strategies. The bvlab program compiles each volume's loops for all
-/// of these together. A strategy with another kind of front declares it (`using OwnFronts =
+/// The fronts of the strategies in strategies.hpp. The bvlab program compiles each volume's loops
+/// for all of these together. A strategy with another kind of front declares it (`using OwnFronts =
 /// TypeList<...>`); loops from that front are compiled separately for each volume.
 #pragma once
 

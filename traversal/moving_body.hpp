@@ -26,8 +26,8 @@ class MovingBody {
     return reference_pose_;
   }
   /// An upper bound on how far any point of the body has moved from each requested reference pose
-  /// to the next, summed over all of them. It grows whenever the body has moved, and never falls
-  /// where motion goes back, as RelativeMotionBound does.
+  /// to the next, summed over all of them. It never falls, while RelativeMotionBound does when a
+  /// body moves back.
   double displacement_bound() {
     follow();
     return displacement_bound_;

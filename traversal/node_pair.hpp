@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Two nodes, one of each hierarchy.
+/// Two indices, the first of body a and the second of body b: of nodes, and in wide trees also of a
+/// triangle and a leaf, or of two triangles.
 #pragma once
 
 #include <cstdint>

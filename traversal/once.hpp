@@ -89,8 +89,9 @@ class OnceEach {
   bool done(std::size_t k, std::uint32_t stamp) {
     return done_alone(k, stamp) || (!shared_.empty() && is_done(shared_[k], stamp));
   }
-  /// As `once`, for what done_alone() does not report as done. Only the work itself is out of line,
-  /// since several threads call this for finished work, too.
+  /// Does work k under this stamp unless another thread has; returns whether it was done here. To
+  /// be called where done_alone() is false. Only the work itself is out of line, since several
+  /// threads call this for finished work, too.
   template <class Work>
   bool operator()(std::size_t k, std::uint32_t stamp, Sharing sharing, Work work) {
     if (sharing == Sharing::one_thread) return do_alone(k, stamp, work);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The recommended configuration for distances, on any mesh and motion: swept rectangles, which
-/// bound the distances of single triangles best (rss.hpp), in binary trees; volumes compared in the
-/// frame of one body; and recursion that tests first the leaves that were nearest in the last frame
-/// (strategies/witness.hpp). No front pays here: most of what it keeps is nearer than the answer.
+/// The recommended configuration for distances, on any mesh and motion: rectangle swept spheres,
+/// which bound the distances of single triangles best (rss.hpp), in binary trees; volumes compared
+/// in the frame of one body; and recursion that tests first the leaves that were nearest in the
+/// last frame (strategies/witness.hpp). No front pays here: most of what it keeps is nearer than
+/// the answer.
 #pragma once
 
 #include <span>

@@ -24,7 +24,6 @@
 #include <string_view>
 #include <tuple>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "hierarchies/volumes/obb.hpp"
@@ -58,7 +57,7 @@ using RecommendedSmallLeaves =
 using RecommendedRoots = RootsOf<Recommended::Trees>;
 using RecommendedOrientedRoots = RootsOf<RecommendedOriented::Trees>;
 
-/// The costs of a pair of bodies (C), a visited entry of a front (C_f), a test of two volumes (C_v)
+/// The costs of a pair of bodies (C), an entry of a front (C_f), a test of two volumes (C_v)
 /// and one of two triangles (C_p), about nanoseconds on the machine of record real-motions; posing
 /// is part of C_v. Only their ratios matter.
 struct UnitCosts {

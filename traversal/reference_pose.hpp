@@ -13,8 +13,9 @@
 ///
 ///   |R_f - R_r|_2 <= (F + d_f + d_r) / sqrt(2) + d_f + d_r,   F = |R_f - R_r|_F,
 ///
-/// where both are on the same side of O(3), which holds if F + d_f + d_r < 2; else F itself is the
-/// bound. For one point on each of two bodies the difference of their displacements is at most
+/// where both have determinants of the same sign, which holds if F + d_f + d_r < 2; else F itself
+/// is the bound. For one point on each of two bodies the difference of their displacements is at
+/// most
 ///
 ///   |(c_f - c_r)_a - (c_f - c_r)_b| + |R_f - R_r|_2,a radius_a + |R_f - R_r|_2,b radius_b,
 ///

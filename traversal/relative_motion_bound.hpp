@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// An upper bound on how much nearer two bodies, or any parts of them, can have come to each other
 /// since `restart`, in units of the mesh. It serves as a clock: a gap g that is measured now has
-/// its deadline at now() + g. The bound is derived in reference_pose.hpp.
+/// its deadline at now() + g. Unlike a clock it goes back when the bodies do: it is a bound from
+/// the reference poses to the present ones (reference_pose.hpp), not along the path.
 #pragma once
 
 #include <utility>
@@ -12,7 +13,7 @@ namespace bvlab {
 
 class RelativeMotionBound {
  public:
-  /// Starts the clock at zero.
+  /// Starts the clock anew, at what poses and rounding may be off by.
   void restart(MovingBody& a, MovingBody& b) {
     base_ = since_ = 0;
     refer(a, b);

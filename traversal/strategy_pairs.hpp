@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Pairs of bodies over binary trees or any fan-out, each with a strategy of its own: pairs in
+/// Pairs of bodies over trees of any fan-out, each with a strategy of its own: pairs in
 /// slots, as AllPairsOf and WorldOf use them.
 ///
 /// The pairs are divided among the threads. In a World the first thread that needs a body moves it

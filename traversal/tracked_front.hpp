@@ -12,7 +12,6 @@
 
 #include <concepts>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include "traversal/descent.hpp"
@@ -38,9 +37,8 @@ enum class EntryState {
 
 /// The members. FrontDefaults has those that a simple front need not define. A slot is the number
 /// under which the front knows an entry.
-///   sweep(traversal)         tests entries by FrontSweep::test_entries (front_recorder.hpp);
-///   returns
-///                            whether the query is satisfied
+///   sweep(traversal)         tests entries by FrontSweep::test_entries (front_recorder.hpp), and
+///                            returns whether the query is satisfied
 ///   front[slot]              the pair
 ///   keep(slot, state, gap)   a tested entry is kept; `state` is the result of its test
 ///   open(slot)               a tested entry is replaced: the next pair that is added, of at least

@@ -3,7 +3,8 @@
 ///
 /// A step takes pairs of nodes, tests their volumes in the lanes of registers, has the recorder
 /// record what is apart, and passes the rest on: pairs of leaves to the leaf stage, which tests
-/// their triangles, and all others back to the queue of open pairs. A traversal from the two roots
+/// their triangles; of all others, the gathered kernel queues the pairs of their children, and the
+/// wide kernels, which tested children, queue the pairs themselves. A traversal from the two roots
 /// is the recursive algorithm. From a front, the steps of its entries come first.
 ///
 /// The parts. GatheredPair goes with FrontRecorder, WidePair with NoRecord and GapMeasure:

@@ -4,7 +4,6 @@
 
 #include <any>
 #include <deque>
-#include <utility>
 #include <vector>
 
 #include "traversal/open_pairs.hpp"

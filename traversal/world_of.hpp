@@ -3,7 +3,8 @@
 /// bodies has moved: a broad phase over the bodies' boxes finds them (NearPairs). A pair may keep
 /// its last answer or a front, and drops them when the boxes part.
 ///
-/// Bodies that do not move cost nothing. Nothing is built for a body that no other has come near.
+/// Bodies that do not move are not posed or queried. Nothing is built for a body that no other has
+/// come near.
 ///
 /// With several threads the broad phase, the bodies that moved and the pairs are divided among
 /// them; answers, contacts and counts are the same for any number of threads. Serial are moves,
@@ -11,7 +12,6 @@
 /// twentieth of a frame in which ten thousand bodies move.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <type_traits>

@@ -188,7 +188,7 @@ void add_replay(CLI::App& app) {
       ->add_option(
           "--budget", arguments->budget,
           "most volume tests for a pair in a frame; answers are 0 apart, 1 touching, 2 unknown, "
-          "with a bound on the depth")
+          "with a bound on the patches that may still cross")
       ->check(whole_number(0, 1u << 30));
   command
       ->add_option("--threads", arguments->threads,

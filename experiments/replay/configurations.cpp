@@ -33,7 +33,7 @@ Variant as(Variant variant) {
 
 /// Where the motion is not known. Margins save more than they cost wherever pairs are quiet: up to
 /// nine tenths of the time from the roots, where they cost up to a third more if none is. Distances
-/// are sought by the volumes of triangles, which swept rectangles bound best.
+/// are sought by the volumes of triangles, which rectangle swept spheres bound best.
 void set_recommended(Variant& variant) {
   if (variant.query != "distance") {
     variant = as<Recommended>(variant);
@@ -62,8 +62,8 @@ constexpr Configuration list[] = {
      "mixed, built bottom-up, fit tight, leaves of 4; either of them with margins or recursive; "
      "with margins (3) slab-box, kernel siblings, built bottom-up, leaves of 4; (4) obb, kernel "
      "siblings, built bottom-up, fit tight, leaves of 8. Where the motion is not known, (1) or (2) "
-     "with margins, by the shape of the triangles. distance: rss in binary trees, frame body, built "
-     "bottom-up, fit tight, leaves of 1, witness",
+     "with margins, by the shape of the triangles. distance: rss in binary trees, frame body, "
+     "built bottom-up, fit tight, leaves of 1, witness",
      set_recommended},
     {"as-published",
      "the talk's (Li and Chen 1998): spheres in binary trees, one triangle per leaf, and a "
@@ -76,8 +76,8 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes) {
   set_recommended(variant);
   if (variant.query == "distance")
     return {variant,
-            "distance queries cull by the volumes of single triangles, which swept rectangles "
-            "bound best"};
+            "distance queries cull by the volumes of single triangles, which rectangle swept "
+            "spheres bound best"};
   const double elongated = elongation(meshes);
   std::ostringstream measured;
   measured << std::setprecision(3) << elongated;

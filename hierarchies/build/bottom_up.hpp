@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Builds a topology bottom up by clustering, as the talk (li1998incremental) builds its sphere
+/// Builds a topology bottom up by clustering, as li1998incremental builds its sphere
 /// tree: a cluster merges with the neighbour of smallest union, until one is left.
 ///
 /// Locally-ordered clustering (meister2018parallel): clusters are kept in Morton order, each finds
@@ -11,9 +11,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 #include "hierarchies/build/topology.hpp"
 #include "hierarchies/geometry/morton.hpp"

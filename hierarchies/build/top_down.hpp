@@ -12,7 +12,8 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <string>
+#include <utility>
+#include <vector>
 
 #include "hierarchies/build/cheapest_cut.hpp"
 #include "hierarchies/build/topology.hpp"

@@ -110,7 +110,6 @@ class alignas(sizeof(T) * Abi::width) simd {
  public:
   static constexpr int W = Abi::width;
   using value_type = T;
-  using abi_type = Abi;
   using mask_type = simd_mask<T, Abi>;
 
   simd() = default;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Asks the system for memory pages before they are first written: in bulk they cost two thirds of
-/// the page faults one by one, and huge pages a third. Only time depends on this; on systems other
-/// than Linux nothing is done.
+/// Asks the system for memory pages before they are first written. Populating them in bulk takes
+/// two thirds of the time of page faults one by one, and huge pages take a third. Only time depends
+/// on this; on systems other than Linux nothing is done.
 #pragma once
 
 #include <cstddef>

@@ -30,6 +30,8 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
+#include <type_traits>
 
 #include "hierarchies/geometry/pose.hpp"
 #include "hierarchies/geometry/scalar.hpp"

@@ -89,7 +89,6 @@ struct FixedPoint {
 };
 
 __extension__ typedef __int128 Int128;
-__extension__ typedef unsigned __int128 UInt128;
 
 using Fixed3 = std::array<std::int64_t, 3>;
 

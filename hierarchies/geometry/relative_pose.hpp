@@ -15,12 +15,12 @@
 ///   w_b  to within  8u (r_b + |t_b|) + |R_b - Q_b| r_b + (17u + 32u) r_b   of  v.
 ///
 /// The product Q_b' Q_a is computed in float64 with at most three roundings of each product in a
-/// component, and the vector with four. As |Q| of moduli is at most 5/3, that is less than 9u
-/// (r_a + |t_a - t_b|) in all. `error_bound` is at least the sum of all these errors, so that b
-/// may be taken to be exactly where its mesh is given, and a within `error_bound` of where
-/// rotation and translation put it. All of it is below 64u of the lengths: float volumes round
-/// much more, unless bodies are far from the origin of the world; but there float64 poses are as
-/// inexact.
+/// component, and the vector with four. As the matrix of the moduli of Q has norm 5/3 at most, that
+/// is less than 9u (r_a + |t_a - t_b|) in all. `error_bound` is at least the sum of all these
+/// errors, so that b may be taken to be exactly where its mesh is given, and a within `error_bound`
+/// of where rotation and translation put it. All of it is below 64u of the lengths: float volumes
+/// round much more, unless bodies are far from the origin of the world; but there float64 poses are
+/// as inexact.
 #pragma once
 
 #include <array>

@@ -18,6 +18,7 @@
 #include "hierarchies/geometry/vector_lanes.hpp"
 #else
 #include <experimental/simd>
+#include <utility>
 #endif
 
 // The error bounds need IEEE rounding, infinities and NaN. This catches all but clang's

@@ -7,9 +7,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "hierarchies/geometry/principal_axes.hpp"
@@ -100,8 +102,7 @@ std::optional<Mat3<double>> rotated_about(int k, const Mat3<double>& axes, doubl
 template <class = double>
 Mat3<double> tight_axes(const Mat3<double>& start, std::span<const Vec3<double>> points) {
   const Vec3<double> origin = points[0];
-  double extent = 0;
-  for (const auto& p : points) extent = std::max(extent, (p - origin).cwiseAbs().maxCoeff());
+  const double extent = detail::extent_about(origin, points);
   if (!(extent > 0) || !(extent < std::numeric_limits<double>::infinity())) return start;
   std::vector<Vec3<double>> scaled;
   scaled.reserve(points.size());

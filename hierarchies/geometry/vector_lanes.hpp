@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Batches on the compilers' built-in vector types, which replace std::experimental::simd where
-/// that is not GCC's own: with libstdc++ 12, clang miscompiles a blend of AVX-512 (simd_x86.h,
+/// Batches on the compilers' built-in vector types, which replace std::experimental::simd where the
+/// compiler is clang: with libstdc++ 12, clang miscompiles a blend of AVX-512 (simd_x86.h,
 /// _S_blend_avx512), and libc++ has next to none of it. It has only the members that the engine
 /// uses, as `one_lane` does.
 #pragma once
@@ -162,7 +162,6 @@ class simd {
  public:
   static constexpr int W = Abi::width;
   using value_type = T;
-  using abi_type = Abi;
   using mask_type = simd_mask<T, Abi>;
   using Vector = detail::Vector<T, W>;
 

@@ -16,8 +16,10 @@
 /// Posing (C_u) takes 33 multiplications and additions, a test (C_v) about 200.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string_view>
 

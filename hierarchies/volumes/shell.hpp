@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -32,7 +33,7 @@ struct Shell {
   Vec3<S> centre;
   Vec3<S> axis;
   S inner, outer;
-  S cosine;  ///< of the half angle; -2 where that is more than a right angle
+  S cosine;  ///< of the half angle; -2 (all directions) unless that is less than a right angle
 
   static constexpr Element<S> all_around = -2;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A box along the axes of the mesh's own frame, cut by a slab across the normal of the surface.
+/// A box along the axes of the mesh's own frame, cut by a slab whose normal is that of the surface.
 /// Small patches of surface are flat: the slab makes the box thin, as in slab-cut balls
 /// (larsson2009slabcut), at a third of the cost of an oriented box's nine edge axes.
 ///
@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A sphere: the cheapest volume to pose (one point) and to test (one distance); the volume used in
-/// the talk (quinlan1994efficient, hubbard1993interactive).
+/// A sphere: the cheapest volume to pose (one point) and to test (one distance); the volume of
+/// li1998incremental (see also quinlan1994efficient, hubbard1993interactive).
 ///
 /// `enclosing` gives the smallest sphere around points (gartner1999miniball), so there is no
 /// tighter fit; `merge` is the smallest sphere around two spheres (quinlan1994efficient).
@@ -8,7 +8,9 @@
 /// Posing (C_u) takes 15 multiplications and additions, a test (C_v) 9.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string_view>
 

@@ -14,12 +14,12 @@
 #include <cassert>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 #include <vector>
 
 #include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/wide/fitting.hpp"
-#include "hierarchies/wide/lanes.hpp"
 #include "hierarchies/wide/support_map.hpp"
 #include "hierarchies/wide/triangle_lanes.hpp"
 
@@ -30,7 +30,7 @@ class BlockHierarchy {
  public:
   using scalar = typename V::scalar;
   static_assert(std::is_same_v<scalar, float>, "a lane holds a number and a node alike");
-  static constexpr int fan_out = 4, lanes = 16;
+  static constexpr int fan_out = 4;
   static constexpr int fields = sizeof(V) / sizeof(scalar);
 
   /// The word that names a node in a lane: its index, and a flag for leaves.
@@ -102,12 +102,6 @@ class BlockHierarchy {
   const MeshSphere& sphere() const { return sphere_; }
   /// The support map about the sphere's centre.
   const SupportMap& supports() const { return supports_; }
-
-  std::size_t bytes() const {
-    return nodes_.size() * (sizeof(Node) + sizeof(NodeSphere)) + blocks_.size() * sizeof(Block) +
-           rows_.size() * sizeof(Row) + corners_.size() * sizeof(TriangleLanes<scalar, 4>) +
-           triangles_.size() * 4 + supports_.bytes();
-  }
 
  private:
   /// Fills a row and a block for each inner node, and the row for the root.

@@ -36,7 +36,7 @@ template <Scalar S>
   return a * b + c;
 }
 
-/// c - a * b, likewise.
+/// c - a * b, rounded once where the processor can (a fused multiply-add with a negated product).
 template <Scalar S>
 [[gnu::always_inline]] inline S less_fused(const S& a, const S& b, const S& c) {
 #if defined(__AVX512F__)
@@ -101,8 +101,8 @@ V lane_of(const Lanes& lanes, int lane) {
 }
 
 /// Calls `what(part)` for the registers of a step of `parts` registers of S, whose `lanes` are in
-/// use. Few are unrolled: a loop, even of one pass, would keep its results in memory. Of many,
-/// those without a lane in use are left out.
+/// use. Up to four are unrolled: a loop, even of one pass, would keep its results in memory. Of
+/// more, those without a lane in use are left out.
 template <Batched S, std::size_t parts, class Do>
 [[gnu::always_inline]] inline void for_each_part([[maybe_unused]] std::uint64_t lanes, Do&& what) {
   if constexpr (parts <= 4) {

@@ -48,6 +48,9 @@
 /// comparison has a NaN.
 #pragma once
 
+#include <array>
+#include <limits>
+
 #include "hierarchies/volumes/obb.hpp"
 #include "hierarchies/wide/sibling_test.hpp"
 

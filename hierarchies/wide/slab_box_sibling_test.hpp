@@ -22,6 +22,9 @@
 /// comparison has a NaN, and nothing is found apart.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "hierarchies/volumes/slab_box.hpp"
 #include "hierarchies/wide/sibling_test.hpp"
 

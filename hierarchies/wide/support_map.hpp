@@ -17,6 +17,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "hierarchies/geometry/large_vector.hpp"
@@ -70,7 +71,6 @@ class SupportMap {
   /// row + j. The coordinate `axis` of that direction is 1 or -1, the next one, modulo 3, is 2 i /
   /// cells - 1 and the one after that 2 j / cells - 1.
   const std::vector<SupportSample>& table() const { return samples_; }
-  std::size_t bytes() const { return samples_.size() * sizeof(SupportSample); }
 
  private:
   static Vec3<double> on_face(int face, double u, double w) {

@@ -104,12 +104,6 @@ class WideHierarchy {
   /// The support map about the sphere's centre.
   const SupportMap& supports() const { return supports_; }
 
-  std::size_t bytes() const {
-    return nodes_.size() * (sizeof(Node) + sizeof(Siblings) + sizeof(NodeSphere)) +
-           corners_.size() * sizeof(TriangleLanes<scalar, F>) + triangles_.size() * 4 +
-           supports_.bytes();
-  }
-
  private:
   void put_node(std::size_t i, const WideTopology& topology, const NodeFitting<V>& fitting,
                 Reach& reach) {

@@ -26,7 +26,7 @@ CALLED = {
 CALLED_IN = {
     "worlds": {"moving": "share of the bodies that move", "time_ns": "time of all frames but the first"},
     "tightness": {"mean": "distance left out, over the node's diameter"},
-    "budget": {"mean_deepest_per_radius": "mean bound on depth, over the radius"},
+    "budget": {"mean_deepest_per_radius": "mean bound on undecided patches, over the radius"},
 }
 # Of which one is counted: "time / pairs" is time per pair.
 ONE_OF = {"pairs": "pair", "later_pairs": "pair after the first frame", "frames": "frame", "answers": "answer",

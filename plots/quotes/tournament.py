@@ -133,7 +133,7 @@ def scenes(record):
     roots = "wide, from the roots"
     built = rows[rows.polygons == 8000].groupby(["method", *tournament.PLACES]).build_ns.median() / 1e6
     return {"build": Interval(built[OURS]), "build_opcode": Interval(built["OPCODE"]), "build_physx": Interval(built["PhysX"]), "rows": lines, "lead": Interval(beside.ratio), "seeds": rows.seed.nunique(), "repetitions": rows.repetition.nunique(),
-            "cells": len(beside), "roots_faster": int((mean[roots] < mean[OURS]).sum()), "roots_tails": int((tails[roots] < tails[OURS]).sum()),
+            "cells": len(beside), "roots_faster": int((mean[roots] < mean[OURS]).sum()), "roots_most": 100 * (mean[OURS] / mean[roots] - 1).max(), "roots_tails": int((tails[roots] < tails[OURS]).sum()),
             "contact_frames": rows[contacts].frames.max()}
 
 

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <span>
+#include <utility>
 
 #include "hierarchies/geometry/predicates.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"

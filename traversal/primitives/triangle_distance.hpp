@@ -28,6 +28,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "traversal/primitives/nearest_candidates.hpp"
 #include "traversal/primitives/triangle_intersection.hpp"

@@ -29,6 +29,9 @@
 /// covered by the rounding of w.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "traversal/primitives/triangle_filter.hpp"
 
 namespace bvlab {

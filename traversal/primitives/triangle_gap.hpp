@@ -12,6 +12,9 @@
 /// finite, n gives no bound.
 #pragma once
 
+#include <array>
+#include <limits>
+
 #include "traversal/primitives/triangle_filter.hpp"
 
 namespace bvlab {

@@ -7,10 +7,8 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstdint>
-#include <span>
 #include <type_traits>
 
 #include "traversal/primitives/exact_intersection.hpp"

@@ -37,9 +37,12 @@
 /// 2^-149, and a margin is above 8u. Other pairs have no margin, and are decided exactly.
 #pragma once
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 #include "traversal/gather.hpp"
 #include "traversal/primitives/triangle_intersection.hpp"

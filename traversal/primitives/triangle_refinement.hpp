@@ -25,6 +25,9 @@
 /// 0. So coordinates on a grid of up to 2^29 steps a side need no integers.
 #pragma once
 
+#include <array>
+#include <limits>
+
 #include "traversal/primitives/paired_arithmetic.hpp"
 
 namespace bvlab {

@@ -2,6 +2,7 @@
 /// The query whether two surfaces share a point; stops at the first pair of triangles that do.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <span>
 #include <string_view>

@@ -21,7 +21,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <string_view>
 
@@ -56,7 +55,7 @@ class Adaptive : public AdaptivePrices {
   void roots_are_apart() {
     answer_.forget();
     ++unseen_;
-    cost_before_retry_ -= broad.run + broad.volumes;
+    cost_before_retry_ -= of_recursion.run + of_recursion.volumes;
     if (spheres_.batch_is_over()) in_batches_ = false;
   }
   template <class Pair>
@@ -118,7 +117,7 @@ class Adaptive : public AdaptivePrices {
   void run_roots(const Pair& pair, Start start) {
     const TraversalStatistics statistics = pair.template from_roots<NoFrontBoth>(start);
     answer_.remember(pair, statistics);
-    cost_before_retry_ -= price(statistics, broad);
+    cost_before_retry_ -= price(statistics, of_recursion);
   }
 
   template <class Pair>
@@ -141,10 +140,10 @@ class Adaptive : public AdaptivePrices {
     everything_ = statistics.everything;
     if (list_.size() == 1 && !margins_are_due()) return part();
     // After a rebuild: the cost of all entries, or of the witness.
-    next_run_ = !rebuild                ? price(statistics, plain)
-                : statistics.everything ? price({true, list_.size(), statistics.triangles}, plain)
-                                        : price({false, 1, 1}, plain);
-    account_list(price(statistics, plain), rebuild);
+    next_run_ = !rebuild                ? price(statistics, of_list)
+                : statistics.everything ? price({true, list_.size(), statistics.triangles}, of_list)
+                                        : price({false, 1, 1}, of_list);
+    account_list(price(statistics, of_list), rebuild);
     rebuild_due_ = rebuild_due_ || list_.size() > longest_list(pair);
   }
 
@@ -161,7 +160,7 @@ class Adaptive : public AdaptivePrices {
         margins_.expect(!is_slow());
         statistics = margins_.run(pair);
       }
-      spend(price(statistics, plain));
+      spend(price(statistics, of_list));
       if (!pair.query().answer()) return false;
       answer_.remember_touching();
       return true;
@@ -219,11 +218,12 @@ class Adaptive : public AdaptivePrices {
     margins_.start_from(list_, list_.size(), pair.a(), pair.b(), step_);
     const TraversalStatistics statistics = margins_.run(pair);
     answer_.forget();
-    const double cost = price(statistics, careful) - careful.run;
+    const double cost = price(statistics, of_margins) - of_margins.run;
     // What one margin saves is posing the roots.
     const double posed = list_.size() == 1 ? roots_posed : 0;
-    const double expected = careful.run + toward * (cost + posed) * margins_.due_in_a_run(step_);
-    const double otherwise = list_.size() == 1 ? broad.run + broad.volumes + posed : next_run_;
+    const double expected = of_margins.run + toward * (cost + posed) * margins_.due_in_a_run(step_);
+    const double otherwise =
+        list_.size() == 1 ? of_recursion.run + of_recursion.volumes + posed : next_run_;
     if (expected > otherwise) {
       failed(cost);
       forget_margins();
@@ -232,7 +232,7 @@ class Adaptive : public AdaptivePrices {
     }
     use_ = Use::margins;
     watched_ = true;
-    list_cost_per_entry_ = (next_run_ - plain.run) / static_cast<double>(list_.size());
+    list_cost_per_entry_ = (next_run_ - of_list.run) / static_cast<double>(list_.size());
     balance_ = 0;
     loss_limit_ = cost;
     list_.clear();
@@ -245,21 +245,21 @@ class Adaptive : public AdaptivePrices {
     if (use_ != Use::margins) return run(pair);
     const std::uint32_t rebuilds = margins_.rebuilds();
     const TraversalStatistics statistics = margins_.test_due(pair);
-    const double cost = price(statistics, careful);
+    const double cost = price(statistics, of_margins);
     const auto entries = static_cast<double>(margins_.front_size());
     // The cost of a return to margins is the most that they may lose, or hold as credit.
     if (margins_.rebuilds() != rebuilds) {
       if (statistics.everything)
-        list_cost_per_entry_ = (price(statistics, plain) - plain.run) / (2 * entries - 1);
+        list_cost_per_entry_ = (price(statistics, of_list) - of_list.run) / (2 * entries - 1);
       loss_limit_ = cost;
     }
     if (statistics.volumes + statistics.triangles > 0) {
-      next_run_ = statistics.everything ? plain.run + list_cost_per_entry_ * entries
-                                        : price({false, 1, 1}, plain);
+      next_run_ = statistics.everything ? of_list.run + list_cost_per_entry_ * entries
+                                        : price({false, 1, 1}, of_list);
       loss_limit_ = std::max(loss_limit_, cost);
     }
     balance_ =
-        std::max(balance_ + cost + quiet * careful.run - (1 + quiet) * next_run_, -loss_limit_);
+        std::max(balance_ + cost + quiet * of_margins.run - (1 + quiet) * next_run_, -loss_limit_);
     if (balance_ > tests_to_lose * loss_limit_) give_back();
   }
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstddef>
 
 #include "hierarchies/hierarchy_extent.hpp"
 #include "traversal/tracked_front.hpp"
@@ -20,8 +19,8 @@ class AdaptivePrices {
   struct Prices {
     double run, volumes, triangles, first_test, batch;
   };
-  static constexpr Prices broad{25, 14, 20, 0, 0}, plain{25, 18, 30, 0, 120},
-      careful{25, 28, 120, 75, 0};
+  static constexpr Prices of_recursion{25, 14, 20, 0, 0}, of_list{25, 18, 30, 0, 120},
+      of_margins{25, 28, 120, 75, 0};
   /// The price of posing the roots of two bodies, from unit costs (record cost-model): 36 ns to
   /// prepare a pose for volumes, 11 ns per volume, the mean of eight kinds.
   static constexpr double roots_posed = 2 * (36 + 11);
@@ -39,11 +38,11 @@ class AdaptivePrices {
   /// The share of the entries predicted to be due that are due: a wandering body moves away from
   /// half of what it passes.
   static constexpr double toward = 0.5;
-  /// The rebuilds that a list may lose. Set by hand, as are the next two: larger values lose more
-  /// in failed trials, smaller ones give up too early.
+  /// A list is dropped once it has cost this many rebuilds more than recursion. Set by hand, as are
+  /// the next two: larger values lose more in failed trials, smaller ones give up too early.
   static constexpr double recursions_to_lose = 3;
-  /// The tests of all its entries that a front with margins may lose: one for the rebuild, which is
-  /// no loss if the front lasts, and one more.
+  /// Margins are dropped once they have cost this many tests of all their entries more than a list:
+  /// one for the rebuild, which is no loss if the front lasts, and one more.
   static constexpr double tests_to_lose = 2;
   /// A failed trial may cost at most 1 / patience of the runs that follow it. A list that remains
   /// long because the bodies part is rebuilt after at most `patience` complete runs.

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A separation list that is rebuilt when keeping it has become more expensive than a rebuild.
 ///
-/// A rebuild that finds n leaves of the test tree takes 2n - 1 tests; each later run takes n and,
-/// as the list grows and becomes outdated, more. As for any machine that wears out, the mean cost
-/// of a run, rebuild included, is least if the list is replaced when one more run costs more than
-/// the mean so far. That needs no parameter: at rest the mean falls from 2n towards n and the list
-/// is never rebuilt; where growth costs more than a rebuild saves, it is kept for one run.
+/// On binary trees, a rebuild that finds n leaves of the test tree takes 2n - 1 tests; each later
+/// run takes n and, as the list grows and becomes outdated, more. As for any machine that wears
+/// out, the mean cost of a run, rebuild included, is least if the list is replaced when one more
+/// run costs more than the mean so far. That needs no parameter: at rest the mean falls from 2n
+/// towards n and the list is never rebuilt; where growth costs more than a rebuild saves, it is
+/// kept for one run.
 #pragma once
 
 #include <string_view>

@@ -2,7 +2,6 @@
 /// The last answer of a pair of bodies, which is valid while neither moves.
 #pragma once
 
-#include <concepts>
 #include <cstdint>
 #include <string_view>
 

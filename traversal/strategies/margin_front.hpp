@@ -95,7 +95,8 @@ class MarginFront {
     deadlines_[slot] = std::min(deadlines_[slot], before);
   }
 
-  /// Some collected entries got no new deadline, because the traversal was cut short.
+  /// Makes the next run test entries that were collected and got no new deadline, because the
+  /// traversal was cut short.
   void leave_rest() { earliest_ = passed; }
 
   /// A lower bound on all deadlines.

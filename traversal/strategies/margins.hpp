@@ -6,7 +6,7 @@
 /// test in about g / (motion per run) runs. So it pays to open pairs that are apart by a small gap:
 /// two children with wide gaps cost less than a parent with a narrow one (MarginSweep::opens).
 ///
-/// Motion is bounded between reference poses rather than along the path (see
+/// Motion is bounded from reference poses to the present ones, not along the path (see
 /// relative_motion_bound.hpp), so a body that jitters about a pose is nearly free. A gap that is
 /// measured when the bodies are d away from their reference poses loses up to 2d. Once d exceeds
 /// four times the last motion, the current poses become the reference poses.
@@ -42,7 +42,8 @@ class Margins {
     return test_due(pair);
   }
 
-  /// The first half of a run: returns whether nothing is due. If so, the run is over.
+  /// The first half of a run: if nothing is due, gives the query the last answer and returns true.
+  /// Then the run is over.
   template <class Pair>
   bool quiet(const Pair& pair) {
     return !front_.empty() && unchanged(pair.a(), pair.b(), pair.query());
@@ -117,7 +118,8 @@ class Margins {
 
  private:
   static constexpr double stretch = 4;      // steps over which motion is measured
-  static constexpr double triangles = 4;    // cost of a pair of triangles in pairs of volumes
+  static constexpr double triangles = 4;    // cost of a pair of triangles and of its margin, in
+                                            // pairs of volumes
   static constexpr double farthest = 1024;  // radii after which the clock is set back
 
   /// Follows the bodies. If nothing can have changed, answers the query and returns true.

@@ -11,12 +11,12 @@
 /// violent motion; either way the waste is small relative to the cost of descending. Bodies at
 /// rest, with n entries, take n tests a run and at most n / 32 for parents.
 ///
-/// A rebuild that finds n leaves of the test tree takes 2n - 1 tests. Where bodies jump, raising
-/// and descending costs more than that: then the list is dropped and rebuilt in the next run. If no
-/// run of the new list is cheaper either, it is rebuilt only after twice as many runs from the
-/// roots, up to 16. As a list has more entries than the test tree would have leaves, a run counts
-/// as too expensive from (2n - 1) / 1.2 tests on, n being its entries at the end (with 1 or 1.5 in
-/// place of 1.2 more tests were made on the whole).
+/// On binary trees, a rebuild that finds n leaves of the test tree takes 2n - 1 tests. Where bodies
+/// jump, raising and descending costs more than that: then the list is dropped and rebuilt in the
+/// next run. If no run of the new list is cheaper either, it is rebuilt only after twice as many
+/// runs from the roots, up to 16. As a list has more entries than the test tree would have leaves,
+/// a run counts as too expensive from (2n - 1) / 1.2 tests on, n being its entries at the end (with
+/// 1 or 1.5 in place of 1.2 more tests were made on the whole).
 ///
 /// Runs cut short. The pair that was hit is tested first in the next run, before any parent, and a
 /// hit there ends that run at once. Parents come next, so that raises persist if a hit then cuts

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The basic recursive algorithm: every run starts from the two roots, and nothing is kept.
-/// A run without a hit that ends in n pairs makes 2n - 1 tests.
+/// A run without a hit that ends in n pairs makes 2n - 1 tests on binary trees, and n + (n - 1) /
+/// (F - 1) where every opened pair is replaced by F others.
 #pragma once
 
 #include <string_view>

@@ -2,11 +2,11 @@
 /// The separation list of li1998incremental, with deferred rebuilding.
 ///
 /// A run starts from the pairs at which the last one stopped, and the list never shrinks. When it
-/// has stopped growing the objects are predicted to move apart, and the list is rebuilt from the
+/// has stopped growing the bodies are predicted to move apart, and the list is rebuilt from the
 /// roots in the next run: after one run without growth (`SeparationList`), or only after `1 + k`
-/// such runs in a row (`Deferred`, k = 1 as published). For objects that stay, whose BVTT has
-/// n leaves, a rebuild makes 2n - 1 tests and each other run n: over a period (2n - 1 + (1 + k) n)
-/// / (2 + k).
+/// such runs in a row (`Deferred`, k = 1 as published). For bodies at rest on binary trees, whose
+/// BVTT has n leaves, a rebuild makes 2n - 1 tests and each other run n: in the mean
+/// (2n - 1 + (1 + k) n) / (2 + k).
 ///
 /// The slides of li1998incremental leave some cases open. Here:
 /// - a rebuild does not count as a run without growth, so the run after it always uses the list;

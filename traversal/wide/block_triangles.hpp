@@ -54,7 +54,7 @@ class BlockTriangles {
     }
   }
 
-  std::uint64_t lanes() const { return every_fourth(a_.children) * 15 & b_.children * 0x1111u; }
+  std::uint64_t lanes() const { return four_by_four(a_.children, b_.children); }
   std::uint32_t of_a(int lane) const {
     return trees_[0]->triangle(a_.first + static_cast<std::uint32_t>(lane / 4));
   }

@@ -85,8 +85,8 @@ class TransformedLeaf {
   const std::array<std::array<float, F>, 3>& low() const { return low_; }
   const std::array<std::array<float, F>, 3>& high() const { return high_; }
 
-  /// Which lanes have boxes that are not apart from that of triangle `k`, and corners that are not
-  /// all beyond its plane.
+  /// The lanes whose boxes overlap that of triangle `k` and whose corners are not all outside its
+  /// interval along its normal.
   [[gnu::always_inline]] std::uint64_t near(std::size_t k, const Corners<S>& corner,
                                             const TriangleBoxes<S>& boxes) const {
     Mask<S> apart(false);

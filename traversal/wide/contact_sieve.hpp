@@ -72,7 +72,7 @@ class BlocksSieve {
       const NodePair pair = triangles.take_last();
       const auto &a = trees[0]->node(Tree::number_of(pair.a)),
                  &b = trees[1]->node(Tree::number_of(pair.b));
-      const std::uint64_t lanes = every_fourth(a.children) * 15 & b.children * 0x1111u;
+      const std::uint64_t lanes = four_by_four(a.children, b.children);
       counter.primitives(static_cast<std::uint64_t>(std::popcount(lanes)));
       leaf_of_a_.require(a.first, trees[0]->corners(a.first), a_to_b);
       const auto& others = trees[1]->corners(b.first);

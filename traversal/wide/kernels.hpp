@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// THE list of kernels. A kernel defines one step of a traversal of two wide trees.
+/// THE list of kernels for wide trees. A kernel defines one step of a traversal of two of them;
+/// siblings_kernel.hpp lists its members. Trees of any fan-out are also traversed by the gathered
+/// kernel (gathered_kernel.hpp), which takes pairs of nodes from anywhere.
 #pragma once
 
 #include "hierarchies/geometry/type_list.hpp"

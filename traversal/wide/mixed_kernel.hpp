@@ -168,7 +168,7 @@ struct MixedKernel {
                         leaves ? trees_[0]->root_alone() : trees_[0]->row(a.first),
                         leaves ? trees_[1]->root_alone() : trees_[1]->row(b.first),
                         {i, j},
-                        leaves ? 1 : every_fourth(a.children) * 15 & b.children * 0x1111u});
+                        leaves ? 1 : four_by_four(a.children, b.children)});
         return;
       }
       counter.posed(1);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// No memory: each pair of bodies starts from the roots in every frame.
+/// Nothing is kept of a traversal: each pair of bodies starts from the roots in every frame. Only
+/// the last answer is kept, which decides the order of steps.
 ///
 /// A memory keeps state of pairs of bodies from frame to frame. WidePairs calls
 ///   add_body(sphere, reach), resize(pairs)  for the bodies and the number of pairs

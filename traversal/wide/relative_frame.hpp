@@ -8,11 +8,9 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <limits>
 #include <new>
-#include <utility>
 
 #include "hierarchies/geometry/relative_pose.hpp"
 #include "hierarchies/wide/sibling_test.hpp"
@@ -118,14 +116,14 @@ struct ReferenceSphere {
   return reference;
 }
 
-/// What takes volumes and corners of two bodies, a and b, into each other's frames. A side is 0 for
-/// a and 1 for b.
+/// The transforms between the frames of two bodies, a and b, for volumes and for corners. A side is
+/// 0 for a and 1 for b.
 template <class SiblingTest>
 struct TwoFrames {
   using FrameChange = typename SiblingTest::FrameChange;
 
-  std::array<FrameChange, 2> change;         ///< of volumes, into the frame of that side
-  std::array<CornerTransform, 2> transform;  ///< of corners, from the frame of that side
+  std::array<FrameChange, 2> change;         ///< of volumes, INTO the frame of that side
+  std::array<CornerTransform, 2> transform;  ///< of corners, FROM the frame of that side
 
   /// The bodies are WideBody, over any hierarchy.
   template <class Body>

@@ -31,6 +31,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 #include "hierarchies/geometry/relative_pose.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The leaf stage of wide trees where all hits are sought: most pairs of triangles are apart by a
-/// first test, and those left by many leaves are packed into full registers for the filter
+/// The leaf stage of wide trees where all hits are sought. A first test culls most pairs of
+/// triangles; those left by many leaves are packed into full registers for the filter
 /// (contact_batch.hpp).
 #pragma once
 

@@ -103,9 +103,11 @@ inline constexpr std::size_t width_of_part = SixteenLanes::size();
 #endif
 }
 
-/// Bits 0 to 3 as bits 0, 4, 8 and 12.
-[[gnu::always_inline]] inline std::uint64_t every_fourth(std::uint64_t four) {
-  return (four & 1) | (four & 2) << 3 | (four & 4) << 6 | (four & 8) << 9;
+/// The lanes of the pairs of four numbers with four others, number i of `a` with number k of `b` in
+/// lane 4 i + k, of which both are in use. `a` and `b` have a bit for each number in use.
+[[gnu::always_inline]] inline std::uint64_t four_by_four(std::uint64_t a, std::uint64_t b) {
+  const std::uint64_t rows = (a & 1) | (a & 2) << 3 | (a & 4) << 6 | (a & 8) << 9;
+  return rows * 15 & b * 0x1111u;
 }
 
 }  // namespace bvlab

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The front of two wide trees. Its entries: every step of the traversal, with the lanes it opened,
-/// the least gap of the others and the sphere at which it was measured; and every triangle tested
-/// against a leaf, likewise once its gap has been measured.
+/// the least gap of the others and the sphere at which it was measured; and every pair whose
+/// triangles were tested, likewise once its gap has been measured. Such a pair is a triangle and a
+/// leaf (kernel siblings) or two leaves (kernel mixed).
 ///
 /// Law: every pair of triangles lies below an unopened lane of exactly one entry, or in one entry
 /// of triangles.
@@ -45,9 +46,9 @@ class WideFront {
   using S = Batch<float, width>;
 
   struct Entry {
-    NodePair pair;          ///< of nodes; or a triangle of a with a leaf of b
-    std::uint16_t opened;   ///< the opened lanes
-    std::uint8_t triangle;  ///< 1 for a triangle against a leaf
+    NodePair pair;          ///< of a step, or of tested triangles
+    std::uint16_t opened;   ///< the opened lanes of a step
+    std::uint8_t triangle;  ///< 1 for a pair of tested triangles
     std::uint8_t rest;      ///< tests to come in which its gap is not measured
   };
 

@@ -5,8 +5,8 @@
 /// least gap of the volumes that it found apart bounds the distance unless triangles were tested.
 /// The answer is valid until the bodies can have closed that gap. Checking costs one comparison: of
 /// a deadline with the displacements since the first frame (MovingBody::displacement_bound).
-/// Displacements overestimate motion where bodies jitter or move together. The bound between
-/// reference poses is tighter there, and is tried next.
+/// Displacements overestimate motion where bodies jitter or move together. The bound from reference
+/// poses to the present ones is tighter there, and is tried next.
 ///
 /// Bodies that touch keep touching until an edge that crosses a triangle can have left it. Then
 /// these two triangles are tested (triangle_margin.hpp), in a batch with those of other pairs.
@@ -31,12 +31,10 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numeric>
-#include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -111,7 +109,7 @@ class WideMargins {
     return bodies_.displacement(pair) < answer.until ||
            (keeps_answer<Query> && bodies_.epochs(pair) == answer.epochs);
   }
-  /// Decides the pairs whose answers are valid by the bound between reference poses and, where one
+  /// Decides the pairs whose answers are valid by the bound from reference poses and, where one
   /// hit is enough, those whose last crossing still exists.
   template <class Query, class Counter, class MakeQuery>
   void cull(PairSieve& sieve, const PairScene& scene, Counter& counter, MakeQuery&& make_query) {
@@ -216,7 +214,7 @@ class WideMargins {
     kept.clock.advance(bodies_[pair.i], bodies_[pair.j]);
     const double remaining_gap = kept.deadline - kept.clock.now();
     if (!(remaining_gap > 0)) return false;
-    hold(p, pair, remaining_gap * (1 - 4 * unit_roundoff<double>));
+    set_valid_until(p, pair, remaining_gap * (1 - 4 * unit_roundoff<double>));
     return true;
   }
 
@@ -275,12 +273,12 @@ class WideMargins {
     Kept& kept = kept_[p];
     kept.clock.restart(bodies_[pair.i], bodies_[pair.j]);
     kept.deadline = kept.clock.deadline(gap);
-    hold(p, pair, gap);
+    set_valid_until(p, pair, gap);
   }
 
-  /// Sets the deadline: the bodies are `gap` apart. Covers the rounding of sums of displacements,
-  /// here and where they are compared.
-  void hold(std::size_t p, const ObjectPair& pair, double gap) {
+  /// Sets the sum of displacements at which the answer expires: the bodies are `gap` apart. Covers
+  /// the rounding of such sums, here and where they are compared.
+  void set_valid_until(std::size_t p, const ObjectPair& pair, double gap) {
     answers_[p].until = (bodies_.displacement(pair) + gap) * (1 - 8 * unit_roundoff<double>);
   }
 

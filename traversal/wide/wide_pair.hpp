@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <limits>
 #include <type_traits>
-#include <utility>
 
 #include "hierarchies/wide/lanes.hpp"
 #include "traversal/traversal.hpp"

@@ -139,6 +139,7 @@ class WidePairs {
       else
         sieve.add(p);
     const std::uint64_t before = counter.n_v + counter.n_p;
+    // One test of each pair's bodies as a whole: by spheres, or by their motion since the last one.
     counter.tested(sieve.undecided().size());
     if constexpr (!wants_bound<Query>()) {
       memory_.template cull<Query>(sieve, {pairs_, poses_, meshes_, culling_}, counter, make_query);

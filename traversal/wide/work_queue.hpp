@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The pairs of nodes that a traversal still has to test, as an approximate priority queue: it
-/// takes the pair of smallest order (a gap, or minus a penetration) among the last 32 that were
+/// The pairs (node_pair.hpp) that a traversal still has to test, as an approximate priority queue:
+/// it takes the pair of smallest order (a gap, or minus a penetration) among the last 32 that were
 /// pushed, which is found in registers without a branch. That is nearly always the smallest of all.
 ///
 /// Where order does not matter the last pair is taken, as from a stack.

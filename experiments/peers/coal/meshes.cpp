@@ -85,9 +85,10 @@ std::span<const Peer> coal_peers() {
   static constexpr Peer list[] = {
       {"coal-obb", "Coal 3.0: oriented boxes; touching is less than 1e-12 apart",
        "touching contacts", play_peer<CoalWorld<coal::OBB>>},
-      {"coal-obbrss", "Coal 3.0: oriented boxes and swept rectangles; touching likewise",
+      {"coal-obbrss", "Coal 3.0: oriented boxes and rectangle swept spheres; touching likewise",
        "touching contacts distance", play_peer<CoalWorld<coal::OBBRSS>>},
-      {"coal-rss", "Coal 3.0: swept rectangles", "distance", play_peer<CoalWorld<coal::RSS>>},
+      {"coal-rss", "Coal 3.0: rectangle swept spheres", "distance",
+       play_peer<CoalWorld<coal::RSS>>},
   };
   return list;
 }

@@ -124,13 +124,14 @@ std::span<const Peer> fcl_peers() {
   static constexpr Peer list[] = {
       {"fcl-obb", "FCL 0.7: oriented boxes, recursive", "touching contacts", replay<fcl::OBBd>},
       {"fcl-obbrss",
-       "FCL 0.7: oriented boxes and swept rectangles, recursive; distances without error",
+       "FCL 0.7: oriented boxes and rectangle swept spheres, recursive; distances without error",
        "touching contacts distance", replay<fcl::OBBRSSd>},
       {"fcl-kios",
        "FCL 0.7: spheres intersected with oriented boxes, recursive; distances without error",
        "touching contacts distance", replay<fcl::kIOSd>},
       {"fcl-rss",
-       "FCL 0.7: swept rectangles, recursive; distances without error; copies both meshes at every "
+       "FCL 0.7: rectangle swept spheres, recursive; distances without error; copies both meshes "
+       "at every "
        "query other than distance",
        "touching contacts distance", replay<fcl::RSSd>},
       {"fcl-aabb", "FCL 0.7: axis-aligned boxes; copies both meshes at every query",
