@@ -65,7 +65,7 @@ std::vector<Named> kernels() {
   const std::string reasons =
       ", --frame body; other volumes are not compiled for it (wide_volumes.hpp). Lists are not "
       "offered: an entry of a front is a step, so retesting all entries repeats the recursion's "
-      "steps; margins skip entries";
+      "steps; margins skip entries. Of distances, margins keep only the answer of bodies at rest";
   return {{"gathered",
            "a register holds pairs of nodes from anywhere in both trees: every volume, strategy, "
            "query, fan-out and frame"},

@@ -77,7 +77,7 @@ def other_record(path, text, figure, sooner):
 def rows_of(rows, figure, text):
     """The rows that a figure shows, with `value`, over what the figure says; and the value's expression."""
     attrs = rows.attrs
-    sooner, later = conditions_of(figure)
+    sooner, later = conditions_of(rows, figure)
     if RECORD.match(figure.over):
         sooner, later = figure.where, []
     rows = right_only(selected(rows, sooner), figure)

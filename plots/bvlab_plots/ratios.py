@@ -8,19 +8,7 @@ import pandas as pd
 
 from bvlab_plots import records
 from bvlab_plots.refused import Refused
-from bvlab_plots.selection import BEST, CONDITION, VARIANT, columns_of, has_value
-
-CONFIGURED = {"volume", "tree", "fan_out", "frame", "kernel", "strategy", "build", "fit", "leaf_size"}  # what a configuration sets
-
-
-def tied(rows, names):
-    """The columns named, the labels of axes that set them, and what those axes set beside them."""
-    found = set(names)
-    for axis in rows.attrs["definition"].get("axis", []):
-        sets = {axis["name"]} | {key for value in axis.get("value", []) for key in value if key != "name"}
-        if sets & found:
-            found |= sets
-    return found | CONFIGURED if "configuration" in found else found
+from bvlab_plots.selection import BEST, CONDITION, VARIANT, columns_of, has_value, tied
 
 
 def cell_columns(rows, but):

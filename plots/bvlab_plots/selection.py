@@ -11,6 +11,7 @@ from bvlab_plots.expression import Expression
 from bvlab_plots.refused import Refused
 
 VARIANT = ["volume", "tree", "fan_out", "frame", "kernel", "strategy", "configuration", "method", "test", "source", "peer", "variant"]  # what a variant may be
+CONFIGURED = {"volume", "tree", "fan_out", "frame", "kernel", "strategy", "build", "fit", "leaf_size"}  # what a configuration sets
 BEST = {"best peer": lambda rows: (rows.peer != "") & ~rows.wrong, "best of ours": lambda rows: rows.peer == "",
         "best": lambda rows: ~rows.wrong}
 # name=value or name!=value; with another comparison in it, it is an expression.
@@ -61,9 +62,27 @@ def selected(rows, conditions):
     return rows
 
 
-def conditions_of(figure):
-    """The conditions on rows that `over` looks among, and those on the columns that it names itself."""
-    names = VARIANT if figure.over in BEST else re.findall(r"(\w+)\s*=", figure.over)
+def axes_of(rows):
+    """Each axis of the record's definition: its label, and the columns that it sets with the label."""
+    for axis in rows.attrs["definition"].get("axis", []):
+        yield axis["name"], {axis["name"]} | {key for value in axis.get("value", []) for key in value if key != "name"}
+
+
+def tied(rows, names):
+    """The columns named, the labels of axes that set them, and what those axes set beside them."""
+    found = set(names)
+    for _, sets in axes_of(rows):
+        if sets & found:
+            found |= sets
+    return found | CONFIGURED if "configuration" in found else found
+
+
+def conditions_of(rows, figure):
+    """The conditions on rows that `over` looks among, and those on the columns that it names itself, as axes that set a
+    variant are."""
+    names = re.findall(r"(\w+)\s*=", figure.over)
+    if figure.over in BEST:
+        names = VARIANT + [label for label, sets in axes_of(rows) if sets & set(VARIANT)]
     later = [text for text in figure.where if (match := CONDITION.match(text)) and match[1] in names]
     return [text for text in figure.where if text not in later], later
 
