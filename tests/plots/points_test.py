@@ -107,6 +107,23 @@ leaf_size = 4
         self.assertAlmostEqual(self.at(points, 1, "sphere, deferred").middle, 1)
         self.assertAlmostEqual(self.at(points, 1, "obb, recursive").middle, 2 / 0.75)
 
+    def test_a_condition_on_an_axis_that_sets_variants_does_not_narrow_the_best(self):
+        """The axis may have any name: the best is that of all candidates, one of which is drawn."""
+        candidates = """
+[[axis]]
+name = "candidate"
+[[axis.value]]
+name = "recursive"
+strategy = "recursive"
+[[axis.value]]
+name = "deferred"
+strategy = "deferred"
+"""
+        points = self.points(lambda rows: rows.assign(candidate=rows.strategy), candidates, x="degrees", y="time_ns",
+                             over="best of ours", series="volume", where=["candidate=recursive"])
+        self.assertAlmostEqual(self.at(points, 1, "sphere").middle, 1 / 0.75)
+        self.assertAlmostEqual(self.at(points, 1, "obb").middle, 2 / 0.75)
+
     def test_peers_whose_answers_differ_bear_a_mark_where_all_are_shown(self):
         points = self.points(with_peers, x="degrees", y="time_ns", series="variant", peers="all")
         self.assertTrue(self.at(points, 10, "quick").wrong)
