@@ -100,6 +100,26 @@ template <Scalar S>
           select<S>(condition, yes[2], no[2])};
 }
 
+/// The error of a determinant of differences up to `side` that are each off by up to `wrong`.
+template <Scalar S>
+[[gnu::always_inline]] inline S error_of_rounded(const S (&side)[3], const S (&wrong)[3]) {
+  constexpr Element<S> u = unit_roundoff<S>;
+  return (1 + 64 * u) * (6 * (wrong[0] * side[1] * side[2] + side[0] * wrong[1] * side[2] +
+                              side[0] * side[1] * wrong[2]) +
+                         (30 * u) * ((side[0] * side[1]) * side[2]));
+}
+
+/// An error bound, with what underflow adds to `error`; infinite where products may overflow.
+template <Scalar S>
+[[gnu::always_inline]] inline S with_underflow(const S (&side)[3], const S& error,
+                                               Element<S> tiny) {
+  using T = Element<S>;
+  constexpr T reach = sizeof(T) == 8 ? T(0x1p340) : T(0x1p41);
+  const S longest = max(max(side[0], side[1]), max(side[2], S(1)));
+  return select<S>(longest < S(reach), error + tiny * longest,
+                   S(std::numeric_limits<T>::infinity()));
+}
+
 /// Whether the boxes are apart (a comparison of corners, hence exact, and valid for the given
 /// corners if it holds for rounded ones), and the error bound of a determinant.
 template <Scalar S, CornersAre corners>
@@ -111,7 +131,6 @@ struct BoxAndBound {
     using T = Element<S>;
     constexpr T u = unit_roundoff<S>;
     constexpr T least = std::numeric_limits<T>::denorm_min();
-    constexpr T reach = sizeof(T) == 8 ? T(0x1p340) : T(0x1p41);
     S side[3], wrong[3];
     for (int i = 0; i < 3; ++i) {
       const S low_a = min(min(a[0][i], a[1][i]), a[2][i]),
@@ -127,16 +146,10 @@ struct BoxAndBound {
         side[i] = side[i] + wrong[i];
       }
     }
-    const S longest = max(max(side[0], side[1]), max(side[2], S(1)));
-    const S underflow = (16 * least) * longest;
     if constexpr (corners == CornersAre::given)
-      bound = (49 * u) * ((side[0] * side[1]) * side[2]) + underflow;
+      bound = with_underflow<S>(side, (49 * u) * ((side[0] * side[1]) * side[2]), 16 * least);
     else
-      bound = (1 + 64 * u) * (6 * (wrong[0] * side[1] * side[2] + side[0] * wrong[1] * side[2] +
-                                   side[0] * side[1] * wrong[2]) +
-                              (30 * u) * ((side[0] * side[1]) * side[2])) +
-              underflow;
-    bound = select<S>(longest < S(reach), bound, S(std::numeric_limits<T>::infinity()));
+      bound = with_underflow<S>(side, error_of_rounded<S>(side, wrong), 16 * least);
   }
 };
 
@@ -233,7 +246,6 @@ template <Scalar S>
   constexpr T u = unit_roundoff<S>;
   // Covers underflow, and is fast: products of subnormal numbers take microcode.
   constexpr T tiny = std::numeric_limits<T>::min();
-  constexpr T reach = sizeof(T) == 8 ? T(0x1p340) : T(0x1p41);
   S side[3], wrong[3];
   Mask<S> apart(false);
   const S twice = (off + off) * T(1 + 4 * u);
@@ -251,13 +263,8 @@ template <Scalar S>
     wrong[i] = twice + u * side[i] + tiny;
     side[i] = side[i] + wrong[i];
   }
-  const S longest = max(max(side[0], side[1]), max(side[2], S(1)));
-  S bound = (1 + 64 * u) * (6 * (wrong[0] * side[1] * side[2] + side[0] * wrong[1] * side[2] +
-                                 side[0] * side[1] * wrong[2]) +
-                            (30 * u) * ((side[0] * side[1]) * side[2])) +
-            tiny * longest;
-  bound = select<S>(longest < S(reach), bound, S(std::numeric_limits<T>::infinity()));
-  return decided_by_signs<S>(a, b, apart, bound);
+  return decided_by_signs<S>(a, b, apart,
+                             with_underflow<S>(side, error_of_rounded<S>(side, wrong), tiny));
 }
 
 }  // namespace bvlab
