@@ -219,12 +219,11 @@ Outcome play(const Variant& variant, const Frames& frames, const Settings& setti
   return outcome;
 }
 
-/// Each frame as the faster of the two plays has it.
-void keep_faster(Outcome& outcome, const Outcome& next) {
-  outcome.slow |= next.slow;
-  if (next.ns.size() < outcome.ns.size()) outcome.ns.resize(next.ns.size());
-  outcome.wall.resize(outcome.ns.size());
-  for (std::size_t f = 0; f < outcome.ns.size(); ++f) {
+/// Each frame by the faster of the plays that reached it: one that other work delayed until it was
+/// given up takes nothing from another.
+void keep_faster(Outcome& outcome, Outcome next) {
+  if (next.ns.size() > outcome.ns.size()) std::swap(outcome, next);
+  for (std::size_t f = 0; f < next.ns.size(); ++f) {
     outcome.ns[f] = std::min(outcome.ns[f], next.ns[f]);
     outcome.wall[f] = std::min(outcome.wall[f], next.wall[f]);
   }
@@ -297,7 +296,8 @@ class BoxStudy {
     const auto once = [&] { return play(settings_.variants[k], frames, settings_, limit_ns); };
     // The fastest of several plays is undisturbed enough.
     const Outcome next = settings_.plays > 1 ? once() : undisturbed(once).result;
-    if (next.slow) slow_.insert(slow_key(k, c));
+    const bool went_through = outcome && outcome->ns.size() == frames.boxes.size();
+    if (next.slow && !went_through) slow_.insert(slow_key(k, c));
     if (outcome)
       keep_faster(*outcome, next);
     else

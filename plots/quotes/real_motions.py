@@ -157,8 +157,9 @@ def boxes_changes(record):
     claim((told < 1).all(), "no rival that is told is faster than auto that is told")
     claim((on <= 1.05).all() and (beside <= 1).all(), "in the mean following costs at most 1.05 of starting over, and no rival is faster")
     claim((late < 1.055).all(), "the 99th percentile of following is at most 1.06 of starting over's")
-    claim((rivals[~(rivals.frame_ns > 0)].frames == 2).all(), "rivals without a time ended in the second frame")
-    return {**stopped(rivals), "cases": len(on), "few": Interval(few), "worst": at_most(on.max()), "beside": Interval(beside), "told": Interval(told), "untold": untold.max(),
+    untimed = rivals[~(rivals.frame_ns > 0)]
+    claim(((untimed.frames == 2) | (untimed.frames == rivals.frames.max())).all(), "rivals without a time ended in the second frame, of their first play or of another")
+    return {**stopped(rivals), "later_play": int((untimed.frames > 2).sum()), "cases": len(on), "few": Interval(few), "worst": at_most(on.max()), "beside": Interval(beside), "told": Interval(told), "untold": untold.max(),
             "latest": at_most(late.max()), "moving": Interval(moving), "first": Interval((abp / first["on"]).dropna()),
             "sap": wrong.groupby(["set", "motion"]).ngroups}
 
