@@ -54,6 +54,8 @@ concept AnswersYesOrNo = requires(const Q& query) {
 /// A query that a single hit decides.
 template <class Q>
 concept DecidedByOneHit = Q::one_hit_is_enough && !wants_bound<Q>();
+template <class Q>
+concept YesOrNoByOneHit = AnswersYesOrNo<Q> && DecidedByOneHit<Q>;
 /// A query that looks for all hits.
 template <class Q>
 concept FindsAllHits = !Q::one_hit_is_enough && !wants_bound<Q>();

@@ -150,7 +150,7 @@ class Adaptive : public AdaptivePrices {
   /// Whether the witness still hits: by a margin of its own, unless the bodies are fast.
   template <class Pair>
   bool witness_lasts(const Pair& pair) {
-    if constexpr (YesOrNo<typename Pair::Query>) {
+    if constexpr (YesOrNoByOneHit<typename Pair::Query>) {
       TraversalStatistics statistics;
       if (watched_) {
         statistics = margins_.test_without_rebuild(pair);

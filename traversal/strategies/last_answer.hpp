@@ -10,10 +10,6 @@
 
 namespace bvlab {
 
-/// A query that is answered by yes or no, and decided by a single hit.
-template <class Query>
-concept YesOrNo = AnswersYesOrNo<Query> && DecidedByOneHit<Query>;
-
 class LastAnswer {
  public:
   /// Passes the last answer to the query if it is kept and nothing has moved since; returns whether
@@ -25,7 +21,7 @@ class LastAnswer {
     const bool same = known_ && a == epoch_a_ && b == epoch_b_ && query_ == &Query::name;
     if constexpr (requires { pair.query().distance(); }) {
       if (same) pair.query().repeat(distance_);
-    } else if constexpr (YesOrNo<Query>) {
+    } else if constexpr (YesOrNoByOneHit<Query>) {
       if (same && touching_) pair.query().known(0, 0);  // the triangles are not part of the answer
     }
     epoch_a_ = a, epoch_b_ = b;
@@ -39,7 +35,7 @@ class LastAnswer {
     auto& query = pair.query();
     if constexpr (requires { query.distance(); })
       known_ = true, distance_ = query.distance();
-    else if constexpr (YesOrNo<typename Pair::Query>)
+    else if constexpr (YesOrNoByOneHit<typename Pair::Query>)
       known_ = true, touching_ = query.answer();
     else
       known_ = statistics.everything && statistics.triangles == 0;
