@@ -196,7 +196,7 @@ struct Baseline {
   std::vector<double> price;
 
   Baseline(Window all, double pairs) : recursion(std::move(all)) {
-    constexpr Adaptive::Prices prices = Adaptive::broad;
+    constexpr Adaptive::Prices prices = Adaptive::of_recursion;
     for (std::size_t k = 0; k < recursion.size(); ++k)
       price.push_back(prices.run * pairs + prices.volumes * recursion.volumes[k] +
                       prices.triangles * recursion.triangles[k]);
