@@ -13,9 +13,11 @@
 /// machine disturb less, stands beside that of the wall clock; `bytes` is the heap that a method
 /// holds after its last frame.
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <random>
 #include <set>
+#include <utility>
 
 #include "experiments/files/heap_bytes.hpp"
 #include "experiments/files/npy.hpp"
@@ -172,7 +174,8 @@ class Player {
  public:
   explicit Player(const Variant& variant) {
     told_ = variant.coherent == "told";
-    if ((peer_ = make_box_peer(variant.method))) return;
+    peer_ = make_box_peer(variant.method);
+    if (peer_) return;
     MethodSettings settings;
     settings.coherence = variant.coherent == "off" ? Coherence::off : Coherence::on;
     settings.changes = variant.changes == "on" ? Changes::reported : Changes::unreported;
@@ -339,9 +342,7 @@ class BoxStudy {
     for (std::size_t f = 0; f < outcome.answers.size(); ++f)
       differing += f < reference.size() && outcome.answers[f] != reference[f];
     const Variant& v = settings_.variants[k];
-    const auto whole = [](double value) {
-      return std::to_string(static_cast<std::int64_t>(value + 0.5));
-    };
+    const auto whole = [](double value) { return std::to_string(std::llround(value)); };
     Row row = c.key();
     for (auto& field :
          {std::to_string(frames.boxes[0].size()), v.method, v.coherent, v.changes, v.sort,
