@@ -105,8 +105,8 @@ struct RecommendedCandidate {
 /// motions. Those of wide oriented boxes were fitted later, to two processors.
 ///
 /// experiments/fit_candidates says what the choice costs on motions of a record, and fits again. On
-/// two processors of different makers the best candidate differs: no unit costs come within a tenth
-/// of the best on all motions of both.
+/// two processors of different makers the best candidate differs: none of the unit costs that were
+/// fitted to both came within a tenth of the best on all motions of both.
 inline constexpr std::tuple recommended_candidates{
     RecommendedCandidate<Recommended>{"slab-boxes", {36.6, 1.6, 6.5, 1.5}, {17.3, 4.0, 4.8, 3.4}},
     RecommendedCandidate<RecommendedRoots>{
