@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Builds a topology bottom up by clustering, as li1998incremental builds its sphere
-/// tree: a cluster merges with the neighbour of smallest union, until one is left.
+/// Builds a topology bottom up by clustering, as li1998incremental builds its sphere tree: a
+/// cluster merges with the neighbour of smallest union, until one is left.
 ///
 /// Locally-ordered clustering (meister2018parallel): clusters are kept in Morton order, each finds
 /// its partner among `radius` neighbours on either side, and pairs that choose each other merge.

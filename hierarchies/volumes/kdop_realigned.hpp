@@ -44,9 +44,9 @@ struct KdopOffsets {
 ///
 /// Let n = R'd for a direction d. For weights w >= 0 with sum w_m n_m = n, every x of the volume
 /// has n.x <= sum w_m bounds[m] (the weak half of linear duality), so that the rotated volume is
-/// bounded along d by three old support values. The three directions span the cone around
-/// n: the symmetries of the cube make the directions congruent cones, and sorting the moduli of n's
-/// coordinates selects one.
+/// bounded along d by three old support values. The three directions span the cone around n:
+/// the symmetries of the cube cut the directions into congruent cones, and sorting the moduli of
+/// n's coordinates selects one.
 ///
 /// `offset` is d.(t - o) plus all rounding errors. With |v| and bounds[m] / |n_m| at most
 /// reach, and sum w_m |n_m| <= sqrt(3) |d| in each piece,

@@ -62,7 +62,7 @@ def selected(rows, conditions):
     return rows
 
 
-def axes_of(rows):
+def axes_of_definition(rows):
     """Each axis of the record's definition: its label, and the columns that it sets with the label."""
     for axis in rows.attrs["definition"].get("axis", []):
         yield axis["name"], {axis["name"]} | {key for value in axis.get("value", []) for key in value if key != "name"}
@@ -71,7 +71,7 @@ def axes_of(rows):
 def tied(rows, names):
     """The columns named, the labels of axes that set them, and what those axes set beside them."""
     found = set(names)
-    for _, sets in axes_of(rows):
+    for _, sets in axes_of_definition(rows):
         if sets & found:
             found |= sets
     return found | CONFIGURED if "configuration" in found else found
@@ -82,7 +82,7 @@ def conditions_of(rows, figure):
     variant are."""
     names = re.findall(r"(\w+)\s*=", figure.over)
     if figure.over in BEST:
-        names = VARIANT + [label for label, sets in axes_of(rows) if sets & set(VARIANT)]
+        names = VARIANT + [label for label, sets in axes_of_definition(rows) if sets & set(VARIANT)]
     later = [text for text in figure.where if (match := CONDITION.match(text)) and match[1] in names]
     return [text for text in figure.where if text not in later], later
 

@@ -12,12 +12,17 @@ NEAR = 1.1  # times the best of ours
 PLANNED = ["bugtrap", "abstract", "env-rob"]  # scenes of others without a path: our planner's (experiments/definitions/real-motions.md)
 
 
+def with_us(rows):
+    """The rows with the time of a pair in us, over all frames but the first."""
+    return rows.assign(us=rows.later_ns / rows.later_pairs / 1e3)
+
+
 @cache
 def motions(record):
     """By motion: us per pair of `recommended`, over the best of ours, and over the fastest library."""
     rows = records.read(record)
     claim((rows.differing[rows.peer == ""] == 0).all(), "answers of ours agree")
-    rows = rows.assign(us=(rows.time_ns - rows.first_ns) / (rows.pairs * (1 - 1 / rows.frames)) / 1e3)
+    rows = with_us(rows)
     median = rows.groupby(["motion", "method", "peer"]).us.median().reset_index()
     ours, theirs = median[median.peer == ""].groupby("motion").us.min(), median[median.peer != ""]
     us = median[median.method == "recommended"].set_index("motion").us
@@ -77,7 +82,7 @@ def real_motions_bounds(record):
 def recommended_rule(record):
     rows = records.read(record)
     claim((rows.differing == 0).all(), "answers of ours agree")
-    rows = rows.assign(us=(rows.time_ns - rows.first_ns) / (rows.pairs * (1 - 1 / rows.frames)) / 1e3)
+    rows = with_us(rows)
     us = rows.groupby(["motion", "method"]).us.median().unstack()
     candidates = us[["slab-boxes", "slab-boxes, from the roots", "slab-boxes in small leaves", "oriented boxes",
                      "oriented boxes, from the roots", "wide oriented boxes"]].min(axis=1)
@@ -104,7 +109,7 @@ def recommended_costs(record):
     rows = records.read(record)
     claim((rows.differing == 0).all(), "answers of ours agree")
     claim((rows.alone == "yes").all(), "the rows were timed alone")
-    rows = rows.assign(us=(rows.time_ns - rows.first_ns) / (rows.pairs * (1 - 1 / rows.frames)))
+    rows = with_us(rows)
     us = rows.groupby(["motion", "candidate"]).us.median().unstack()
     contacts = us.index.str.endswith(", contacts")
     best = us.drop(columns="recommended").min(axis=1)

@@ -27,6 +27,12 @@ def with_peers(rows):
     return pd.concat([rows.astype({"leaf_size": str}), *peers])
 
 
+def axis(label, **sets):
+    """An axis of strategies, for a definition: what each value, named as its strategy, sets beside that."""
+    values = "".join(f'[[axis.value]]\nname = "{name}"\nstrategy = "{name}"\n{more}\n' for name, more in sets.items())
+    return f'\n[[axis]]\nname = "{label}"\n{values}'
+
+
 class Points(unittest.TestCase):
     def points(self, change=None, more="", **keys):
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()) as self.printed:
@@ -89,18 +95,7 @@ class Points(unittest.TestCase):
 
     def test_the_best_may_differ_in_all_that_the_axis_of_a_variant_sets(self):
         """An axis `method` sets the leaf size beside the strategy: the best is that of all methods."""
-        methods = """
-[[axis]]
-name = "method"
-[[axis.value]]
-name = "recursive"
-strategy = "recursive"
-leaf_size = 1
-[[axis.value]]
-name = "deferred"
-strategy = "deferred"
-leaf_size = 4
-"""
+        methods = axis("method", recursive="leaf_size = 1", deferred="leaf_size = 4")
         points = self.points(lambda rows: rows.assign(method=rows.strategy, leaf_size=rows.strategy.map({"recursive": 1, "deferred": 4})),
                              methods, x="degrees", y="time_ns", over="best of ours", series="volume, method")
         self.assertAlmostEqual(self.at(points, 1, "sphere, recursive").middle, 1 / 0.75)
@@ -109,18 +104,8 @@ leaf_size = 4
 
     def test_a_condition_on_an_axis_that_sets_variants_does_not_narrow_the_best(self):
         """The axis may have any name: the best is that of all candidates, one of which is drawn."""
-        candidates = """
-[[axis]]
-name = "candidate"
-[[axis.value]]
-name = "recursive"
-strategy = "recursive"
-[[axis.value]]
-name = "deferred"
-strategy = "deferred"
-"""
-        points = self.points(lambda rows: rows.assign(candidate=rows.strategy), candidates, x="degrees", y="time_ns",
-                             over="best of ours", series="volume", where=["candidate=recursive"])
+        points = self.points(lambda rows: rows.assign(candidate=rows.strategy), axis("candidate", recursive="", deferred=""),
+                             x="degrees", y="time_ns", over="best of ours", series="volume", where=["candidate=recursive"])
         self.assertAlmostEqual(self.at(points, 1, "sphere").middle, 1 / 0.75)
         self.assertAlmostEqual(self.at(points, 1, "obb").middle, 2 / 0.75)
 

@@ -131,8 +131,7 @@ std::span<const Peer> fcl_peers() {
        "touching contacts distance", replay<fcl::kIOSd>},
       {"fcl-rss",
        "FCL 0.7: rectangle swept spheres, recursive; distances without error; copies both meshes "
-       "at every "
-       "query other than distance",
+       "at every query other than distance",
        "touching contacts distance", replay<fcl::RSSd>},
       {"fcl-aabb", "FCL 0.7: axis-aligned boxes; copies both meshes at every query",
        "touching contacts", replay<fcl::AABBd>},
