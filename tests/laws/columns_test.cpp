@@ -95,7 +95,7 @@ TEST(Columns, SpheresAreThoseAroundPoints) {
     const InColumns all(mesh, false);
     for (const auto& [begin, end] : ranges_of(all.order.size())) {
       const auto points = InColumns::points(all.range(begin, end));
-      const NodeSphere sphere(all.columns, begin, end, all.columns.box(begin, end));
+      const NodeSphere sphere = sphere_around(all.columns, begin, end, all.columns.box(begin, end));
       const Vec3<double> centre(sphere.centre[0], sphere.centre[1], sphere.centre[2]);
       double farthest = 0;
       for (const auto& p : points) farthest = std::max(farthest, squared_norm<double>(p - centre));
