@@ -20,6 +20,9 @@
 /// + 24 e (r_a + r_b), and |T| <= |t| + r_a + r_b (1 + ...): `margin` = slack + 64 e (|t| + r_a +
 /// r_b) leaves a third for higher orders. Where anything overflows, the margin is infinite or the
 /// comparison has a NaN, and nothing is found apart.
+///
+/// Tried and not kept: without vector registers, to test lane by lane and to end at the first axis
+/// that separates. It took 1.08 to 1.40 of the time, since no branch can be predicted.
 #pragma once
 
 #include <cmath>
