@@ -21,6 +21,7 @@
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 #include "hierarchies/hierarchy_extent.hpp"
+#include "hierarchies/node_sphere.hpp"
 #include "hierarchies/wide/collapse.hpp"
 
 namespace bvlab {
@@ -47,7 +48,9 @@ class Hierarchy {
   /// on their number.
   template <class AnyTopology>
   Hierarchy(const TriangleMesh& mesh, const AnyTopology& topology, Fit fit, Threads& threads)
-      : primitives_(topology.primitives), volumes_(topology.nodes.size()) {
+      : primitives_(topology.primitives),
+        volumes_(topology.nodes.size()),
+        spheres_(topology.nodes.size()) {
     take_nodes(topology);
     number_siblings();
     std::vector<Fitting<V>> fitting(threads.count());
@@ -75,6 +78,8 @@ class Hierarchy {
         enclose(i, node.first, node.first + node.count, mesh, Fit::published, fitting);
       } else {
         volumes_[i] = around_children(node);
+        spheres_[i] =
+            NodeSphere(std::span<const NodeSphere>(spheres_).subspan(node.first, node.children));
       }
       nodes_[i].size = size_of(volumes_[i]);
     }
@@ -114,6 +119,8 @@ class Hierarchy {
   const Above& above_group(std::uint32_t group) const { return above_[group]; }
   const V& volume(std::uint32_t node) const { return volumes_[node]; }
   const V* volumes() const { return volumes_.data(); }
+  /// A sphere around the triangles below each node.
+  const NodeSphere* node_spheres() const { return spheres_.data(); }
   /// The mesh's triangle at an index in a leaf's range of primitives.
   std::uint32_t primitive(std::uint32_t index) const { return primitives_[index]; }
   std::size_t primitives() const { return primitives_.size(); }
@@ -200,6 +207,7 @@ class Hierarchy {
                Fit fit, Fitting<V>& own) {
     own.take_vertices(mesh, std::span(primitives_).subspan(begin, end - begin));
     volumes_[i] = own.volume(fit);
+    spheres_[i] = NodeSphere(own.points);
   }
 
   void take_smaller(std::size_t i, const V& other) {
@@ -210,6 +218,7 @@ class Hierarchy {
   std::vector<std::uint32_t> primitives_;
   std::vector<Node> nodes_;
   std::vector<V> volumes_;
+  std::vector<NodeSphere> spheres_;
   std::vector<Above> above_;           // one for each group of siblings
   std::vector<std::uint32_t> groups_;  // of each node; empty in a binary tree
   std::uint32_t fan_out_ = 2;

@@ -65,13 +65,6 @@ class Body : public MovingBody {
   const Hierarchy<V>& hierarchy() const { return *hierarchy_; }
   Frame frame() const { return frame_; }
 
-  /// The pose from which relative poses to other bodies are formed. Computed once after each move.
-  const OrthonormalPose& orthonormal_pose() {
-    once(orthonormal_done_, epoch_, sharing_,
-         [this] { orthonormal_pose_ = OrthonormalPose(pose_, hierarchy_->extent().reach); });
-    return orthonormal_pose_;
-  }
-
   /// In the world frame, poses the node and its siblings unless that has been done since the last
   /// move.
   template <class Counter>
@@ -152,8 +145,6 @@ class Body : public MovingBody {
   std::vector<Posed<V>> volumes_;
   OnceEach volumes_posed_;  // one for each group of siblings
   std::uint32_t stamp_ = 0;
-  OrthonormalPose orthonormal_pose_;
-  std::uint32_t orthonormal_done_ = never_done;  // the epoch of `orthonormal_pose_`
   Frame frame_;
   std::vector<Triangle> triangles_;
   OnceEach triangles_posed_;

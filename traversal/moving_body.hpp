@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "hierarchies/geometry/relative_pose.hpp"
 #include "traversal/once.hpp"
 #include "traversal/reference_pose.hpp"
 
@@ -19,6 +20,12 @@ class MovingBody {
   /// Counts the moves: equal values mean that the body has not moved in between (unless 2^32 - 1
   /// moves have).
   std::uint32_t epoch() const { return epoch_; }
+  /// The pose from which relative poses to other bodies are formed. Computed once after each move.
+  const OrthonormalPose& orthonormal_pose() {
+    once(orthonormal_done_, epoch_, sharing_,
+         [this] { orthonormal_pose_ = OrthonormalPose(pose_, extent_.reach); });
+    return orthonormal_pose_;
+  }
   /// The current pose, for bounds on later motion. Computed on request: a strategy without margins
   /// never requests it.
   const ReferencePose& reference_pose() {
@@ -51,7 +58,8 @@ class MovingBody {
   Pose pose_;
   Vec3<double> origin_ = Vec3<double>::Zero();
   std::uint32_t epoch_ = 0;
-  Sharing sharing_ = Sharing::one_thread;  // whether several threads use the body
+  Sharing sharing_ = Sharing::one_thread;        // whether several threads use the body
+  std::uint32_t orthonormal_done_ = never_done;  // the epoch of `orthonormal_pose_`
 
  private:
   void follow() {
@@ -77,6 +85,7 @@ class MovingBody {
   double displacement_bound_ = -1;  // before the first reference pose
   double rotation_bound_ = 0;
   std::uint32_t followed_ = never_done;  // the epoch of the reference pose
+  OrthonormalPose orthonormal_pose_;
 };
 
 }  // namespace bvlab

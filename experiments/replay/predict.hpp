@@ -21,8 +21,10 @@
 /// extended as tests are, beside what recursion's tests cost at the unit costs of `Adaptive`. A
 /// trace that one window covers is predicted exactly. What is left out is how a strategy goes on to
 /// age after a window's length: lists that nothing makes shorter (violent motion) are predicted too
-/// short, and where bodies stay about a place and yes or no is asked, by-cost and raise up to twice
-/// too dear, since the witnesses they find get better for longer than that.
+/// short. Where bodies stay about a place and yes or no is asked, the witnesses they find get
+/// better for longer than that: of twelve such motions, witness, margins, by-cost and raise were
+/// predicted 1.3, 1.3, 1.5 and 1.9 times too dear in the mean, raise 2.9 times at most. Counts of
+/// margins scatter most: those of contacts by 6 % (one standard deviation), of lists by 0.5 %.
 ///
 /// A trace of fewer than four strides is played as a whole, as one window: that is no more work
 /// than a longer one takes, and its counts are exact.

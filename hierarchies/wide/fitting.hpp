@@ -16,6 +16,7 @@
 #include "hierarchies/geometry/small_matrices.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/triangle_columns.hpp"
+#include "hierarchies/node_sphere.hpp"
 #include "hierarchies/wide/collapse.hpp"
 #include "hierarchies/wide/lanes.hpp"
 
@@ -41,44 +42,20 @@ struct MeshSphere {
   }
 };
 
-/// A sphere around the triangles of a node.
-struct alignas(16) NodeSphere {
-  float centre[3];
-  float radius;
-
-  NodeSphere() = default;
-  /// Centred on the bounding box of the points.
-  explicit NodeSphere(std::span<const Vec3<double>> points) {
-    Vec3<double> low = points[0], high = points[0];
-    for (const auto& point : points)
-      for (int i = 0; i < 3; ++i)
-        low[i] = std::min(low[i], point[i]), high[i] = std::max(high[i], point[i]);
-    Vec3<double> at;
-    for (int i = 0; i < 3; ++i) {
-      centre[i] = static_cast<float>(0.5 * low[i] + 0.5 * high[i]);
-      at[i] = static_cast<double>(centre[i]);
-    }
-    double farthest = 0;
-    for (const auto& point : points) farthest = std::max(farthest, stable_norm(point - at));
-    radius = rounded_up<float>(farthest * (1 + 16 * unit_roundoff<double>));
-  }
-  /// Around a range of triangles, whose box is `box`. A difference, three products and two sums
-  /// have five roundings at most, the root halves them and has one of its own: fewer than 4u.
-  NodeSphere(const TriangleColumns& columns, std::size_t begin, std::size_t end,
-             const TriangleColumns::Box& box) {
-    Vec3<double> at;
-    for (int i = 0; i < 3; ++i) {
-      centre[i] = static_cast<float>(0.5 * box.low[i] + 0.5 * box.high[i]);
-      at[i] = static_cast<double>(centre[i]);
-    }
-    const double squared = columns.farthest_squared(begin, end, at);
-    double farthest = std::sqrt(squared);
-    if (!(squared > 1e-280 && squared < 1e300))  // squares may over- or underflow
-      for (std::size_t k = 3 * begin; k < 3 * end; ++k)
-        farthest = std::max(farthest, stable_norm(columns.corner(k / 3, k % 3) - at));
-    radius = rounded_up<float>(farthest * (1 + 16 * unit_roundoff<double>));
-  }
-};
+/// The sphere around a range of triangles, whose box is `box`. A difference, three products and two
+/// sums have five roundings at most, the root halves them and has one of its own: fewer than 4u.
+inline NodeSphere sphere_around(const TriangleColumns& columns, std::size_t begin, std::size_t end,
+                                const TriangleColumns::Box& box) {
+  NodeSphere sphere;
+  const Vec3<double> at = sphere.put_centre(box.low, box.high);
+  const double squared = columns.farthest_squared(begin, end, at);
+  double farthest = std::sqrt(squared);
+  if (!(squared > 1e-280 && squared < 1e300))  // squares may over- or underflow
+    for (std::size_t k = 3 * begin; k < 3 * end; ++k)
+      farthest = std::max(farthest, stable_norm(columns.corner(k / 3, k % 3) - at));
+  sphere.put_radius(farthest);
+  return sphere;
+}
 
 /// The corners of a mesh's triangles in the order of a topology: those below a node are contiguous,
 /// and each vertex is repeated for every triangle that it belongs to.
@@ -156,7 +133,7 @@ class NodeFitting<V> {
 
   std::pair<V, NodeSphere> around(std::uint32_t begin, std::uint32_t end) const {
     const TriangleColumns::Box box = columns_.box(begin, end);
-    return {volumes_.volume(begin, end, box), NodeSphere(columns_, begin, end, box)};
+    return {volumes_.volume(begin, end, box), sphere_around(columns_, begin, end, box)};
   }
   template <class Siblings, class Corners>
   double put_each(std::uint32_t first, std::uint32_t count, Siblings& to, Corners& corners) const {

@@ -95,7 +95,7 @@ TEST(Columns, SpheresAreThoseAroundPoints) {
     const InColumns all(mesh, false);
     for (const auto& [begin, end] : ranges_of(all.order.size())) {
       const auto points = InColumns::points(all.range(begin, end));
-      const NodeSphere sphere(all.columns, begin, end, all.columns.box(begin, end));
+      const NodeSphere sphere = sphere_around(all.columns, begin, end, all.columns.box(begin, end));
       const Vec3<double> centre(sphere.centre[0], sphere.centre[1], sphere.centre[2]);
       double farthest = 0;
       for (const auto& p : points) farthest = std::max(farthest, squared_norm<double>(p - centre));
@@ -159,6 +159,7 @@ TEST(Columns, SupportMapFindsTheHighestPoint) {
       if (std::ranges::any_of(mesh.triangles,
                               [v](const auto& t) { return std::ranges::count(t, v) > 0; }))
         used.push_back(mesh.vertices[v] - sphere.centre);
+    std::size_t entry = 0;
     for (int face = 0; face < 6; ++face)
       for (int k = 0; k < SupportMap::row * SupportMap::row; ++k) {
         Vec3<double> g;
@@ -167,8 +168,7 @@ TEST(Columns, SupportMapFindsTheHighestPoint) {
         g[(face / 2 + 2) % 3] = 2.0 * (k % SupportMap::row) / SupportMap::cells - 1;
         const auto highest = std::ranges::max_element(
             used, {}, [&g](const Vec3<double>& p) { return dot<double>(p, g); });
-        const SupportSample& sample =
-            map.table()[static_cast<std::size_t>(face * SupportMap::row * SupportMap::row + k)];
+        const SupportSample& sample = map.table()[entry++];
         for (int j = 0; j < 3; ++j) EXPECT_EQ(sample.point[j], static_cast<float>((*highest)[j]));
         EXPECT_GE(sample.height, dot<double>(*highest, g));
         EXPECT_LE(sample.height, dot<double>(*highest, g) + 1e-6 * sphere.radius);

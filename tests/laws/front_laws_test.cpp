@@ -207,6 +207,39 @@ TYPED_TEST(FrontLaws, TheFrontStaysAPartitionWhateverCutsARunShort) {
   EXPECT_GE(shown, 5);
 }
 
+/// A strategy asked in turn about two pairs of bodies, each with a query of its own, gives up what
+/// it measured whenever the query changes. The pairs rotate at different speeds, so that its sums
+/// over frames fall from one run to the next.
+TYPED_TEST(FrontLaws, NoVerdictOfOtherBodiesIsReused) {
+  Body<TypeParam> fast_a(this->mesh_, this->hierarchy_), fast_b(this->mesh_, this->hierarchy_);
+  using B = typename TestFixture::B;
+  Strategies::for_each([&]<class Strategy>(std::type_identity<Strategy>) {
+    Strategy strategy;
+    NotCounting counter;
+    std::size_t contacts = 0;
+    for (int frame = 0; frame < 100; ++frame) {
+      const double x = 1.3 - 0.002 * frame;
+      this->place(Pose{}, at(x, 0.7 + 0.002 * frame));
+      fast_a.move(at(0, 0.7 * frame), Vec3<double>::Zero());
+      fast_b.move(at(x, 0.5), Vec3<double>::Zero());
+      std::vector<Contact> found, expected;
+      Contacts all(found), all_from_roots(expected);
+      strategy.run(this->pair(all, counter));
+      Recursive().run(this->pair(all_from_roots, counter));
+      std::sort(found.begin(), found.end()), std::sort(expected.begin(), expected.end());
+      ASSERT_EQ(found, expected) << Strategy::name << " in frame " << frame;
+      contacts += found.size();
+      Touching one, from_roots;
+      strategy.run(BodyPair<B, TypeParam, Touching, NotCounting>(fast_a, fast_b, one, counter,
+                                                                 this->workspace_));
+      Recursive().run(BodyPair<B, TypeParam, Touching, NotCounting>(fast_a, fast_b, from_roots,
+                                                                    counter, this->workspace_));
+      ASSERT_EQ(one.touching(), from_roots.touching()) << Strategy::name << " in frame " << frame;
+    }
+    EXPECT_GT(contacts, 100u);
+  });
+}
+
 TYPED_TEST(FrontLaws, ARisingFrontStaysAPartitionWhateverIsRaised) {
   std::mt19937_64 random(8);
   std::uniform_real_distribution<double> anywhere(-2, 2), step(-0.02, 0.02);
@@ -339,19 +372,59 @@ TEST(RisingFronts, WitnessesComeAndGo) {
   EXPECT_EQ(proposals.all.size(), siblings);
 }
 
+/// A body of radius 1 about its origin.
+class Ball : public MovingBody {
+ public:
+  Ball() : MovingBody({.radius = 1, .reach = 1, .nodes = 1, .leaves = 1}) { move_to(0); }
+  void move_to(double x) {
+    Pose pose;
+    pose.translation[0] = x;
+    set_pose(pose, Vec3<double>::Zero());
+  }
+};
+
 /// Every slot once and no other, however full the last register is: also where all are due for
-/// ever, as they are to a query without a limit.
+/// ever, as they are to a query without a limit. What is collected stays due until it is measured
+/// again, and groups of entries that are passed over lose as much of their gaps as the others.
 TEST(MarginFronts, CollectWhatIsDue) {
   for (std::size_t n = 1; n < 70; ++n) {
+    Ball a, b;
     MarginFront front;
-    for (std::size_t i = 0; i < n; ++i) front.add({0, 0}, static_cast<double>(i));
     std::vector<std::uint32_t> due;
-    for (const double time : {-1.0, 0.0, n / 2.0, 1e3, std::numeric_limits<double>::infinity()}) {
-      front.collect(time, due);
+    const auto measure = [&](std::size_t slot, PresentPoses& now) {
+      const NodeSphere point(std::vector{Vec3<double>(0, 0, 0)});
+      front.set_gap(slot, static_cast<float>(slot),
+                    reference_sphere_of(point, slot % 2, now.transforms()), now);
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+      PresentPoses now(a, b);
+      measure(front.add({0, 0}), now);
+    }
+    const auto expect_due = [&](double time, double limit) {
+      PresentPoses now(a, b);
+      const float left = front.collect(now, limit, due);
       const auto passed = static_cast<std::size_t>(std::clamp(time + 1, 0.0, double(n)));
       ASSERT_EQ(due.size(), passed) << n << " entries at " << time;
       for (std::size_t i = 0; i < passed; ++i) ASSERT_EQ(due[i], i);
+      if (passed < n && limit == 0) {
+        EXPECT_LE(left, static_cast<double>(passed) - time);
+        EXPECT_GE(left, static_cast<double>(passed) - time - 1e-3);
+      }
+      for (std::size_t i = 0; i < n; ++i) EXPECT_EQ(front.gap(i) > 0, i >= passed);
+    };
+    for (const double limit : {0.0, n / 2.0, 1e3, std::numeric_limits<double>::infinity()}) {
+      expect_due(limit, limit);
+      PresentPoses now(a, b);
+      for (std::size_t i = 0; i < n; ++i) measure(i, now);
     }
+    for (const double x : {0.25, 0.75, 1.5, 6.25, 40.5}) {
+      b.move_to(x);
+      expect_due(x, 0);
+    }
+    b.move_to(0.5);  // a sphere that came back is as far as it was, but what was forgotten is due
+    PresentPoses now(a, b);
+    front.collect(now, 0, due);
+    EXPECT_EQ(due.size(), std::min<std::size_t>(n, 41));
   }
 }
 

@@ -204,10 +204,9 @@ TEST(Wide, FrontsPromiseNoMoreThanThereIs) {
     around.radius = rounded_up<float>(radius * (1 + 1e-12));
     const double apart = stable_norm(ball[0].to(ball[1]));
     const float gap = next_down(static_cast<float>(apart));
-    WideFront front;
-    front.add({{}, 0, 0, 0});
-    front.set_gap(front.add({{}, 0, 0, 0}), gap, reference_sphere_of(around, side, between()),
-                  turn());
+    MeasuredGaps gaps;
+    gaps.add(), gaps.add();
+    gaps.set(1, gap, reference_sphere_of(around, side, between()), turn());
     const double speed = std::exp2(-4 + 4 * number(random));
     for (int frame = 0; frame < 6; ++frame) {
       const Vec3<double> nearest = ball[0].to(ball[1]);
@@ -225,7 +224,7 @@ TEST(Wide, FrontsPromiseNoMoreThanThereIs) {
         body[k].place(pose[k]), ball[k].place(pose[k]);
         body[k].rotation_bound();
       }
-      const auto remaining = front.remaining_gaps(0, between()[0], turn());
+      const auto remaining = gaps.remaining(0, between()[0], turn());
       EXPECT_FALSE(remaining[0] > 0);  // never measured
       const double distance = stable_norm(ball[0].to(ball[1]));
       EXPECT_FALSE(static_cast<double>(remaining[1]) > distance)

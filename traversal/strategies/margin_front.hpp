@@ -1,47 +1,73 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A front whose entries are not tested before their deadlines. A deadline is a time on the clock
-/// of an approach (relative_motion_bound.hpp). Until the clock shows that time, nothing below the
-/// entry can touch; or, for an entry whose triangles have been tested, no verdict can have changed.
-///
-/// More precisely, an entry with deadline e stands for surfaces at least e - now apart: for a query
-/// with limit l it is due only if e <= now + l. Deadlines are in an array of their own and are
-/// compared a register at a time: 16 entries in two or three instructions. For fronts of less than
-/// some ten thousand entries that is cheaper than keeping them ordered, and nothing has to be moved
-/// when a deadline changes.
+/// A front whose entries are not tested before the bodies can have closed their gaps
+/// (measured_gaps.hpp). Until then nothing below an entry can touch; or, for an entry whose
+/// triangles have been tested, no verdict can have changed. An entry whose gap is not known is due.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
-#include "hierarchies/geometry/scalar.hpp"
+#include "traversal/lasting_answer.hpp"
+#include "traversal/measured_gaps.hpp"
 #include "traversal/node_pair.hpp"
 
 namespace bvlab {
 
-/// A pair of triangles that share a point, at least until the deadline.
+/// A pair of triangles that share a point, and the entry that it was found in.
 struct KnownHit {
   std::uint32_t slot;
-  float deadline;
   std::uint32_t a, b;
 };
 
 /// A float slightly below x: half a unit in the last place is lost to each of two roundings; the
-/// last term covers underflow. For any x: a value beyond the largest float becomes one below it,
-/// since an infinite deadline would become NaN when something is subtracted from it, and would
-/// never pass.
+/// last term covers underflow. For any x: a value beyond the largest float becomes one below it.
 inline float just_below(double x) {
   const auto y = static_cast<float>(std::min(x, double{std::numeric_limits<float>::max()}));
   return y - std::abs(y) * 0x1p-22f - std::numeric_limits<float>::min();
 }
 inline float just_above(double x) { return -just_below(-x); }
 
+/// Where two bodies are now, as gaps are measured and compared.
+class PresentPoses {
+ public:
+  PresentPoses(MovingBody& a, MovingBody& b)
+      : a_(a),
+        b_(b),
+        displacement_(a.displacement_bound() + b.displacement_bound()),
+        rotation_(a.rotation_bound() + b.rotation_bound()) {
+    begin(0, a, b);
+  }
+
+  /// Sums of the bounds on both bodies' displacements and rotations since their first frames.
+  double displacement() const { return displacement_; }
+  double rotation() const { return rotation_; }
+  const CornerTransform& a_to_b() const { return transforms_[0]; }
+  /// From a to b, and back, which is computed when it is first needed.
+  const std::array<CornerTransform, 2>& transforms() {
+    if (!has_both_) begin(1, b_, a_), has_both_ = true;
+    return transforms_;
+  }
+
+ private:
+  void begin(std::size_t side, MovingBody& from, MovingBody& to) {
+    transforms_[side].begin(RelativePose(from.orthonormal_pose(), to.orthonormal_pose()),
+                            from.extent().reach, to.extent().reach);
+  }
+
+  MovingBody& a_;
+  MovingBody& b_;
+  double displacement_, rotation_;
+  std::array<CornerTransform, 2> transforms_;
+  bool has_both_ = false;
+};
+
 class MarginFront {
  public:
-  static constexpr float passed = -std::numeric_limits<float>::infinity();
   static constexpr std::uint32_t nowhere = static_cast<std::uint32_t>(-1);
 
   std::size_t size() const { return entries_.size(); }
@@ -51,100 +77,96 @@ class MarginFront {
 
   /// Starts again from the two roots.
   void restart() {
-    entries_.assign(1, NodePair{0, 0});
-    deadlines_.assign(1, passed);
-    earliest_ = passed;
-    hits_.clear();
-    witness_ = nowhere;
+    clear();
+    add({0, 0});
   }
 
   void clear() {
-    entries_.clear();
-    deadlines_.clear();
-    hits_.clear();
+    entries_.clear(), gaps_.clear(), until_.clear();
+    clear_hits();
     witness_ = nowhere;
   }
 
   void open(std::size_t slot) { holes_.push_back(static_cast<std::uint32_t>(slot)); }
 
-  /// Adds an entry and returns its slot. An entry whose deadline has passed is due.
-  std::size_t add(const NodePair& pair, double deadline = passed) {
-    std::size_t slot = entries_.size();
+  /// Adds an entry, which is due, and returns its slot.
+  std::size_t add(const NodePair& pair) {
     if (holes_.empty()) {
+      if (entries_.size() % width == 0) until_.push_back(due);
       entries_.push_back(pair);
-      deadlines_.push_back(passed);
-    } else {
-      slot = holes_.back();
-      holes_.pop_back();
-      entries_[slot] = pair;
+      gaps_.add();
+      until_.back() = due;
+      return entries_.size() - 1;
     }
-    expire_at(slot, deadline);
+    const std::size_t slot = holes_.back();
+    holes_.pop_back();
+    entries_[slot] = pair;
+    forget_gap(slot);
     return slot;
   }
 
-  void expire_at(std::size_t slot, double deadline) {
-    // Written so that a deadline of NaN has passed.
-    deadlines_[slot] = deadline > passed ? just_below(deadline) : passed;
-    earliest_ = std::min(earliest_, deadlines_[slot]);
+  /// Sets the gap of an entry: `sphere` is around what is below one of its two nodes.
+  void set_gap(std::size_t slot, float gap, const ReferenceSphere& sphere,
+               const PresentPoses& now) {
+    gaps_.set(slot, gap, sphere, now.rotation());
+    lasts_until(slot, now);
   }
-
-  /// Moves the deadline to an earlier time, never to a later one.
-  void expire_by(std::size_t slot, double deadline) {
-    const float before = deadlines_[slot];
-    expire_at(slot, deadline);
-    deadlines_[slot] = std::min(deadlines_[slot], before);
+  /// Makes the gap of an entry smaller, which was set at the same poses.
+  void lower_gap(std::size_t slot, float gap, float error_bound, const PresentPoses& now) {
+    gaps_.lower(slot, gap, error_bound);
+    lasts_until(slot, now);
   }
+  /// Makes an entry due.
+  void forget_gap(std::size_t slot) {
+    gaps_.forget(slot);
+    until_[slot / width] = due;
+  }
+  /// The gap of an entry when it was measured; not positive where none is known.
+  float gap(std::size_t slot) const { return gaps_[slot]; }
 
-  /// Makes the next run test entries that were collected and got no new deadline, because the
-  /// traversal was cut short.
-  void leave_rest() { earliest_ = passed; }
-
-  /// A lower bound on all deadlines.
-  float earliest() const { return earliest_; }
-
-  /// Slots whose deadlines are not above `time`, in order. The caller gives them new deadlines.
-  void collect(double time, std::vector<std::uint32_t>& due) {
-    using Some = stdx::native_simd<float>;
-    constexpr std::size_t width = Some::size();
-    const float limit = just_above(time);
-    const std::size_t n = deadlines_.size();
-    due.resize(n);
+  bool is_due(std::size_t slot, const PresentPoses& now) const {
+    return !(one_of(gaps_, slot, now) > 0);
+  }
+  /// Collects the slots of the entries that are due, in order, and forgets their gaps: those whose
+  /// surfaces may be `limit` apart or less. Returns a lower bound on what is left of the others'.
+  float collect(const PresentPoses& now, double limit, std::vector<std::uint32_t>& due_slots) {
+    using S = MeasuredGaps::S;
+    const S limits(just_above(limit));
+    const std::size_t n = entries_.size();
+    due_slots.resize(n);
     std::size_t found = 0;
-    Some earliest = -passed;
+    S least(std::numeric_limits<float>::infinity());
+    double until = std::numeric_limits<double>::infinity();
+    const double reached = now.displacement() + limit;
     for (std::size_t first = 0; first < n; first += width) {
-      Some some = -passed;
-      if (first + width <= n)
-        some.copy_from(&deadlines_[first], stdx::element_aligned);
-      else
-        for (std::size_t i = first; i < n; ++i) some[i - first] = deadlines_[i];
-      const auto later = some > limit;
-      // Where the limit is infinite, the lanes that fill up the last register are not later either.
+      if (double& group = until_[first / width]; reached < group) {
+        until = std::min(until, group);
+        continue;
+      }
+      const S remaining = gaps_.remaining(first, now.a_to_b(), now.rotation());
+      const auto later = remaining > limits;
+      S of_group(std::numeric_limits<float>::infinity());
+      stdx::where(later, of_group) = remaining;
+      least = stdx::min(least, of_group);
+      until_[first / width] = displacement_at_expiry(now.displacement(), stdx::hmin(of_group));
       const std::size_t taken = std::min(width, n - first);
       for (std::uint64_t rest = ~bits(later) & ((std::uint64_t{1} << taken) - 1); rest;
-           rest &= rest - 1)
-        due[found++] =
+           rest &= rest - 1) {
+        const auto slot =
             static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(std::countr_zero(rest));
-      stdx::where(later && some < earliest, earliest) = some;
+        due_slots[found++] = slot;
+        forget_gap(slot);
+      }
     }
-    due.resize(found);
-    earliest_ = stdx::hmin(earliest);
+    due_slots.resize(found);
+    return std::min(stdx::hmin(least), just_below(until - now.displacement()));
   }
 
-  /// The clock was set back by `by`.
-  void set_back(double by) {
-    for (auto& deadline : deadlines_) deadline = just_below(deadline - by);
-    for (auto& hit : hits_) hit.deadline = just_below(hit.deadline - by);
-    earliest_ = just_below(earliest_ - by);
-  }
-
-  /// Makes all deadlines pass.
+  /// Makes all entries due.
   void expire() {
-    std::fill(deadlines_.begin(), deadlines_.end(), passed);
-    earliest_ = passed;
-    hits_.clear();
+    for (std::size_t slot = 0; slot < size(); ++slot) forget_gap(slot);
+    clear_hits();
   }
-
-  float deadline(std::size_t slot) const { return deadlines_[slot]; }
 
   /// Makes the entry in `slot` the first to be tested in the next run.
   void bring_forward(std::size_t slot) { witness_ = static_cast<std::uint32_t>(slot); }
@@ -157,19 +179,49 @@ class MarginFront {
   void expect(bool soon) { brief_tests_ = soon ? most_brief_tests : 0; }
   bool take_brief_test() { return brief_tests_ > 0 && brief_tests_-- > 0; }
 
-  std::vector<KnownHit>& hits() { return hits_; }
   const std::vector<KnownHit>& hits() const { return hits_; }
-  void add_hit(std::size_t slot, double deadline, std::uint32_t a, std::uint32_t b) {
-    hits_.push_back({static_cast<std::uint32_t>(slot), just_below(deadline), a, b});
+  /// Adds a hit, which lasts as long as the gap of its entry. For queries that find all hits.
+  void add_hit(const KnownHit& hit) { hits_.push_back(hit); }
+  /// Removes the hits of entries whose gaps are not known.
+  void remove_hits_of_due() {
+    std::erase_if(hits_, [&](const KnownHit& hit) { return !(gaps_[hit.slot] > 0); });
   }
+  /// Adds a hit that lasts as long as its own margin. For queries that one hit may end.
+  void add_hit(const KnownHit& hit, float margin, const ReferenceSphere& reference,
+               double rotation) {
+    hits_.push_back(hit);
+    hit_margins_.add();
+    hit_margins_.set(hits_.size() - 1, margin, reference, rotation);
+  }
+  /// What is left of the margin of hit i, in `hits()`.
+  float remaining_of_hit(std::size_t i, const PresentPoses& now) const {
+    return one_of(hit_margins_, i, now);
+  }
+  void clear_hits() { hits_.clear(), hit_margins_.clear(); }
 
  private:
-  std::vector<NodePair> entries_;
-  std::vector<float> deadlines_;
-  std::vector<KnownHit> hits_;
-  float earliest_ = passed;
-  std::uint32_t witness_ = nowhere;
   static constexpr int most_brief_tests = 32;
+  static constexpr std::size_t width = MeasuredGaps::width;
+  static constexpr double due = -1;
+
+  static float one_of(const MeasuredGaps& gaps, std::size_t i, const PresentPoses& now) {
+    const std::size_t first = i / width * width;
+    return gaps.remaining(first, now.a_to_b(), now.rotation())[i - first];
+  }
+  void lasts_until(std::size_t slot, const PresentPoses& now) {
+    double& group = until_[slot / width];
+    const double until = displacement_at_expiry(now.displacement(), gaps_[slot]);
+    if (!(until >= group)) group = until;
+  }
+
+  std::vector<NodePair> entries_;
+  MeasuredGaps gaps_;
+  // For each group of `width` entries a sum of displacements below which none of them is due, so
+  // that their gaps need not be looked at.
+  std::vector<double> until_;
+  std::vector<KnownHit> hits_;
+  MeasuredGaps hit_margins_;
+  std::uint32_t witness_ = nowhere;
   int brief_tests_ = 0;
   std::vector<std::uint32_t> holes_;  // empty between runs
 };

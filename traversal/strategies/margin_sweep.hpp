@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// One run from a front with margins: tests the entries whose deadlines have passed, gives them new
-/// ones, and opens culled pairs with small gaps into pairs with wider ones.
+/// One run from a front with margins: tests the entries that are due, measures their gaps anew, and
+/// opens culled pairs with small gaps into pairs with wider ones.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
 
 #include "traversal/queries/query.hpp"
-#include "traversal/relative_motion_bound.hpp"
 #include "traversal/strategies/margin_front.hpp"
 #include "traversal/tracked_front.hpp"
 
@@ -20,46 +21,55 @@ class MarginSweep : public FrontDefaults {
   static constexpr bool measures_gaps = true;
   static constexpr std::size_t held_at_least = 7;  // margins are measured for a batch at once
 
-  /// `step`: about how much nearer the bodies come from run to run. `front` and `clock` must
-  /// outlive this.
-  MarginSweep(MarginFront& front, const RelativeMotionBound& clock, double step)
-      : front_(front), clock_(clock), step_(step) {}
+  /// `step`: about how much nearer the bodies come from run to run. `front` and `now` must outlive
+  /// this.
+  MarginSweep(MarginFront& front, PresentPoses& now, double step)
+      : front_(front), now_(now), step_(step) {}
 
   const NodePair& operator[](std::size_t slot) const { return front_[slot]; }
   bool witnessed() const { return front_.witnessed(); }
 
-  /// Tests the entries whose deadlines have passed, the witness first if it is one of them or the
-  /// query wants a bound.
+  /// Tests the due entries, the witness first if it is one of them or the query wants a bound.
   template <class Traversal>
   bool sweep(Traversal& traversal) {
     using Query = typename Traversal::Query;
-    const double now = clock_.now();
+    spheres_ = {traversal.a().node_spheres(), traversal.b().node_spheres()};
     const std::uint32_t witness = front_.witness();
-    const bool first =
-        front_.witnessed() && (wants_bound<Query>() || !(front_.deadline(witness) > now));
+    const bool first = !FindsAllHits<Query> && front_.witnessed() &&
+                       (wants_bound<Query>() || front_.is_due(witness, now_));
     if (first && test_witness(traversal, witness)) return true;
     auto& due = traversal.workspace().template scratch<std::vector<std::uint32_t>>();
-    front_.collect(now + traversal.query().limit(), due);
-    // The witness has a new deadline; if that has passed already, the front must still report it as
-    // due.
-    const bool still_due = first && std::erase(due, witness) > 0;
-    const bool satisfied =
-        traversal.test_entries(due.size(), [&](std::size_t i) { return due[i]; });
-    if (still_due) front_.leave_rest();
-    return satisfied;
+    lower_least(front_.collect(now_, traversal.query().limit(), due));
+    if constexpr (FindsAllHits<Query>) {
+      front_.remove_hits_of_due();
+      for (const KnownHit& hit : front_.hits()) traversal.query().known(hit.a, hit.b);
+    }
+    if (first) std::erase(due, witness);
+    return traversal.test_entries(due.size(), [&](std::size_t i) { return due[i]; });
   }
+  /// After a complete run, a lower bound on what is left of every gap; after one that a hit ended,
+  /// the margin of that hit. Not positive where it is not known.
+  float least() const { return least_; }
 
   void keep(std::size_t slot, EntryState state, double gap) {
-    front_.expire_at(slot, deadline_of(state, gap));
+    if (state == EntryState::culled) return record_gap(slot, just_below(gap));
+    if (state == EntryState::not_yet) {
+      forget_gap(slot);
+      return;
+    }
+    // Its triangles lower it.
+    set_gap(slot, std::numeric_limits<float>::max());
   }
   void open(std::size_t slot) { front_.open(slot); }
   std::size_t add(const NodePair& pair, EntryState state, double gap) {
-    return front_.add(pair, deadline_of(state, gap));
+    const std::size_t slot = front_.add(pair);
+    keep(slot, state, gap);
+    return slot;
   }
 
   void finish(std::size_t witness, bool satisfied) {
     if (witness != Outcome::none) front_.bring_forward(witness);
-    if (satisfied) front_.leave_rest();
+    if (satisfied) least_ = margin_of_hit_;
   }
 
   /// Whether opening a culled pair saves tests. An entry with a spare gap of g costs one test in
@@ -92,26 +102,56 @@ class MarginSweep : public FrontDefaults {
       for (; i < pending.size() && pending[i].slot == slot; ++i) {
         least = std::min(least, verdicts[i].margin);
         if (verdicts[i].hit && slot != Outcome::none)
-          front_.add_hit(slot, clock_.deadline(verdicts[i].margin), pending[i].a, pending[i].b);
+          add_hit<Query>(pending[i], verdicts[i].margin);
       }
-      // Two large leaves are tested in several portions: the first deadline counts.
-      if (slot != Outcome::none)
-        front_.expire_by(slot, least < 0 ? MarginFront::passed : clock_.deadline(least));
+      // Two large leaves are tested in several portions: the least margin counts.
+      if (slot != Outcome::none) lower_gap(slot, least < 0 ? 0 : just_below(least));
       first = i;
     }
-    if (outcome.witness != Outcome::none)
-      front_.expect(verdicts[outcome.witness].margin < lasting * step_);
+    if (outcome.witness != Outcome::none) {
+      const double margin = verdicts[outcome.witness].margin;
+      if (outcome.satisfied) margin_of_hit_ = just_below(margin);
+      front_.expect(margin < lasting * step_);
+    }
     return outcome;
   }
 
  private:
-  static constexpr double lasting = 8;     // runs for which measuring a witness's margin pays
-  static constexpr std::size_t few = 512;  // pairs of triangles that are quickly tested
+  static constexpr double least_useful = 0.5;  // steps; a smaller gap is used up by the next run
+  static constexpr double lasting = 8;         // runs for which measuring a witness's margin pays
+  static constexpr std::size_t few = 512;      // pairs of triangles that are quickly tested
 
-  double deadline_of(EntryState state, double gap) const {
-    if (state == EntryState::culled) return clock_.deadline(gap);
-    return state == EntryState::near ? std::numeric_limits<double>::infinity()
-                                     : MarginFront::passed;
+  ReferenceSphere reference_sphere(const NodePair& pair) {
+    return reference_sphere_of_smaller(spheres_[0][pair.a], spheres_[1][pair.b], now_.transforms());
+  }
+  void set_gap(std::size_t slot, float gap) {
+    front_.set_gap(slot, gap, reference_sphere(front_[slot]), now_);
+  }
+  void record_gap(std::size_t slot, float gap) {
+    if (gap < least_useful * step_) return forget_gap(slot);
+    set_gap(slot, gap);
+    lower_least(front_.gap(slot));
+  }
+  void forget_gap(std::size_t slot) {
+    front_.forget_gap(slot);
+    least_ = 0;
+  }
+  /// The gap of an entry whose triangles have been tested, set in this run.
+  void lower_gap(std::size_t slot, float gap) {
+    const auto& transforms = now_.transforms();
+    front_.lower_gap(slot, gap, std::max(transforms[0].error_bound(), transforms[1].error_bound()),
+                     now_);
+    lower_least(front_.gap(slot));
+  }
+  /// NaN counts as 0.
+  void lower_least(float gap) { least_ = gap > 0 ? std::min(least_, gap) : 0; }
+  template <class Query>
+  void add_hit(const Candidate& candidate, double margin) {
+    const KnownHit hit{static_cast<std::uint32_t>(candidate.slot), candidate.a, candidate.b};
+    if constexpr (FindsAllHits<Query>)
+      front_.add_hit(hit);
+    else
+      front_.add_hit(hit, just_below(margin), reference_sphere(front_[hit.slot]), now_.rotation());
   }
 
   template <class Traversal>
@@ -145,15 +185,18 @@ class MarginSweep : public FrontDefaults {
     const Outcome outcome = query.primitives(pending);
     if (outcome.satisfied) {
       // Valid while the bodies do not move; then it is tested again.
-      const Candidate& hit = pending[outcome.witness];
-      front_.add_hit(hit.slot, MarginFront::passed, hit.a, hit.b);
+      add_hit<Query>(pending[outcome.witness], 0);
+      margin_of_hit_ = 0;
     }
     return outcome;
   }
 
   MarginFront& front_;
-  const RelativeMotionBound& clock_;
+  PresentPoses& now_;
+  std::array<const NodeSphere*, 2> spheres_{};
   double step_;
+  float least_ = std::numeric_limits<float>::infinity();
+  float margin_of_hit_ = 0;
   bool brief_ = false;  // the witness is tested without its margin
 };
 

@@ -6,10 +6,9 @@
 /// test in about g / (motion per run) runs. So it pays to open pairs that are apart by a small gap:
 /// two children with wide gaps cost less than a parent with a narrow one (MarginSweep::opens).
 ///
-/// Motion is bounded from reference poses to the present ones, not along the path (see
-/// relative_motion_bound.hpp), so a body that jitters about a pose is nearly free. A gap that is
-/// measured when the bodies are d away from their reference poses loses up to 2d. Once d exceeds
-/// four times the last motion, the current poses become the reference poses.
+/// How long a gap lasts is bounded from the poses at which it was measured to the present ones, at
+/// a sphere around one of the two nodes (measured_gaps.hpp). Where all gaps last, a run compares
+/// two numbers (lasting_answer.hpp).
 ///
 /// The front is rebuilt from the roots by the rule for replacing a machine whose upkeep rises: when
 /// a run (smoothed) costs more than the mean since the last rebuild, including the rebuild. This
@@ -20,12 +19,11 @@
 /// runs.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <string_view>
 
 #include "traversal/front.hpp"
+#include "traversal/lasting_answer.hpp"
 #include "traversal/strategies/margin_sweep.hpp"
 
 namespace bvlab {
@@ -58,14 +56,19 @@ class Margins {
     // Verdicts found by one query do not serve another: one may stop at the first hit of an
     // entry.
     if (last_query_ != &Query::name) front_.expire();
-    if (repeat_hits(query)) {
-      last_query_ = &Query::name;
-      quiet_until_ = front_.hits().front().deadline;
-      return {};
-    }
-    const TraversalStatistics statistics = pair.from_front(MarginSweep(front_, clock_, step_));
+    last_query_ = &Query::name;
+    PresentPoses now(a, b);
+    if constexpr (Query::one_hit_is_enough)
+      if (const float margin = repeat_hits(query, now); margin > 0) {
+        answer_lasts(a, b, margin);
+        return {};
+      }
+    MarginSweep sweep(front_, now, step_);
+    const TraversalStatistics statistics = pair.from_front(sweep);
     account(statistics);
-    remember(query);
+    ended_by_hit_ = !statistics.everything;
+    answer_lasts(a, b, sweep.least());
+    if constexpr (requires { query.distance(); }) distance_ = query.distance();
     return statistics;
   }
 
@@ -100,14 +103,10 @@ class Margins {
   /// The share of the last run's entries that is due in a run, if each run brings the bodies nearer
   /// by `step`: an entry whose gap is g is due in every (g / step)-th run.
   double due_in_a_run(double step) const {
-    const auto share = [&](double deadline) {
-      const double gap = deadline - shown_;
-      return gap > step ? step / gap : 1;
-    };
-    if (!front_.hits().empty() && front_.earliest() == MarginFront::passed)
-      return share(front_.hits().front().deadline);
+    const auto share = [&](double gap) { return gap > step ? step / gap : 1; };
+    if (ended_by_hit_) return share(gap_);
     double due = 0;
-    for (std::size_t slot = 0; slot < front_.size(); ++slot) due += share(front_.deadline(slot));
+    for (std::size_t slot = 0; slot < front_.size(); ++slot) due += share(front_.gap(slot));
     return due / static_cast<double>(front_.size());
   }
   /// How often the front has been rebuilt from the roots, or started from a list.
@@ -117,10 +116,8 @@ class Margins {
   const MarginFront& front() const { return front_; }
 
  private:
-  static constexpr double stretch = 4;      // steps over which motion is measured
-  static constexpr double triangles = 4;    // cost of a pair of triangles and of its margin, in
-                                            // pairs of volumes
-  static constexpr double farthest = 1024;  // radii after which the clock is set back
+  static constexpr double triangles = 4;  // cost of a pair of triangles and of its margin, in pairs
+                                          // of volumes
 
   /// Follows the bodies. If nothing can have changed, answers the query and returns true.
   template <class Query>
@@ -134,53 +131,51 @@ class Margins {
       // added.
       step_ = displacement - displacement_ + 4 * unit_roundoff<double> * displacement;
       displacement_ = displacement;
-      shown_ = (shown_ + step_) * (1 + 4 * unit_roundoff<double>);
     }
+    if (last_query_ != &Query::name) return false;
     if constexpr (requires { query.distance(); }) {
-      if (!moved && last_query_ == &Query::name) return query.repeat(distance_), true;
-    } else if (last_query_ == &Query::name && (!moved || shown_ < quiet_until_)) {
+      if (!moved) query.repeat(distance_);
+      return !moved;
+    } else {
+      if (moved && !still_lasts(a, b)) return false;
       for (const auto& hit : front_.hits())
         if (query.known(hit.a, hit.b)) break;
       return true;
     }
-    // Also where only the query has changed: quiet runs do not advance the clock.
-    follow(a, b);
-    return false;
   }
 
-  void follow(MovingBody& a, MovingBody& b) {
-    clock_.advance(a, b);
-    if (!(clock_.now() < std::numeric_limits<float>::max())) {
-      front_.expire();
-      clock_.restart(a, b);
-    } else if (clock_.since() > stretch * step_) {
-      clock_.refer(a, b);
-      if (clock_.now() > farthest * (a.extent().radius + b.extent().radius))
-        front_.set_back(clock_.set_back());
+  /// Whether the bodies cannot have closed the gap of the last answer.
+  bool still_lasts(MovingBody& a, MovingBody& b) {
+    if (displacement_ < valid_until_) return true;
+    const double remaining = lasting_.remaining(a, b);
+    if (remaining > 0) valid_until_ = displacement_at_expiry(displacement_, remaining);
+    return remaining > 0;
+  }
+  /// The answer just found lasts until the bodies have closed `gap`.
+  void answer_lasts(MovingBody& a, MovingBody& b, double gap) {
+    gap_ = gap;
+    if (gap > step_) {
+      lasting_.restart(a, b, gap);
+      valid_until_ = displacement_at_expiry(displacement_, gap);
+    } else {  // it would hardly last until the next run
+      lasting_.forget();
+      valid_until_ = never;
     }
-    shown_ = clock_.now();
   }
 
-  /// Passes the hits that are still certain to the query; the others will be found again. Returns
-  /// whether the query is satisfied.
+  /// Passes the hits that still last to the query. If they satisfy it, returns what is left of the
+  /// margin of the last one; else 0, and then the entries of the others are due.
   template <class Query>
-  bool repeat_hits(Query& query) {
-    auto& hits = front_.hits();
-    if constexpr (Query::one_hit_is_enough)
-      // The entry is due even if the run ends before it is tested and the bodies then return to
-      // where its deadline has not passed.
-      std::erase_if(hits, [&](const KnownHit& hit) {
-        const bool over = !(hit.deadline > shown_);
-        if (over) front_.expire_at(hit.slot, MarginFront::passed);
-        return over;
-      });
-    else
-      std::erase_if(hits, [&](const KnownHit& hit) {
-        return !(front_.deadline(hit.slot) > just_above(shown_));
-      });
-    for (const auto& hit : hits)
-      if (query.known(hit.a, hit.b)) return true;
-    return false;
+  float repeat_hits(Query& query, const PresentPoses& now) {
+    for (std::size_t i = 0; i < front_.hits().size(); ++i) {
+      const KnownHit& hit = front_.hits()[i];
+      const float remaining = front_.remaining_of_hit(i, now);
+      if (remaining > 0 && query.known(hit.a, hit.b)) return remaining;
+    }
+    // They will be found again. Their entries are due even if the run ends before they are tested.
+    for (const KnownHit& hit : front_.hits()) front_.forget_gap(hit.slot);
+    front_.clear_hits();
+    return 0;
   }
 
   void rebuild(MovingBody& a, MovingBody& b) {
@@ -189,8 +184,6 @@ class Margins {
       epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
     }
     front_.restart();
-    clock_.restart(a, b);
-    shown_ = clock_.now();
     upkeep_ = cost_ = 0;
     runs_ = 0;
     rebuild_due_ = false;
@@ -206,26 +199,20 @@ class Margins {
     rebuild_due_ = upkeep_ * runs_ > cost_;
   }
 
-  template <class Query>
-  void remember(const Query& query) {
-    last_query_ = &Query::name;
-    if constexpr (requires { query.distance(); })
-      distance_ = query.distance();
-    else
-      quiet_until_ = front_.earliest();
-  }
+  static constexpr double never = -1;
 
   MarginFront front_;
-  RelativeMotionBound clock_;
+  LastingAnswer lasting_;
   std::uint32_t epoch_a_ = 0, epoch_b_ = 0;  // at the last run
   double displacement_ = 0;                  // of both bodies, at the last run
   double step_ = 0;                          // bound on how much nearer since the last run
-  double shown_ = 0;                         // at least the time on the clock
-  double quiet_until_ = 0;                   // the answer is valid while the clock shows less
+  double valid_until_ = never;               // the answer lasts while displacements sum to less
+  double gap_ = 0;                           // for which the last answer lasts
   double distance_ = 0;
   double upkeep_ = 0, cost_ = 0, runs_ = 0;  // smoothed cost of a run; totals since the rebuild
   std::uint32_t rebuilds_ = 0;
   bool rebuild_due_ = false;
+  bool ended_by_hit_ = false;
   const std::string_view* last_query_ = nullptr;  // the query of the last run
 };
 

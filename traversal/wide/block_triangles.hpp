@@ -18,16 +18,6 @@
 
 namespace bvlab {
 
-/// The reference sphere of the smaller of two nodes, by their numbers.
-template <class Tree>
-ReferenceSphere reference_sphere_of_smaller(const std::array<const Tree*, 2>& trees,
-                                            const NodePair& node,
-                                            const std::array<CornerTransform, 2>& transforms) {
-  const auto &a = trees[0]->node_sphere(node.a), &b = trees[1]->node_sphere(node.b);
-  return a.radius < b.radius ? reference_sphere_of(a, 0, transforms)
-                             : reference_sphere_of(b, 1, transforms);
-}
-
 template <BoundingVolume V>
 class BlockTriangles {
   using Tree = BlockHierarchy<V>;
@@ -84,7 +74,8 @@ class BlockTriangles {
     return least;
   }
   ReferenceSphere reference_sphere() const {
-    return reference_sphere_of_smaller(trees_, node_, transforms_);
+    return reference_sphere_of_smaller(trees_[0]->node_sphere(node_.a),
+                                       trees_[1]->node_sphere(node_.b), transforms_);
   }
 
  private:

@@ -99,7 +99,7 @@ class GapMeasure {
     sweep_is_due_ = false;
     auto& pair = traversal.pair();
     const std::size_t size = start_.front->size();  // added entries are not retested
-    for (std::size_t first = 0; first < size; first += WideFront::width)
+    for (std::size_t first = 0; first < size; first += MeasuredGaps::width)
       for (std::uint64_t rest = due(first, size - first, pair.frame().a_to_b()); rest;
            rest &= rest - 1) {
         const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(rest));
@@ -131,8 +131,8 @@ class GapMeasure {
       fresh = near & ~std::uint64_t{opened};
       opened = static_cast<std::uint16_t>(opened | fresh);
     }
-    start_.front->set_gap(entry, stdx::hmin(found.least), step.of.reference_sphere(),
-                          start_.rotation);
+    start_.front->gaps().set(entry, stdx::hmin(found.least), step.of.reference_sphere(),
+                             start_.rotation);
     return fresh;
   }
   template <class Pair, class Leaves>
@@ -156,7 +156,7 @@ class GapMeasure {
   void set_triangle_gap(const Triangles& triangles, Counter& counter, std::size_t entry) {
     const float gap = triangles.gap(counter);
     least_ = stdx::min(least_, S(gap));
-    start_.front->set_gap(entry, gap, triangles.reference_sphere(), start_.rotation);
+    start_.front->gaps().set(entry, gap, triangles.reference_sphere(), start_.rotation);
     if (!(gap > 0)) (*start_.front)[entry].rest = 8;
   }
   /// Where all hits are sought: triangles touch, or may. Their numbers are not used: the pair keeps
@@ -181,15 +181,16 @@ class GapMeasure {
   }
 
  private:
+  using Gaps = MeasuredGaps::S;
   static constexpr float infinity = std::numeric_limits<float>::infinity();
 
   /// Which of the entries from `first` on, at most a register of them, are due, that is, may have
   /// closed their gaps.
   [[gnu::always_inline]] std::uint64_t due(std::size_t first, std::size_t entries,
                                            const CornerTransform& corners) {
-    const WideFront::S remaining = start_.front->remaining_gaps(first, corners, start_.rotation);
-    const std::size_t lanes = std::min<std::size_t>(entries, WideFront::width);
-    const auto apart = remaining > WideFront::S(0.0f);
+    const Gaps remaining = start_.front->gaps().remaining(first, corners, start_.rotation);
+    const std::size_t lanes = std::min<std::size_t>(entries, MeasuredGaps::width);
+    const auto apart = remaining > Gaps(0.0f);
     stdx::where(apart, least_remaining_) = stdx::min(least_remaining_, remaining);
     const std::uint64_t due = ~bits(apart) & ((std::uint64_t{1} << lanes) - 1);
     due_ += static_cast<std::size_t>(std::popcount(due));
@@ -198,7 +199,7 @@ class GapMeasure {
 
   TraversalStart start_;
   S least_;
-  WideFront::S least_remaining_;
+  Gaps least_remaining_;
   std::optional<NodePair> touched_;
   std::optional<Crossing> crossing_;
   std::size_t due_ = 0;

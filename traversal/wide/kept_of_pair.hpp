@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "traversal/relative_motion_bound.hpp"
+#include "traversal/lasting_answer.hpp"
 #include "traversal/wide/gap_measure.hpp"
 
 namespace bvlab {
@@ -19,10 +19,9 @@ struct PairAnswer {
   std::uint32_t epochs = 0;  ///< sum of both bodies' epochs then; the same until one moves
   bool touching = false;
 };
-/// All else that is kept, read where the answer's deadline has passed.
+/// All else that is kept, read where the answer has expired by PairAnswer::until.
 struct KeptOfPair {
-  RelativeMotionBound clock;
-  double deadline = 0;  ///< by the clock; 0: none
+  LastingAnswer lasting;
   double distance = 0;  ///< the last answer, where a distance is sought
   NodePair touched{};   ///< GapMeasure::touched of the last traversal that had one
   WideFront front;

@@ -110,7 +110,9 @@ struct MixedKernel {
                    four_repeated(row_b.name.data()), order, next);
       }
       ReferenceSphere reference_sphere() const {
-        return reference_sphere_of_smaller(pair_frame.trees_, node, pair_frame.frames_.transform);
+        return reference_sphere_of_smaller(pair_frame.trees_[0]->node_sphere(node.a),
+                                           pair_frame.trees_[1]->node_sphere(node.b),
+                                           pair_frame.frames_.transform);
       }
     };
 

@@ -239,10 +239,11 @@ struct SiblingsKernel {
       ReferenceSphere reference_sphere() const {
         const auto& own = pair_frame_.hierarchies_[0]->corners(pair_.a).corner;
         ReferenceSphere reference;
-        for (std::size_t k = 0; k < 3; ++k) reference.centre_in_a[k] = own[0][k][lane_];
+        for (std::size_t k = 0; k < 3; ++k) reference.centre_in[0][k] = own[0][k][lane_];
         pair_frame_
-            .a_to_b()(reference.centre_in_a[0], reference.centre_in_a[1], reference.centre_in_a[2])
-            .copy_to(reference.centre_in_b.data(), stdx::vector_aligned);
+            .a_to_b()(reference.centre_in[0][0], reference.centre_in[0][1],
+                      reference.centre_in[0][2])
+            .copy_to(reference.centre_in[1].data(), stdx::vector_aligned);
         float squared = 0;
         for (std::size_t i = 1; i < 3; ++i) {
           float length = 0;

@@ -3,10 +3,7 @@
 ///
 /// A gap between two bodies is found by a direction that separates them, or by a traversal: the
 /// least gap of the volumes that it found apart bounds the distance unless triangles were tested.
-/// The answer is valid until the bodies can have closed that gap. Checking costs one comparison: of
-/// a deadline with the displacements since the first frame (MovingBody::displacement_bound).
-/// Displacements overestimate motion where bodies jitter or move together. The bound from reference
-/// poses to the present ones is tighter there, and is tried next.
+/// The answer is valid until the bodies can have closed that gap (lasting_answer.hpp).
 ///
 /// Bodies that touch keep touching until an edge that crosses a triangle can have left it. Then
 /// these two triangles are tested (triangle_margin.hpp), in a batch with those of other pairs.
@@ -39,7 +36,6 @@
 #include <vector>
 
 #include "traversal/queries/query.hpp"
-#include "traversal/relative_motion_bound.hpp"
 #include "traversal/wide/crossing_batch.hpp"
 #include "traversal/wide/followed_bodies.hpp"
 #include "traversal/wide/gap_measure.hpp"
@@ -66,7 +62,7 @@ class WideMargins {
   void forget(std::size_t p) {
     answers_[p] = {};
     Kept& kept = kept_[p];
-    kept.deadline = 0, kept.was_apart = kept.touched_twice = false;
+    kept.lasting.forget(), kept.was_apart = kept.touched_twice = false;
     kept.crossing.reset(), kept.rest = 0, kept.next_rest = 1;
     clear_front(p), kept.pause = {};
   }
@@ -168,7 +164,7 @@ class WideMargins {
     Kept& kept = kept_[p];
     answer = {unknown, bodies_.epochs(pair), found.touched().has_value()};
     if constexpr (AnswersYesOrNo<Query>) answer.touching = query.answer();
-    kept.deadline = 0;
+    kept.lasting.forget();
     kept.crossing.reset();
     kept.touched_twice = answer.touching && !kept.was_apart;
     kept.was_apart = !answer.touching;
@@ -209,12 +205,9 @@ class WideMargins {
   static constexpr bool keeps_answer = requires(Query query) { query.answer(); };
 
   bool answer_valid_by_reference_pose(std::size_t p, const ObjectPair& pair) {
-    Kept& kept = kept_[p];
-    if (!(kept.deadline > 0)) return false;
-    kept.clock.advance(bodies_[pair.i], bodies_[pair.j]);
-    const double remaining_gap = kept.deadline - kept.clock.now();
-    if (!(remaining_gap > 0)) return false;
-    set_valid_until(p, pair, remaining_gap * (1 - 4 * unit_roundoff<double>));
+    const double remaining = kept_[p].lasting.remaining(bodies_[pair.i], bodies_[pair.j]);
+    if (!(remaining > 0)) return false;
+    answers_[p].until = displacement_at_expiry(bodies_.displacement(pair), remaining);
     return true;
   }
 
@@ -254,7 +247,7 @@ class WideMargins {
   /// The triangles still cross, and will until the bodies have moved by `margin`.
   void still_crossing(std::size_t p, const ObjectPair& pair, double margin) {
     answers_[p] = {unknown, bodies_.epochs(pair), true};
-    kept_[p].deadline = 0, kept_[p].touched_twice = true;
+    kept_[p].lasting.forget(), kept_[p].touched_twice = true;
     kept_[p].next_rest = std::max(1, kept_[p].next_rest / 2);
     if (margin > bodies_.step(pair)) extend_validity(p, pair, margin);
   }
@@ -270,16 +263,8 @@ class WideMargins {
 
   /// Makes the answer valid until the bodies have come nearer by `gap`.
   void extend_validity(std::size_t p, const ObjectPair& pair, double gap) {
-    Kept& kept = kept_[p];
-    kept.clock.restart(bodies_[pair.i], bodies_[pair.j]);
-    kept.deadline = kept.clock.deadline(gap);
-    set_valid_until(p, pair, gap);
-  }
-
-  /// Sets the sum of displacements at which the answer expires: the bodies are `gap` apart. Covers
-  /// the rounding of such sums, here and where they are compared.
-  void set_valid_until(std::size_t p, const ObjectPair& pair, double gap) {
-    answers_[p].until = (bodies_.displacement(pair) + gap) * (1 - 8 * unit_roundoff<double>);
+    kept_[p].lasting.restart(bodies_[pair.i], bodies_[pair.j], gap);
+    answers_[p].until = displacement_at_expiry(bodies_.displacement(pair), gap);
   }
 
   FollowedBodies bodies_;

@@ -89,19 +89,32 @@ class Predict(ProgramTest):
         self.assertAlmostEqual(said / self.counted("separation-list", "contacts")["n_v"], 1, delta=0.2)
 
     def test_stationary_motion(self):
-        """Bodies that wander about where they are: half of the frames say what all take, raise and margins included. Of
-        yes or no witness, by-cost and raise go on to find better witnesses, for longer than a window; and adaptive tries its
+        """Bodies that wander about where they are: half of the frames say what all take, raise included. Of yes or no
+        witness, by-cost, raise and margins go on to find better witnesses, for longer than a window; and adaptive tries its
         ways one after the other."""
         self.write("trace.npy", about_a_place(480, 4, 0.02, 2))
-        for query, near, still_learning in (("contacts", 0.05, ("adaptive",)), ("touching", 0.1, ("adaptive", "by-cost", "raise", "witness"))):
+        for query, near, others in (("contacts", 0.05, ("adaptive", "margins")),
+                                    ("touching", 0.1, ("adaptive", "by-cost", "raise", "witness", "margins"))):
             said = self.predicted(query)["strategies"]
             for strategy in STRATEGIES:
                 done = self.counted(strategy, query)
-                if strategy in still_learning:
+                if strategy in others:
                     self.assertLess(said[strategy]["n_v"], 2.5 * done["n_v"])
                     continue
                 for what in ("n_v", "n_p"):
                     self.assertAlmostEqual(said[strategy][what] / done[what], 1, delta=near, msg=f"{query} {strategy} {what}")
+
+    def test_margins_are_predicted_without_bias(self):
+        """Margins test so little that half of the frames say it to about 6 % (one standard deviation of twelve motions);
+        the mean of several motions is closer."""
+        ratios = []
+        for seed in range(2, 10):
+            self.write("trace.npy", about_a_place(480, 4, 0.02, seed))
+            said, done = self.predicted("contacts")["strategies"]["margins"], self.counted("margins", "contacts")
+            ratios.append([said[what] / done[what] for what in ("n_v", "n_p")])
+        for what, each in zip(("n_v", "n_p"), np.transpose(ratios)):
+            self.assertAlmostEqual(each.mean(), 1, delta=0.05, msg=what)
+            self.assertLess(np.abs(each - 1).max(), 0.2, msg=what)
 
     def test_windows_are_a_part(self):
         """Told all, what a list makes is exact; told less, it is not."""

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// How long the answer for a pair of bodies lasts: until they can have come nearer by the gap that
+/// was found. There are two tests. The first is one comparison, of the displacements of both since
+/// their first frames, which overestimate motion where bodies jitter or move together, with the sum
+/// at which the answer expires. The second, from reference poses to the present ones, is tighter.
+#pragma once
+
+#include "traversal/relative_motion_bound.hpp"
+
+namespace bvlab {
+
+/// The sum of displacements at which an answer expires if both bodies are `gap` apart now. Covers
+/// the rounding of such sums, here and where they are compared.
+inline double displacement_at_expiry(double displacement, double gap) {
+  return (displacement + gap) * (1 - 8 * unit_roundoff<double>);
+}
+
+/// The second test.
+class LastingAnswer {
+ public:
+  /// The answer lasts until the bodies have come nearer than they are now by `gap`.
+  void restart(MovingBody& a, MovingBody& b, double gap) {
+    motion_.restart(a, b);
+    gap_ = motion_.left_of(gap);
+  }
+  /// No answer lasts.
+  void forget() { gap_ = 0; }
+  /// A lower bound on what is left of the gap; not positive where the answer may have changed.
+  double remaining(MovingBody& a, MovingBody& b) {
+    if (!(gap_ > 0)) return 0;
+    motion_.advance(a, b);
+    return (gap_ - motion_.now()) * (1 - 4 * unit_roundoff<double>);
+  }
+
+ private:
+  RelativeMotionBound motion_;
+  double gap_ = 0;
+};
+
+}  // namespace bvlab
