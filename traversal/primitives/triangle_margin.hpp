@@ -44,8 +44,8 @@
 #include <cstring>
 #include <limits>
 
-#include "traversal/gather.hpp"
 #include "traversal/primitives/triangle_intersection.hpp"
+#include "traversal/transpose.hpp"
 
 namespace bvlab {
 
@@ -194,8 +194,10 @@ struct Scaled {
   Scaled(const Triangle* const* as, const Triangle* const* bs, int used) {
     alignas(64) float rows[W][24] = {}, columns[24][W];
     for (int lane = 0; lane < used; ++lane) scale[lane] = scaled(*as[lane], *bs[lane], rows[lane]);
-    for (int field = 0; field < 24; field += 4)
-      bvlab::detail::transpose<W>([&](int i) { return rows[i] + field; }, columns[field]);
+    for (int field = 0; field < 24; field += 4) {
+      const auto four = bvlab::detail::columns_of<float, W>([&](int i) { return rows[i] + field; });
+      std::memcpy(columns[field], &four, sizeof four);
+    }
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         a[i][j].copy_from(columns[4 * i + j], stdx::vector_aligned);
