@@ -240,6 +240,33 @@ TYPED_TEST(FrontLaws, NoVerdictOfOtherBodiesIsReused) {
   });
 }
 
+/// Bodies that have never moved and bodies that stop after jumps, which keep nothing of use.
+TYPED_TEST(FrontLaws, AdaptiveTestsContactsAtRestNoMore) {
+  for (const int jumps : {0, 40}) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> anywhere(-2, 2);
+    Adaptive adaptive;
+    for (int run = 0; run <= jumps + 400; ++run) {
+      if (run < jumps)
+        this->place(Pose{}, at(anywhere(random), anywhere(random)));
+      else if (run == jumps)
+        this->place(Pose{}, at(0.8, 0.7));
+      Counting counter, from_roots;
+      std::vector<Contact> found, expected;
+      Contacts query(found), query_from_roots(expected);
+      adaptive.run(this->pair(query, counter));
+      if (run < jumps + 400) continue;
+      Recursive().run(this->pair(query_from_roots, from_roots));
+      std::sort(found.begin(), found.end()), std::sort(expected.begin(), expected.end());
+      EXPECT_EQ(found, expected);
+      EXPECT_GT(found.size(), 10u);
+      EXPECT_EQ(counter.n_v, 0u) << jumps;
+      EXPECT_EQ(counter.n_p, 0u) << jumps;
+      EXPECT_GT(from_roots.n_p, 0u);
+    }
+  }
+}
+
 TYPED_TEST(FrontLaws, ARisingFrontStaysAPartitionWhateverIsRaised) {
   std::mt19937_64 random(8);
   std::uniform_real_distribution<double> anywhere(-2, 2), step(-0.02, 0.02);

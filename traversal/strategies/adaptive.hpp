@@ -16,7 +16,8 @@
 ///   witness are tested first, with a margin where bodies are slow, and no volume is posed while
 ///   they still touch.
 ///
-/// Bodies at rest are not tested again. A pair whose spheres are apart is decided by the
+/// At rest, yes or no and distances are repeated, and contacts are kept by margins, whatever the
+/// step was before (observed_step.hpp). A pair whose spheres are apart is decided by the
 /// translations alone, and one whose roots are apart by one margin; neither is posed.
 #pragma once
 
@@ -29,6 +30,7 @@
 #include "traversal/strategies/last_answer.hpp"
 #include "traversal/strategies/longest_list.hpp"
 #include "traversal/strategies/margins.hpp"
+#include "traversal/strategies/observed_step.hpp"
 #include "traversal/strategies/sphere_test.hpp"
 
 namespace bvlab {
@@ -41,7 +43,7 @@ class Adaptive : public AdaptivePrices {
 
   template <class Pair>
   void run(const Pair& pair) {
-    if (watched_ && margins_.quiet(pair)) return void(++unseen_);
+    if (watched_ && margins_.quiet(pair)) return step_.skip();
     if (use_ == Use::margins) return run_margins(pair);
     if (use_ == Use::roots && spheres_apart(pair)) return;
     if (answer_.repeat(pair)) return;
@@ -54,7 +56,7 @@ class Adaptive : public AdaptivePrices {
   bool starts_at_roots() const { return in_batches_ && !list_is_due(); }
   void roots_are_apart() {
     answer_.forget();
-    ++unseen_;
+    step_.skip();
     cost_before_retry_ -= of_recursion.run + of_recursion.volumes;
     if (spheres_.batch_is_over()) in_batches_ = false;
   }
@@ -78,40 +80,20 @@ class Adaptive : public AdaptivePrices {
     const SphereTest::Result seen = spheres_(pair);
     if (seen == SphereTest::Result::not_tested) return false;
     in_batches_ = seen == SphereTest::Result::near;
-    if (!in_batches_) ++unseen_;
+    if (!in_batches_) step_.skip();
     return !in_batches_;
   }
 
-  /// Measures how far the bodies have moved since the last run; where that is too far for anything
-  /// to be reused, the list is given up. Measuring costs as much as a few tests. Unless margins
-  /// need it, only two of eight successive runs do it, the same two for all pairs of bodies that
-  /// move together.
+  /// Measures the step; where it is too far for anything to be reused, gives up the list.
   template <class Pair>
   void follow(const Pair& pair) {
-    MovingBody &a = pair.a(), &b = pair.b();
-    constexpr std::uint32_t cycle = 16, measured = 4;  // in moves of both bodies, which begin at 2
-    if (!watched_ && (a.epoch() + b.epoch() - 2) % cycle >= measured && leaf_ > 0) {
-      ++unseen_;
-      return;
-    }
-    const double displacement = a.displacement_bound() + b.displacement_bound();
-    if (leaf_ == 0) {
-      leaf_ = (leaf_size(a.extent()) + leaf_size(b.extent())) / 2;
-      // At least the mean displacement per move of both bodies; a move may combine several frames.
-      step_ =
-          std::max(leaf_, a.displacement_bound() / a.epoch() + b.displacement_bound() / b.epoch());
-    } else if ((watched_ || unseen_ == 0) && displacement != displacement_) {
-      step_ = (displacement - displacement_) / (1 + unseen_);
-    }
-    displacement_ = displacement;
-    unseen_ = 0;
-    if (use_ != Use::roots && jumped()) fail_list();
+    if (step_.measure(pair.a(), pair.b(), watched_) && use_ != Use::roots && jumped()) fail_list();
   }
-  bool jumped() const { return step_ > jump * leaf_; }
+  bool jumped() const { return step_.expected_in_leaves() > jump; }
 
-  bool is_due() const { return cost_before_retry_ <= 0 || step_ < failed_at_ / 2; }
+  bool is_due() const { return cost_before_retry_ <= 0 || step_.last() < failed_at_ / 2; }
   bool list_is_due() const { return is_due() && !jumped(); }
-  void failed(double lost) { cost_before_retry_ = patience * lost, failed_at_ = step_; }
+  void failed(double lost) { cost_before_retry_ = patience * lost, failed_at_ = step_.last(); }
 
   template <class Pair>
   void run_roots(const Pair& pair, Start start) {
@@ -156,7 +138,7 @@ class Adaptive : public AdaptivePrices {
         statistics = margins_.test_without_rebuild(pair);
       } else {
         watched_ = true;
-        margins_.start_from(list_, 1, pair.a(), pair.b(), step_);
+        margins_.start_from(list_, 1, pair.a(), pair.b(), step_.expected());
         margins_.expect(!is_slow());
         statistics = margins_.run(pair);
       }
@@ -211,17 +193,18 @@ class Adaptive : public AdaptivePrices {
   }
 
   bool margins_are_due() const { return is_due() && (is_slow() || list_.size() == 1); }
-  bool is_slow() const { return step_ < small * leaf_; }
+  bool is_slow() const { return step_.expected_in_leaves() < small; }
 
   template <class Pair>
   void try_margins(const Pair& pair) {
-    margins_.start_from(list_, list_.size(), pair.a(), pair.b(), step_);
+    margins_.start_from(list_, list_.size(), pair.a(), pair.b(), step_.expected());
     const TraversalStatistics statistics = margins_.run(pair);
     answer_.forget();
     const double cost = price(statistics, of_margins) - of_margins.run;
     // What one margin saves is posing the roots.
     const double posed = list_.size() == 1 ? roots_posed : 0;
-    const double expected = of_margins.run + toward * (cost + posed) * margins_.due_in_a_run(step_);
+    const double expected =
+        of_margins.run + toward * (cost + posed) * margins_.due_in_a_run(step_.expected());
     const double otherwise =
         list_.size() == 1 ? of_recursion.run + of_recursion.volumes + posed : next_run_;
     if (expected > otherwise) {
@@ -240,7 +223,7 @@ class Adaptive : public AdaptivePrices {
 
   template <class Pair>
   void run_margins(const Pair& pair) {
-    const int quiet = unseen_;
+    const int quiet = step_.skipped();
     follow(pair);
     if (use_ != Use::margins) return run(pair);
     const std::uint32_t rebuilds = margins_.rebuilds();
@@ -281,12 +264,10 @@ class Adaptive : public AdaptivePrices {
   bool watched_ = false;      // there are margins, of all entries or of the witness
   bool rebuild_due_ = false;  // the list is due for a rebuild
   bool everything_ = true;    // the list's last run was complete
-  int unseen_ = 0;            // runs since the bodies were followed
-  int swept_ = 0;             // complete runs of the list since its rebuild
+  ObservedStep step_;
+  int swept_ = 0;                                 // complete runs of the list since its rebuild
   double cost_before_retry_ = 0, failed_at_ = 0;  // to spend before the next trial; step at failure
-  double displacement_ = 0, step_ = 0;            // bound of both bodies; motion in the last run
   SphereTest spheres_;
-  double leaf_ = 0;                             // size of a leaf, mean of both bodies
   double rebuild_ = 0;                          // cost of the list's last rebuild
   double balance_ = 0;                          // cost of this way minus that of the other
   double spent_ = 0, runs_ = 0, next_run_ = 0;  // of the list, since its rebuild; next cost

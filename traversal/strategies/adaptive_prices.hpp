@@ -3,9 +3,6 @@
 /// the thresholds for changing between them.
 #pragma once
 
-#include <cmath>
-
-#include "hierarchies/hierarchy_extent.hpp"
 #include "traversal/tracked_front.hpp"
 
 namespace bvlab {
@@ -47,11 +44,6 @@ class AdaptivePrices {
   /// A failed trial may cost at most 1 / patience of the runs that follow it. A list that remains
   /// long because the bodies part is rebuilt after at most `patience` complete runs.
   static constexpr double patience = 32;
-
-  /// The size of a leaf, in units of the mesh, for leaves about as wide as long.
-  static double leaf_size(const HierarchyExtent& extent) {
-    return 2 * extent.radius / std::sqrt(static_cast<double>(extent.leaves));
-  }
 
   static double price(const TraversalStatistics& statistics, const Prices& prices) {
     return prices.run + prices.volumes * static_cast<double>(statistics.volumes) +
