@@ -46,14 +46,12 @@ struct alignas(16) NodeSphere {
 
   /// Sets the centre to that of a box, rounded to float, and returns it.
   Vec3<double> put_centre(const Vec3<double>& low, const Vec3<double>& high) {
-    Vec3<double> at;
-    for (int i = 0; i < 3; ++i) {
-      centre[i] = static_cast<float>(0.5 * low[i] + 0.5 * high[i]);
-      at[i] = static_cast<double>(centre[i]);
-    }
-    return at;
+    const Vec3<float> at = rounded<float>(0.5 * low + 0.5 * high);
+    for (int i = 0; i < 3; ++i) centre[i] = at[i];
+    return at.cast<double>();
   }
-  /// Sets the radius to a distance that has been computed with fewer than sixteen roundings.
+  /// Sets the radius to at least `farthest`, which has been computed with fewer than sixteen
+  /// roundings.
   void put_radius(double farthest) {
     radius = rounded_up<float>(farthest * (1 + 16 * unit_roundoff<double>));
   }

@@ -26,7 +26,8 @@ class Front : public FrontDefaults {
 
   /// Starts again from the two roots.
   void restart() {
-    entries_.assign(1, NodePair{0, 0});
+    clear();
+    entries_.push_back({0, 0});
     witnessed_ = false;
   }
 
@@ -38,7 +39,7 @@ class Front : public FrontDefaults {
     if (front.witnessed()) bring_forward(front.witness());
   }
 
-  void clear() { entries_.clear(); }
+  void clear() { entries_.clear(), holes_.clear(); }
 
   template <class Traversal>
   bool sweep(Traversal& traversal) {

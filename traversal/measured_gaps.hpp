@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Lower bounds on the gaps of the entries of a front, each with the sphere at which it was
-/// measured, and what is left of them after the bodies have moved: a register of entries at a time.
-/// An entry whose gap is used up is due for a test.
+/// For each entry of a front, a lower bound on its gap and the sphere at which it was measured.
+/// From the present poses follows a lower bound on the remaining gap, for a register of entries at
+/// once. An entry whose gap is used up is due for a test.
 ///
 /// How long a gap lasts. One of the two nodes is represented by its sphere, of centre y and radius
 /// r. Let x -> Tx take points of a to the frame of b, M its rotation, T' and M' the same now. If
@@ -15,15 +15,16 @@
 /// what both bodies have rotated by since, and 2. The margin of a verdict on triangles lasts as
 /// long, since no point of one has moved by more relative to the other.
 ///
-/// Tried and not kept: a deadline for each entry by a bound for whole bodies, which counts the
-/// rotation of both with the radii of the bodies. It is compared faster, but margins made 2.3 to
-/// 2.8 times the tests of volumes and of triangles (contacts, 0.03 and 0.3 degrees a frame).
+/// Tried and not kept: one expiry for each entry, from the displacement bounds of whole bodies. The
+/// comparison is cheaper, but margins made 2.3 to 2.8 times the tests of volumes and of triangles
+/// (contacts, 0.03 and 0.3 degrees a frame).
 ///
 /// Rounding, with e = 2^-24. Let d be the error bound of any coordinate of T'y (CornerTransform),
 /// and d_0 that of Ty, when the gap was measured. y and Ty, as they are kept, correspond to each
-/// other to within sqrt(3) d_0; T'y has an error below sqrt(3) d. Bodies' poses are not quite their
-/// orthonormal poses: what that adds to a sphere, and to the difference of the rotations, is at
-/// most thrice the error bound of both poses, which is less than d. 8 d_0 + 8 d cover all.
+/// other to within sqrt(3) d_0; T'y has an error below sqrt(3) d. (d is for points of a; a centre
+/// of b lies at most r_b + |t| from a's origin, and what that adds is below 2 d_0 + d.) Bodies'
+/// poses are not quite orthonormal. That adds at most 3p to a sphere and to the difference of the
+/// rotations, p being the sum of both poses' error bounds, and p < d. 8 d_0 + 8 d cover all.
 /// Differences, squares and the root are off by fewer than 16 e of themselves; squares that
 /// underflow by less than 2^-60 after the root, which is added as 2^-120 under it, and covers a
 /// radius that underflowed, too. Rotations are summed up in double and rounded to float: 2e of
@@ -34,6 +35,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "traversal/reference_sphere.hpp"
@@ -70,10 +72,21 @@ class MeasuredGaps {
   void lower(std::size_t i, float gap, float error_bound) {
     float& least = measured_[i / width].gap[i % width];
     const float other = gap - 8 * error_bound;
-    if (!(other >= least)) least = other;
+    least = other < least ? other : other >= least ? least : unknown;  // NaN
+  }
+  void swap(std::size_t i, std::size_t j) {
+    Measured &at_i = measured_[i / width], &at_j = measured_[j / width];
+    const auto swapped = [&](Lanes Measured::*lanes) {
+      std::swap((at_i.*lanes)[i % width], (at_j.*lanes)[j % width]);
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::swap(at_i.of_a[k][i % width], at_j.of_a[k][j % width]);
+      std::swap(at_i.of_b[k][i % width], at_j.of_b[k][j % width]);
+    }
+    swapped(&Measured::radius), swapped(&Measured::rotation), swapped(&Measured::gap);
   }
   void forget(std::size_t i) { measured_[i / width].gap[i % width] = unknown; }
-  /// The gap when it was measured; not positive where none is known.
+  /// The gap when it was measured, less what rounding may add; not positive where none is known.
   float operator[](std::size_t i) const { return measured_[i / width].gap[i % width]; }
 
   /// Lower bounds on what is left of the gaps `first` and up, `first` a multiple of `width`; not
@@ -97,8 +110,8 @@ class MeasuredGaps {
   }
 
  private:
-  // Not 0, of which something would be left where the sum of rotations has fallen: a strategy may
-  // be run on other bodies, and then forgets all gaps.
+  // Not 0: where the sum of rotations has fallen, as from one pair of bodies to another, something
+  // would be left of a gap of 0.
   static constexpr float unknown = -std::numeric_limits<float>::infinity();
 
   using Lanes = std::array<float, width>;

@@ -19,8 +19,8 @@ class CornerTransform {
  public:
   using Four = Batch<float, 4>;
 
-  /// Prepares the transform and its error bound: corners are rounded (e r), as are rotation and
-  /// translation; three products and sums follow.
+  /// Prepares the transform and its error bound. Corners, rotation and translation are each rounded
+  /// to float; three products and three sums follow.
   void begin(const RelativePose& a_from_b, double reach_a, double reach_b) {
     constexpr double e = unit_roundoff<float>;
     error_bound_ = static_cast<float>((16 * e * (reach_a + a_from_b.length) + 2 * e * reach_b +
@@ -79,7 +79,7 @@ struct ReferenceSphere {
   reference.radius = sphere.radius, reference.error_bound = transforms[side].error_bound();
   return reference;
 }
-/// The same for the smaller of two nodes' spheres, without a branch, which none could predict.
+/// The same for the smaller of two nodes' spheres, without a branch, which would be unpredictable.
 [[gnu::always_inline]] inline ReferenceSphere reference_sphere_of_smaller(
     const NodeSphere& a, const NodeSphere& b, const std::array<CornerTransform, 2>& transforms) {
   const std::array<const NodeSphere*, 2> spheres{&a, &b};

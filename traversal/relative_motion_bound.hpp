@@ -28,8 +28,8 @@ class RelativeMotionBound {
   }
 
   double now() const { return nearer_ * (1 + 4 * unit_roundoff<double>); }
-  /// Bodies (or parts) that are `gap` apart at the reference poses cannot touch while `now()` is
-  /// below this. Must be called before the first `advance`.
+  /// Returns the value that `now()` must reach before parts that are `gap` apart at the reference
+  /// poses can touch. Must be called before the first `advance`.
   double left_of(double gap) const {
     return (gap - nearer_) - 4 * unit_roundoff<double> * (gap + nearer_);
   }

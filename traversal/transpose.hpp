@@ -50,7 +50,7 @@ template <class T, int W, int P, int Q, bool kPairwise>
 /// The first four numbers of each of W rows, to the k-th of which row(k) points: W of each.
 template <class T, int W, class Row>
 [[gnu::always_inline]] inline std::array<Lanes<T, W>, 4> columns_of(const Row& row) {
-  // Fields that one instruction interleaves are 128 bits apart in doubles, neighbours in floats.
+  // One instruction interleaves fields 0 and 2 of doubles, 0 and 1 of floats.
   constexpr int step = sizeof(T) == 8 ? 2 : 1, other = 3 - step;
   // Register k holds rows k, k + 4, k + 8, ...: each group of four is transposed on its own.
   const auto r0 = side_by_side<T, W>(row, 0), r1 = side_by_side<T, W>(row, 1);

@@ -18,8 +18,8 @@
 /// r_b; n_b.q_i by 7e, Q n_a by 7e as a vector and its product with T by 16 e |T|; sums of half
 /// lengths by 12 e of them, each at most sqrt(3) of its body's reach r. That is less than 16 e |T|
 /// + 24 e (r_a + r_b), and |T| <= |t| + r_a + r_b (1 + ...): `margin` = slack + 64 e (|t| + r_a +
-/// r_b) leaves a third for higher orders. Where anything overflows, the margin is infinite or the
-/// comparison has a NaN, and nothing is found apart.
+/// r_b) leaves a third for higher orders. Where lengths reach 2^100, sums and products may
+/// overflow: then the margin is infinite, and nothing is found apart.
 ///
 /// Tried and not kept: without vector registers, to test one lane after the other and end each test
 /// at the first axis that separates. Runs from the roots took 1.08 to 1.40 times as long,
@@ -59,9 +59,12 @@ struct SlabBoxSiblingTest<float> {
     }
     rounded_to_float(pose.translation).copy_to(frame_change.translation, stdx::vector_aligned);
     // The `slack` of Placement, and the other terms.
-    frame_change.margin = static_cast<float>(
-        (74 * e * (pose.length + reach + reach_of_lanes) + pose.error_bound) * (1 + 8 * e) +
-        std::ldexp(1.0, std::numeric_limits<float>::min_exponent / 2 + 2));
+    const double lengths = pose.length + reach + reach_of_lanes;
+    frame_change.margin =
+        lengths < 0x1p100
+            ? static_cast<float>((74 * e * lengths + pose.error_bound) * (1 + 8 * e) +
+                                 std::ldexp(1.0, std::numeric_limits<float>::min_exponent / 2 + 2))
+            : std::numeric_limits<float>::infinity();
     return frame_change;
   }
 

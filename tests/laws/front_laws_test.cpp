@@ -240,6 +240,84 @@ TYPED_TEST(FrontLaws, NoVerdictOfOtherBodiesIsReused) {
   });
 }
 
+/// A query that one hit ends and that says which.
+class FirstHit : public Touching {
+ public:
+  static constexpr std::string_view name = "first-hit";
+  Contact hit{};
+
+  Outcome primitives(std::span<const Candidate> pending) {
+    return kept(Touching::primitives(pending), pending);
+  }
+  Outcome primitives(std::span<const Candidate> pending, std::span<Verdict> verdicts) {
+    return kept(Touching::primitives(pending, verdicts), pending);
+  }
+  bool known(std::uint32_t a, std::uint32_t b) {
+    hit = {a, b};
+    return Touching::known(a, b);
+  }
+  void answer() const = delete;  // of this query yes is not the whole answer
+
+ private:
+  Outcome kept(const Outcome& outcome, std::span<const Candidate> pending) {
+    if (outcome.satisfied) hit = {pending[outcome.witness].a, pending[outcome.witness].b};
+    return outcome;
+  }
+};
+
+TYPED_TEST(FrontLaws, MarginsRepeatAHitThatStillTouches) {
+  for (const double step : {0.001, 0.004, 0.02}) {
+    Margins margins;
+    NotCounting counter;
+    std::size_t quiet = 0;
+    for (int frame = 0; frame < 400; ++frame) {
+      const Pose pose = at(0.5 + 0.3 * std::sin(step * frame), step * frame);
+      this->place(Pose{}, pose);
+      std::vector<Contact> contacts;
+      Contacts all(contacts);
+      Recursive().run(this->pair(all, counter));
+      FirstHit query;
+      Counting counted;
+      margins.run(this->pair(query, counted));
+      ASSERT_EQ(query.touching(), !contacts.empty()) << frame;
+      if (!query.touching()) continue;
+      quiet += counted.n_v + counted.n_p == 0;
+      EXPECT_EQ(std::count(contacts.begin(), contacts.end(), query.hit), 1) << frame;
+    }
+    EXPECT_GT(quiet, step < 0.01 ? 50u : 0u);
+  }
+}
+
+/// Matrices that are no rotations enlarge a body, and the sphere about its origin with it: two tips
+/// that meet only where both are enlarged.
+TYPED_TEST(FrontLaws, SpheresOfEnlargedBodiesAreEnlarged) {
+  Vec3<double> tip = Vec3<double>::Zero();
+  for (const auto& vertex : this->mesh_.vertices)
+    if (vertex.norm() > tip.norm()) tip = vertex;
+  const auto towards = [&](double x) {
+    return Eigen::Quaterniond::FromTwoVectors(tip, Vec3<double>(x, 0, 0)).toRotationMatrix();
+  };
+  for (const double scale : {1.0 + 1e-5, 1.001, 1.004, 1.3}) {
+    Pose a, b;
+    a.rotation = scale * towards(1), b.rotation = scale * towards(-1);
+    Strategies::for_each([&]<class Strategy>(std::type_identity<Strategy>) {
+      Strategy strategy;
+      NotCounting counter;
+      std::size_t touching = 0;
+      for (int frame = 0; frame < 60; ++frame) {
+        b.translation[0] = 2 * tip.norm() * (1 + (scale - 1) * (frame / 3 % 2 ? 0.3 : 1.5));
+        this->place(a, b);
+        Touching query, from_roots;
+        strategy.run(this->pair(query, counter));
+        Recursive().run(this->pair(from_roots, counter));
+        EXPECT_EQ(query.touching(), from_roots.touching()) << Strategy::name << ' ' << scale;
+        touching += from_roots.touching();
+      }
+      EXPECT_EQ(touching, 30u);
+    });
+  }
+}
+
 /// Bodies that have never moved and bodies that stop after jumps, which keep nothing of use.
 TYPED_TEST(FrontLaws, AdaptiveTestsContactsAtRestNoMore) {
   for (const int jumps : {0, 40}) {

@@ -43,6 +43,38 @@ void expect_same(const ReplayResult& found, const ReplayResult& truth, const std
   }
 }
 
+/// A body that jumps to where floats end, or beyond, and comes back: a gap there is no licence to
+/// rest for ever. It is away for one frame or for two.
+TEST(WideReplays, ABodyComesBackFromBeyondTheFloats) {
+  for (const double away : {1e29, 1e31, 1e35, 1e38, 3.3e38, 4e38, 1e40, 1e43, 1e46, 1e200}) {
+    const std::vector<TriangleMesh> meshes{formula_mesh("star", 60)};
+    constexpr std::size_t frames = 60;
+    Trace trace{frames, 2, std::vector<double>(frames * 2 * 7, 0)};
+    for (std::size_t frame = 0; frame < frames; ++frame)
+      for (std::size_t i = 0; i < 2; ++i) {
+        double* const pose = &trace.values[(frame * 2 + i) * 7];
+        pose[3] = 1;
+        if (i == 1) pose[0] = frame % 3 == 0 || frame % 5 == 0 ? away : 0.1 * double(frame % 4);
+      }
+    const auto truth = replay(meshes, trace, binary("touching"), {});
+    EXPECT_GT(truth.hits, 20u);
+    for (const std::string volume : {"slab-box", "obb"})
+      for (const char* strategy : {"recursive", "margins"})
+        for (const char* kernel : {"siblings", "mixed"}) {
+          if (kernel == std::string("mixed") && volume != "obb") continue;
+          Variant variant = wide("touching", kernel);
+          variant.volume = volume, variant.strategy = strategy;
+          EXPECT_EQ(replay(meshes, trace, variant, {}).touching, truth.touching)
+              << volume << ' ' << strategy << ' ' << kernel << ' ' << away;
+        }
+    for (const char* strategy : {"margins", "adaptive"}) {
+      Variant variant = binary("touching");
+      variant.strategy = strategy;
+      EXPECT_EQ(replay(meshes, trace, variant, {}).touching, truth.touching) << strategy << away;
+    }
+  }
+}
+
 class WideReplay : public testing::TestWithParam<const char*> {};
 
 TEST_P(WideReplay, IsRecursionOverBinaryTrees) {

@@ -16,7 +16,8 @@ namespace bvlab {
 ///                         wants a bound, it depends on the volumes alone
 ///   primitives(pending)   tests one candidate or more; its outcome: is the query satisfied?
 ///   buffer_size           once more candidates than this are held, `primitives` is called
-///   one_hit_is_enough     whether one pair of triangles that share a point can end the query
+///   one_hit_is_enough     whether one pair of triangles that share a point can end the query; if
+///                         not, and it wants no bound, hits must not satisfy it: it finds them all
 ///   wants_bound           if present and true: one pair of near leaves is tested first, near pairs
 ///                         are tested before far ones, and `culls(gap)` decides the same
 /// The bvlab program makes a query by `from_options(options)` and reads `answer()`, a bool or a

@@ -3,11 +3,12 @@
 /// once), a separation list, or margins.
 ///
 /// Costs are counted, not timed, so that runs repeat: volume tests and triangle tests, each at a
-/// price that depends on which of the three is in use (adaptive_prices.hpp). Each keeps a balance
-/// of its cost minus that of the alternative. A list is given up when it has lost as much as three
-/// rebuilds cost; margins, when they have lost two tests of all entries. Either is tried again once
-/// 32 times its last loss has been spent, or when the step has halved, so failed trials add about a
-/// thirty-second. What the alternatives would cost is mostly known without a trial:
+/// price that depends on which of the three is in use (adaptive_prices.hpp). A list and margins
+/// keep a balance: their cost minus that of the alternative. A list is given up when it has lost as
+/// much as three rebuilds cost; margins, when they have lost two tests of all entries. Either is
+/// tried again once 32 times its last loss has been spent, or when the step has halved, so failed
+/// trials add about a thirty-second. What the alternatives would cost is mostly known without a
+/// trial:
 ///
 /// - A rebuild of a list costs what a recursion costs.
 /// - Margins start from a list's entries, at one test each, not from the roots. The gaps found
@@ -161,8 +162,8 @@ class Adaptive : public AdaptivePrices {
       // The cost that the runs since the last rebuild would have had from the roots.
       const double recursion = both_over_rebuild * (rebuild_ + cost) / 2;
       rebuild_ = cost;
-      balance_ = std::max(balance_ + spent_ - runs_ * recursion, -recursions_to_lose * cost);
-      if (balance_ > recursions_to_lose * cost) return fail_list();
+      balance_ = std::max(balance_ + spent_ - runs_ * recursion, -rebuilds_to_lose * cost);
+      if (balance_ > rebuilds_to_lose * cost) return fail_list();
       spent_ = runs_ = swept_ = 0;
     }
     spend(cost);
@@ -189,7 +190,7 @@ class Adaptive : public AdaptivePrices {
     use_ = Use::roots;
     spheres_.test_now();
     answer_.forget();
-    failed(recursions_to_lose * rebuild_);
+    failed(rebuilds_to_lose * rebuild_);
   }
 
   bool margins_are_due() const { return is_due() && (is_slow() || list_.size() == 1); }

@@ -11,8 +11,9 @@ class AdaptivePrices {
  public:
   /// Prices in nanoseconds: of a run, of a volume test (with its posing) and of a triangle test,
   /// from least squares over replays of all volumes; of a first test with margins and of a first
-  /// batch of triangles, from single pairs of bodies. Spheres cost two thirds of this, rectangle
-  /// swept spheres half as much again, in all three. Only the ratios between the three matter here.
+  /// batch of triangles, from single pairs of bodies. The prices of all three alternatives are two
+  /// thirds of this for spheres, half as much again for rectangle swept spheres; only their ratios
+  /// matter here.
   struct Prices {
     double run, volumes, triangles, first_test, batch;
   };
@@ -37,7 +38,7 @@ class AdaptivePrices {
   static constexpr double toward = 0.5;
   /// A list is dropped once it has cost this many rebuilds more than recursion. Set by hand, as are
   /// the next two: larger values lose more in failed trials, smaller ones give up too early.
-  static constexpr double recursions_to_lose = 3;
+  static constexpr double rebuilds_to_lose = 3;
   /// Margins are dropped once they have cost this many tests of all their entries more than a list:
   /// one for the rebuild, which is no loss if the front lasts, and one more.
   static constexpr double tests_to_lose = 2;

@@ -13,7 +13,8 @@ namespace bvlab {
 class LastAnswer {
  public:
   /// Passes the last answer to the query if it is kept and nothing has moved since; returns whether
-  /// that was so.
+  /// that was so. Must be called first in each run, since `remember` keeps an answer for the poses
+  /// and the query that were seen here.
   template <class Pair>
   bool repeat(const Pair& pair) {
     using Query = typename Pair::Query;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "traversal/lasting_answer.hpp"
@@ -24,10 +25,12 @@ struct KnownHit {
   std::uint32_t a, b;
 };
 
-/// A float slightly below x: half a unit in the last place is lost to each of two roundings; the
-/// last term covers underflow. For any x: a value beyond the largest float becomes one below it.
+/// A float below x, also where x exceeds the largest float: half a unit in the last place is lost
+/// to each of two roundings; the last term covers underflow. A number below all floats gives the
+/// least.
 inline float just_below(double x) {
-  const auto y = static_cast<float>(std::min(x, double{std::numeric_limits<float>::max()}));
+  constexpr double largest = std::numeric_limits<float>::max();
+  const auto y = static_cast<float>(std::max(std::min(x, largest), -largest));
   return y - std::abs(y) * 0x1p-22f - std::numeric_limits<float>::min();
 }
 inline float just_above(double x) { return -just_below(-x); }
@@ -82,7 +85,7 @@ class MarginFront {
   }
 
   void clear() {
-    entries_.clear(), gaps_.clear(), until_.clear();
+    entries_.clear(), gaps_.clear(), until_.clear(), holes_.clear();
     clear_hits();
     witness_ = nowhere;
   }
@@ -127,8 +130,9 @@ class MarginFront {
   bool is_due(std::size_t slot, const PresentPoses& now) const {
     return !(one_of(gaps_, slot, now) > 0);
   }
-  /// Collects the slots of the entries that are due, in order, and forgets their gaps: those whose
-  /// surfaces may be `limit` apart or less. Returns a lower bound on what is left of the others'.
+  /// Collects, in order, the slots of the entries whose surfaces may be within `limit` of each
+  /// other, and forgets their gaps. Returns a lower bound on the remaining gaps of all other
+  /// entries.
   float collect(const PresentPoses& now, double limit, std::vector<std::uint32_t>& due_slots) {
     using S = MeasuredGaps::S;
     const S limits(just_above(limit));
@@ -193,6 +197,11 @@ class MarginFront {
     hit_margins_.add();
     hit_margins_.set(hits_.size() - 1, margin, reference, rotation);
   }
+  /// Makes hit i, which has a margin of its own, the first.
+  void put_hit_first(std::size_t i) {
+    std::swap(hits_[0], hits_[i]);
+    hit_margins_.swap(0, i);
+  }
   /// What is left of the margin of hit i, in `hits()`.
   float remaining_of_hit(std::size_t i, const PresentPoses& now) const {
     return one_of(hit_margins_, i, now);
@@ -211,13 +220,13 @@ class MarginFront {
   void lasts_until(std::size_t slot, const PresentPoses& now) {
     double& group = until_[slot / width];
     const double until = displacement_at_expiry(now.displacement(), gaps_[slot]);
-    if (!(until >= group)) group = until;
+    group = until >= due ? std::min(group, until) : due;  // NaN: due
   }
 
   std::vector<NodePair> entries_;
   MeasuredGaps gaps_;
-  // For each group of `width` entries a sum of displacements below which none of them is due, so
-  // that their gaps need not be looked at.
+  // For each group of `width` entries: while the displacements sum to less than this, the query's
+  // limit included, none of them is due, and their gaps need not be looked at.
   std::vector<double> until_;
   std::vector<KnownHit> hits_;
   MeasuredGaps hit_margins_;

@@ -73,10 +73,11 @@ class MarginSweep : public FrontDefaults {
   }
 
   /// Whether opening a culled pair saves tests. An entry with a spare gap of g costs one test in
-  /// every g / step-th run, or in every run. A pair with an inner node, opened, becomes two such
-  /// entries, with gaps wider by about a quarter of the size of the opened node. A pair of leaves,
-  /// whose triangles cost as much as `triangle_cost` volumes, has triangles farther apart by about
-  /// half of both sizes. Where gaps last for many runs anyway, opening does not pay.
+  /// every g / step-th run, or in every run. A pair with an inner node, opened, becomes about two
+  /// such entries (more in wide trees), with gaps wider by about a quarter of the size of the
+  /// opened node. A pair of leaves, whose triangles cost as much as `triangle_cost` volumes, has
+  /// triangles farther apart by about half of both sizes. Where gaps last for many runs anyway,
+  /// opening does not pay.
   template <class Query, class Node>
   bool opens(const Query& query, const Node& a, const Node& b, double gap) const {
     constexpr double triangle_cost = 3, leaf_gain = 0.5, inner_gain = 0.25, long_enough = 4;
@@ -100,12 +101,17 @@ class MarginSweep : public FrontDefaults {
       double least = std::numeric_limits<double>::infinity();
       std::size_t i = first;
       for (; i < pending.size() && pending[i].slot == slot; ++i) {
-        least = std::min(least, verdicts[i].margin);
-        if (verdicts[i].hit && slot != Outcome::none)
-          add_hit<Query>(pending[i], verdicts[i].margin);
+        const double margin = verdicts[i].margin;
+        least = margin > 0 ? std::min(least, margin) : 0;  // also where it is NaN
+        if (verdicts[i].hit && slot != Outcome::none) {
+          add_hit<Query>(pending[i], margin);
+          if constexpr (!FindsAllHits<Query>)
+            if (outcome.satisfied && i == outcome.witness)
+              front_.put_hit_first(front_.hits().size() - 1);
+        }
       }
       // Two large leaves are tested in several portions: the least margin counts.
-      if (slot != Outcome::none) lower_gap(slot, least < 0 ? 0 : just_below(least));
+      if (slot != Outcome::none) lower_gap(slot, just_below(least));
       first = i;
     }
     if (outcome.witness != Outcome::none) {
@@ -184,7 +190,7 @@ class MarginSweep : public FrontDefaults {
   Outcome briefly(Query& query, std::span<const Candidate> pending) {
     const Outcome outcome = query.primitives(pending);
     if (outcome.satisfied) {
-      // Valid while the bodies do not move; then it is tested again.
+      // Valid while the bodies do not move; once they do, it is tested again.
       add_hit<Query>(pending[outcome.witness], 0);
       margin_of_hit_ = 0;
     }

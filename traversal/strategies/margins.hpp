@@ -10,9 +10,9 @@
 /// a sphere around one of the two nodes (measured_gaps.hpp). Where all gaps last, a run compares
 /// two numbers (lasting_answer.hpp).
 ///
-/// The front is rebuilt from the roots by the rule for replacing a machine whose upkeep rises: when
-/// a run (smoothed) costs more than the mean since the last rebuild, including the rebuild. This
-/// replaces a front that is too long because the bodies moved apart.
+/// The front is rebuilt from the roots when the smoothed cost of a run exceeds the mean cost since
+/// the last rebuild, that rebuild included. This replaces a front that is too long because the
+/// bodies moved apart.
 ///
 /// A run in which nothing is due costs tens of nanoseconds. When the query differs from that
 /// of the last run, all entries are due. The parameters of a query must not change between
@@ -138,7 +138,7 @@ class Margins {
       return !moved;
     } else {
       if (moved && !still_lasts(a, b)) return false;
-      for (const auto& hit : front_.hits())
+      for (const auto& hit : front_.hits())  // the first is the one whose margin the answer has
         if (query.known(hit.a, hit.b)) break;
       return true;
     }
@@ -170,7 +170,10 @@ class Margins {
     for (std::size_t i = 0; i < front_.hits().size(); ++i) {
       const KnownHit& hit = front_.hits()[i];
       const float remaining = front_.remaining_of_hit(i, now);
-      if (remaining > 0 && query.known(hit.a, hit.b)) return remaining;
+      if (remaining > 0 && query.known(hit.a, hit.b)) {
+        front_.put_hit_first(i);
+        return remaining;
+      }
     }
     // They will be found again. Their entries are due even if the run ends before they are tested.
     for (const KnownHit& hit : front_.hits()) front_.forget_gap(hit.slot);

@@ -44,7 +44,7 @@ class ObservedStep {
     return true;
   }
 
-  /// The motion in the last run that moved the bodies.
+  /// The motion per run when it was last measured and not 0.
   double last() const { return step_; }
   /// The motion that is expected in the next run.
   double expected() const { return at_rest() ? 0 : step_; }

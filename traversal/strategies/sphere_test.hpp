@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "hierarchies/geometry/relative_pose.hpp"
 #include "hierarchies/geometry/small_matrices.hpp"
 #include "hierarchies/hierarchy_extent.hpp"
 
@@ -18,12 +19,15 @@ class SphereTest {
   template <class Pair>
   Result operator()(const Pair& pair) {
     if (until_test_ > 0) return --until_test_, Result::not_tested;
-    // The enlargement of the radii far exceeds the errors of rotations and rounding.
+    // The enlargement of the radii far exceeds all rounding. Where a rotation is not orthonormal,
+    // the pose's error bound is what it adds to lengths.
     if (radii_ == 0)
       radii_ = (radius(pair.a().extent()) + radius(pair.b().extent())) * (1 + 0x1p-20) +
                (pair.a().extent().reach + pair.b().extent().reach) * 0x1p-40;
-    const Vec3<double>&a = pair.a().pose().translation, &b = pair.b().pose().translation;
-    const double radii = radii_ + (a.lpNorm<1>() + b.lpNorm<1>()) * 0x1p-40 + pair.query().limit();
+    const OrthonormalPose &at_a = pair.a().orthonormal_pose(), &at_b = pair.b().orthonormal_pose();
+    const Vec3<double>&a = at_a.translation, &b = at_b.translation;
+    const double radii = radii_ + (at_a.error_bound + at_b.error_bound) +
+                         (a.lpNorm<1>() + b.lpNorm<1>()) * 0x1p-40 + pair.query().limit();
     const double squared = (a - b).squaredNorm();
     if (squared > radii * radii && squared > tiny) return Result::apart;
     until_test_ = rest;

@@ -159,8 +159,9 @@ class GapMeasure {
     start_.front->gaps().set(entry, gap, triangles.reference_sphere(), start_.rotation);
     if (!(gap > 0)) (*start_.front)[entry].rest = 8;
   }
-  /// Where all hits are sought: triangles touch, or may. Their numbers are not used: the pair keeps
-  /// no front, since a retest would test all its contacts again.
+  /// Called where all hits are sought, for triangles that touch or may touch. Which ones is not
+  /// used later: a pair that touches keeps no front, since a retest would test all its contacts
+  /// again.
   void record_touching(const NodePair& pair) { touched_ = pair; }
   void record_crossing(const Crossing& found) { crossing_ = found; }
 
@@ -173,11 +174,12 @@ class GapMeasure {
   const std::optional<Crossing>& crossing() const { return crossing_; }
   /// The pair whose triangles touched, or may have.
   const std::optional<NodePair>& touched() const { return touched_; }
-  /// A lower bound on the distance of the bodies; 0 where none is known. It covers the rounding of
-  /// separations (see slab_box_sibling_test.hpp, gaps).
+  /// A lower bound on the distance of the bodies; 0 where none is known, and where it overflowed:
+  /// an infinite gap would last for ever. It covers the rounding of separations (see
+  /// slab_box_sibling_test.hpp, gaps).
   double gap() const {
     const double least = std::min(stdx::hmin(least_), stdx::hmin(least_remaining_));
-    return least > 0 ? least * (1 - 32 * unit_roundoff<float>) : 0;
+    return least > 0 && least < infinity ? least * (1 - 32 * unit_roundoff<float>) : 0;
   }
 
  private:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The front of two wide trees. Its entries: every step of the traversal, with the lanes it opened,
-/// the least gap of the others and the sphere at which it was measured; and every pair whose
-/// triangles were tested, likewise once its gap has been measured (measured_gaps.hpp). Such a pair
-/// is a triangle and a leaf (kernel siblings) or two leaves (kernel mixed).
+/// The front of two wide trees. It has two kinds of entries. A step has the lanes that it opened,
+/// and the least gap of the others. A pair whose triangles were tested has their gap, once that has
+/// been measured; it is a triangle and a leaf (kernel siblings) or two leaves (kernel mixed). Each
+/// gap is kept with the sphere at which it was measured (measured_gaps.hpp).
 ///
 /// Law: every pair of triangles lies below an unopened lane of exactly one entry, or in one entry
 /// of triangles.
@@ -25,7 +25,7 @@ class WideFront {
     NodePair pair;          ///< of a step, or of tested triangles
     std::uint16_t opened;   ///< the opened lanes of a step
     std::uint8_t triangle;  ///< 1 for a pair of tested triangles
-    std::uint8_t rest;      ///< tests to come in which its gap is not measured
+    std::uint8_t rest;      ///< its gap is measured again in the test that makes this 0
   };
 
   std::size_t size() const { return entries_.size(); }

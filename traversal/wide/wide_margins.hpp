@@ -8,23 +8,24 @@
 /// Bodies that touch keep touching until an edge that crosses a triangle can have left it. Then
 /// these two triangles are tested (triangle_margin.hpp), in a batch with those of other pairs.
 /// Triangles that meet without a margin, as coplanar faces do, are tested in every frame by the
-/// query's own test. Only if they no longer meet are the bodies traversed, first where they
-/// touched.
+/// query's own test. If they no longer meet, or no longer with a margin, the bodies are traversed,
+/// first where they touched.
 ///
 /// A pair that was traversed and found apart writes a front (WideFront) in its next traversal.
 /// Later traversals retest only the entries whose gaps may have closed. Where that is most of them
 /// the pair keeps no front for sixteen traversals, and for four times as many each time this
 /// recurs, at most 256.
 ///
-/// Tried and not kept. Where bodies are fast, hardly any answer outlasts a frame, and some frames
-/// could start from the roots without a measurement. A rule that skips measuring when few
-/// traversals were spared lately gains a tenth there, but slows single pairs by up to half, since
-/// what is spared comes in phases; averaged over enough traversals to avoid that, it gains nothing.
-/// Volumes with a small gap can be opened so that the least gap grows. But triangles of two
-/// surfaces are close in many places, the closest ones are at the distance itself, and opening
-/// costs five times as much. Nor does it pay to measure gaps of triangles, exactly or not, except
-/// when an entry of triangles is retested (GapMeasure): a third of the tests remains, each gap
-/// costs as much as four, and of 8000 polygons many are within a step or two of each other.
+/// Tried and not kept:
+/// - To measure no gaps where few traversals were spared lately, as in fast motion. It gains a
+/// tenth
+///   there, but single pairs take up to half as long again: they are spared in some phases of a
+///   motion and not in others. A mean over more traversals gains nothing.
+/// - To open volumes with a small gap, so that the least gap grows. It costs five times as much,
+/// and
+///   the least gap stays that of the nearest triangles.
+/// - To measure gaps of triangles in other traversals than retests (GapMeasure). A third of the
+///   tests remains, and each gap costs as much as four tests.
 #pragma once
 
 #include <algorithm>
