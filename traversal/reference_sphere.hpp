@@ -20,13 +20,16 @@ class CornerTransform {
   using Four = Batch<float, 4>;
 
   /// Prepares the transform and its error bound. Corners, rotation and translation are each rounded
-  /// to float; three products and three sums follow.
+  /// to float; three products and three sums follow. Where lengths reach 2^100 these may overflow:
+  /// then the error bound is infinite.
   void begin(const RelativePose& a_from_b, double reach_a, double reach_b) {
     constexpr double e = unit_roundoff<float>;
-    error_bound_ = static_cast<float>((16 * e * (reach_a + a_from_b.length) + 2 * e * reach_b +
-                                       a_from_b.error_bound) *
-                                      (1 + 8 * e)) +
-                   std::numeric_limits<float>::min();
+    error_bound_ = reach_a + a_from_b.length + reach_b < 0x1p100
+                       ? static_cast<float>((16 * e * (reach_a + a_from_b.length) +
+                                             2 * e * reach_b + a_from_b.error_bound) *
+                                            (1 + 8 * e)) +
+                             std::numeric_limits<float>::min()
+                       : std::numeric_limits<float>::infinity();
     for (int i = 0; i < 3; ++i)
       rounded_to_float(a_from_b.column[static_cast<std::size_t>(i)])
           .copy_to(column_[i], stdx::vector_aligned);

@@ -118,12 +118,15 @@ struct SlabBox {
     }
     bound(low, high, farthest);
   }
-  /// Sets the normal to `direction`; to the x axis if that is zero or not finite.
+  /// Sets the normal to `direction`; to the x axis if that is no unit vector, as where the length
+  /// that a normal was divided by had underflowed. A longer normal would make gaps too large.
   void face(const Vec3<double>& direction) {
-    normal = rounded<S>(direction.allFinite() && squared_norm(direction) > 0.5
-                            ? direction
-                            : Vec3<double>(Vec3<double>::UnitX()));
+    const double squared = squared_norm(direction);
+    normal =
+        rounded<S>(squared > 0.5 && squared < longest_normal ? direction
+                                                             : Vec3<double>(Vec3<double>::UnitX()));
   }
+  static constexpr double longest_normal = 1 + 0x1p-30;  // squared
   /// Sets the slab around all n.x from `low` to `high`, for the normal n and points x about the
   /// centre, |x|_1 being at most `farthest`. Sums of three products of differences are off by less
   /// than 8u of their magnitudes, which are at most |x|_1 for a normal of about unit length.

@@ -140,10 +140,9 @@ class SlabBoxColumns {
     const Lanes length = stdx::sqrt((n[0] * n[0] + n[1] * n[1]) + n[2] * n[2]);
     const auto with_area = bits(length > Lanes(0.0));
     for (auto& x : n) x = (x + 0.0) / length;  // + 0.0: as a sum from 0, which is never -0
-    // As `face`: the x axis where the direction is not a unit vector, nor finite.
+    // As `face`: the x axis where the direction is no unit vector.
     const Lanes squared = (n[0] * n[0] + n[1] * n[1]) + n[2] * n[2];
-    const auto usual =
-        squared > Lanes(0.5) && squared < Lanes(std::numeric_limits<double>::infinity());
+    const auto usual = squared > Lanes(0.5) && squared < Lanes(SlabBox::longest_normal);
     for (std::size_t j = 0; j < 3; ++j)
       n[j] = rounded_lanes(select(usual, n[j], Lanes(j == 0 ? 1.0 : 0.0)), to + (6 + j) * stride);
     Lanes low(std::numeric_limits<double>::infinity()), high = -low, farthest(0.0);

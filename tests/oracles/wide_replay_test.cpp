@@ -75,6 +75,63 @@ TEST(WideReplays, ABodyComesBackFromBeyondTheFloats) {
   }
 }
 
+/// Two bodies at rest, of a mesh each.
+void expect_same_at_rest(const std::vector<TriangleMesh>& meshes, const Pose& first,
+                         const std::string& query) {
+  Trace trace{3, 2, {}};
+  const Eigen::Quaterniond q(first.rotation);
+  for (std::size_t frame = 0; frame < 3; ++frame) {
+    const auto& t = first.translation;
+    for (const double x : {t[0], t[1], t[2], q.w(), q.x(), q.y(), q.z()}) trace.values.push_back(x);
+    for (const double x : {0, 0, 0, 1, 0, 0, 0}) trace.values.push_back(x);
+  }
+  const auto truth = replay(meshes, trace, binary(query), {});
+  for (const char* kernel : {"siblings", "mixed"})
+    for (const std::string volume : {"slab-box", "obb"})
+      for (const char* strategy : {"recursive", "margins"}) {
+        if (kernel == std::string("mixed") && volume != "obb") continue;
+        Variant variant = wide(query, kernel);
+        variant.volume = volume, variant.strategy = strategy;
+        expect_same(replay(meshes, trace, variant, {}), truth, volume + ' ' + kernel);
+      }
+}
+
+/// The squares of its normal are subnormal: divided by the root of their sum it is 1.235 long, and
+/// gaps along it are too large. Of two triangles above it one is nearer, the other seems so.
+TEST(WideReplays, ASliverHasANormalOfUnitLength) {
+  TriangleMesh sliver, two;
+  sliver.vertices = {{0, 0, 0}, {1, 0, 0}, {0.5, 2.3e-162, 1.5e-162}};
+  sliver.triangles = {{0, 1, 2}};
+  const Vec3<double> up = Vec3<double>(0, -1.5, 2.3).normalized(), aside(0, up[2], -up[1]);
+  for (const Vec3<double>& at : {Vec3<double>(0.5 * Vec3<double>::UnitX() + 1.0 * up),
+                                 Vec3<double>(0.5 * Vec3<double>::UnitX() + 1.2 * aside)}) {
+    const auto first = static_cast<std::uint32_t>(two.vertices.size());
+    for (const Vec3<double>& corner :
+         {Vec3<double>(0, 0, 0), Vec3<double>(1e-3, 0, 0), Vec3<double>(1e-3 * up)})
+      two.vertices.push_back(at + corner);
+    two.triangles.push_back({first, first + 1, first + 2});
+  }
+  expect_same_at_rest({two, sliver}, Pose{}, "distance");
+}
+
+/// The sums by which float corners are transformed overflow on their way to a finite end.
+TEST(WideReplays, CornersThatOverflowOnTheirWay) {
+  const auto triangle = [](const Vec3<double>& at, const Vec3<double>& e, const Vec3<double>& f) {
+    TriangleMesh mesh;
+    mesh.vertices = {at, at + e, at + f};
+    mesh.triangles = {{0, 1, 2}};
+    return mesh;
+  };
+  const Pose turned = *pose_from({3e38, -3e38, 0}, std::cos(M_PI / 8), 0, 0, std::sin(M_PI / 8));
+  const TriangleMesh a = triangle({3e38, 3e38, 0}, {1e37, 0, 0}, {0, 1e37, 0});
+  const Vec3<double> middle = turned({3.025e38, 3.025e38, 0});
+  const TriangleMesh b =
+      triangle(middle - Vec3<double>(0, 0, 1e37), {1e36, 0, 2e37}, {0, 1e36, 2e37});
+  for (const char* query : {"touching", "contacts"}) {
+    expect_same_at_rest({a, b}, turned, query);
+  }
+}
+
 class WideReplay : public testing::TestWithParam<const char*> {};
 
 TEST_P(WideReplay, IsRecursionOverBinaryTrees) {

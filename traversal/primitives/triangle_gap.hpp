@@ -66,8 +66,8 @@ template <Batched S>
   const S apart = max(max(gap_along<S>(normal_a, from_first), gap_along<S>(normal_b, from_first)),
                       gap_along<S>(between, from_first));
   const S gap = apart * S(1 - 8 * u) - (S(10 * u) * longest + S(8) * off + S(T(0x1p-90)));
-  // Written so that NaN gives 0.
-  return select<S>(gap > S(0), gap, S(0));
+  // Written so that NaN gives 0, as does what has overflowed.
+  return select<S>(gap > S(0) && gap < S(std::numeric_limits<T>::infinity()), gap, S(0));
 }
 
 }  // namespace bvlab

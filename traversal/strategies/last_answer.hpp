@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The last answer of a pair of bodies, which is valid while neither moves.
+/// The last answer of a pair of bodies, which is valid while neither moves. The parameters of a
+/// query must not change between runs.
 #pragma once
 
 #include <cstdint>

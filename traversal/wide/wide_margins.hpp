@@ -74,7 +74,8 @@ class WideMargins {
     return std::accumulate(front_sizes_.begin(), front_sizes_.end(), std::size_t{0});
   }
 
-  /// Another query than in the last frame starts without memory.
+  /// Another query than in the last frame starts without memory. The parameters of a query, as the
+  /// relative error of distances, must not change between frames.
   template <class Query>
   void begin_frame() {
     if (last_query_ == &Query::name) return;

@@ -96,7 +96,9 @@ class FollowedBlocks {
     auto& rows = candidates_.rows();
     last_rows_ = rows;
     const bool followed = follow(boxes);
-    if (!inserted_.empty() || !emptied_.empty()) return followed;  // slots changed: next time
+    // Where slots changed, or the next candidates took over in an order of their own, the rows of
+    // the last frame no longer fit: next time.
+    if (!inserted_.empty() || !emptied_.empty() || (followed && took_over_)) return followed;
     std::swap(rows, last_rows_);
     // Where too many left their fat boxes, the list is still that of the last frame.
     begin(boxes, horizon, followed ? Changes::unreported : Changes::reported);
