@@ -21,7 +21,9 @@ namespace detail {
   const auto low = columns_of<double, 8>(row),
              high = columns_of<double, 8>([&](int k) { return row(k) + 4; });
   for (std::size_t i = 0; i < 4; ++i) column[i] = low[i], column[4 + i] = high[i];
-  for (int k = 0; k < 8; ++k) column[8][k] = row(k)[8];
+  // At once: written lane by lane it would be read back before the stores are done.
+  column[8] = Lanes<double, 8>{row(0)[8], row(1)[8], row(2)[8], row(3)[8],
+                               row(4)[8], row(5)[8], row(6)[8], row(7)[8]};
 }
 
 template <class S, class L>
