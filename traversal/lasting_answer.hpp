@@ -11,8 +11,7 @@
 namespace bvlab {
 
 /// The sum of displacements at which an answer expires if the bodies are `gap` apart now, the sum
-/// being `displacement`. Covers
-/// the rounding of such sums, here and where they are compared.
+/// being `displacement`. Covers the rounding of such sums, here and where they are compared.
 inline double displacement_at_expiry(double displacement, double gap) {
   return (displacement + gap) * (1 - 8 * unit_roundoff<double>);
 }

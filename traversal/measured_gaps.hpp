@@ -35,7 +35,6 @@
 #include <array>
 #include <cstddef>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "traversal/reference_sphere.hpp"
@@ -73,17 +72,6 @@ class MeasuredGaps {
     float& least = measured_[i / width].gap[i % width];
     const float other = gap - 8 * error_bound;
     least = other < least ? other : other >= least ? least : unknown;  // NaN
-  }
-  void swap(std::size_t i, std::size_t j) {
-    Measured &at_i = measured_[i / width], &at_j = measured_[j / width];
-    const auto swapped = [&](Lanes Measured::*lanes) {
-      std::swap((at_i.*lanes)[i % width], (at_j.*lanes)[j % width]);
-    };
-    for (std::size_t k = 0; k < 3; ++k) {
-      std::swap(at_i.of_a[k][i % width], at_j.of_a[k][j % width]);
-      std::swap(at_i.of_b[k][i % width], at_j.of_b[k][j % width]);
-    }
-    swapped(&Measured::radius), swapped(&Measured::rotation), swapped(&Measured::gap);
   }
   void forget(std::size_t i) { measured_[i / width].gap[i % width] = unknown; }
   /// The gap when it was measured, less what rounding may add; not positive where none is known.

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "traversal/lasting_answer.hpp"
@@ -197,16 +196,14 @@ class MarginFront {
     hit_margins_.add();
     hit_margins_.set(hits_.size() - 1, margin, reference, rotation);
   }
-  /// Makes hit i, which has a margin of its own, the first.
-  void put_hit_first(std::size_t i) {
-    std::swap(hits_[0], hits_[i]);
-    hit_margins_.swap(0, i);
-  }
+  /// Sets which hit is repeated while the answer lasts, for queries that one hit may end.
+  void repeat_hit(std::size_t i) { repeated_ = i; }
+  std::size_t repeated_hit() const { return repeated_; }
   /// What is left of the margin of hit i, in `hits()`.
   float remaining_of_hit(std::size_t i, const PresentPoses& now) const {
     return one_of(hit_margins_, i, now);
   }
-  void clear_hits() { hits_.clear(), hit_margins_.clear(); }
+  void clear_hits() { hits_.clear(), hit_margins_.clear(), repeated_ = 0; }
 
  private:
   static constexpr int most_brief_tests = 32;
@@ -230,6 +227,7 @@ class MarginFront {
   std::vector<double> until_;
   std::vector<KnownHit> hits_;
   MeasuredGaps hit_margins_;
+  std::size_t repeated_ = 0;  // of hits_
   std::uint32_t witness_ = nowhere;
   int brief_tests_ = 0;
   std::vector<std::uint32_t> holes_;  // empty between runs

@@ -107,7 +107,7 @@ class MarginSweep : public FrontDefaults {
           add_hit<Query>(pending[i], margin);
           if constexpr (!FindsAllHits<Query>)
             if (outcome.satisfied && i == outcome.witness)
-              front_.put_hit_first(front_.hits().size() - 1);
+              front_.repeat_hit(front_.hits().size() - 1);
         }
       }
       // Two large leaves are tested in several portions: the least margin counts.

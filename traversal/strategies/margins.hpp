@@ -138,8 +138,10 @@ class Margins {
       return !moved;
     } else {
       if (moved && !still_lasts(a, b)) return false;
-      for (const auto& hit : front_.hits())  // the first is the one whose margin the answer has
-        if (query.known(hit.a, hit.b)) break;
+      const auto& hits = front_.hits();
+      for (std::size_t i = Query::one_hit_is_enough ? front_.repeated_hit() : 0; i < hits.size();
+           ++i)
+        if (query.known(hits[i].a, hits[i].b)) break;
       return true;
     }
   }
@@ -171,7 +173,7 @@ class Margins {
       const KnownHit& hit = front_.hits()[i];
       const float remaining = front_.remaining_of_hit(i, now);
       if (remaining > 0 && query.known(hit.a, hit.b)) {
-        front_.put_hit_first(i);
+        front_.repeat_hit(i);
         return remaining;
       }
     }

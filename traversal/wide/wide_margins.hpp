@@ -16,16 +16,15 @@
 /// the pair keeps no front for sixteen traversals, and for four times as many each time this
 /// recurs, at most 256.
 ///
-/// Tried and not kept:
-/// - To measure no gaps where few traversals were spared lately, as in fast motion. It gains a
-/// tenth
-///   there, but single pairs take up to half as long again: they are spared in some phases of a
-///   motion and not in others. A mean over more traversals gains nothing.
-/// - To open volumes with a small gap, so that the least gap grows. It costs five times as much,
-/// and
-///   the least gap stays that of the nearest triangles.
-/// - To measure gaps of triangles in other traversals than retests (GapMeasure). A third of the
-///   tests remains, and each gap costs as much as four tests.
+/// Tried and not kept: to measure no gaps where few traversals were spared lately, as in fast
+/// motion. It gains a tenth there, but single pairs take up to half as long again: they are spared
+/// in some phases of a motion and not in others. A mean over more traversals gains nothing.
+///
+/// Nor to open volumes with a small gap, so that the least gap grows. It costs five times as much,
+/// and the least gap stays that of the nearest triangles.
+///
+/// Nor to measure gaps of triangles in other traversals than retests (GapMeasure). A third of the
+/// tests remains, and each gap costs as much as four tests.
 #pragma once
 
 #include <algorithm>
