@@ -185,15 +185,20 @@ class FrontRecorder {
   [[gnu::always_inline]] std::uint64_t record(Pair& pair, const Step& step, LanesApart found,
                                               std::uint64_t near, const Entries& entries,
                                               Query& query) const {
+    // In two loops: whether a pair is opened is unpredictable.
+    std::uint64_t opened = 0;
     for (std::uint64_t rest = found.apart; rest; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
       const NodePair nodes = step.pairs[i];
-      if (front_.opens(query, pair.a().hierarchy().node(nodes.a),
-                       pair.b().hierarchy().node(nodes.b), step.pairs.gap(i)))
-        near |= std::uint64_t{1} << i;
-      else
-        entries.keep(step.pairs, i, EntryState::culled, step.pairs.gap(i));
+      const bool opens = front_.opens(query, pair.a().hierarchy().node(nodes.a),
+                                      pair.b().hierarchy().node(nodes.b), step.pairs.gap(i));
+      opened |= std::uint64_t{opens} << i;
     }
+    for (std::uint64_t rest = found.apart & ~opened; rest; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      entries.keep(step.pairs, i, EntryState::culled, step.pairs.gap(i));
+    }
+    near |= opened;
     return near;
   }
 

@@ -10,6 +10,7 @@
 #include "hierarchies/geometry/relative_pose.hpp"
 #include "hierarchies/node_sphere.hpp"
 #include "hierarchies/wide/lanes.hpp"
+#include "traversal/transpose.hpp"
 
 namespace bvlab {
 
@@ -88,6 +89,44 @@ struct ReferenceSphere {
   const std::array<const NodeSphere*, 2> spheres{&a, &b};
   const auto side = static_cast<std::size_t>(!(a.radius < b.radius));
   return reference_sphere_of(*spheres[side], side, transforms);
+}
+
+/// Reference spheres, one per lane.
+template <Batched S>
+struct ReferenceSpheres {
+  std::array<std::array<S, 3>, 2> centre_in;
+  S radius, error_bound;
+};
+/// The same for the smaller of two nodes' spheres in each lane: `sphere(side, k)` points to one.
+template <Batched S, class SphereOf>
+[[gnu::always_inline]] inline ReferenceSpheres<S> reference_spheres_of_smaller(
+    const SphereOf& sphere, const std::array<CornerTransform, 2>& transforms) {
+  constexpr int W = width<S>();
+  const auto of_side = [&](std::size_t side) __attribute__((always_inline)) {
+    const auto centre_and_radius = [&](int k) __attribute__((always_inline)) {
+      return sphere(side, k)->centre;
+    };
+    return detail::columns_of<float, W>(centre_and_radius);
+  };
+  const auto a = of_side(0), b = of_side(1);
+  const auto batch = [](const auto& lanes) __attribute__((always_inline)) {
+    return detail::batch_from<S>(lanes);
+  };
+  const S radius_a = batch(a[3]), radius_b = batch(b[3]);
+  const auto of_a = radius_a < radius_b;
+  std::array<S, 3> centre;
+  for (std::size_t i = 0; i < 3; ++i) centre[i] = select(of_a, batch(a[i]), batch(b[i]));
+  const auto in_b = transforms[0](centre[0], centre[1], centre[2]),
+             in_a = transforms[1](centre[0], centre[1], centre[2]);
+  ReferenceSpheres<S> spheres;
+  for (std::size_t i = 0; i < 3; ++i) {
+    spheres.centre_in[0][i] = select(of_a, centre[i], in_a[i]);
+    spheres.centre_in[1][i] = select(of_a, in_b[i], centre[i]);
+  }
+  spheres.radius = select(of_a, radius_a, radius_b);
+  spheres.error_bound =
+      select(of_a, S(transforms[0].error_bound()), S(transforms[1].error_bound()));
+  return spheres;
 }
 
 }  // namespace bvlab

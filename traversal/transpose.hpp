@@ -7,6 +7,8 @@
 #include <cstring>
 #include <utility>
 
+#include "hierarchies/geometry/scalar.hpp"
+
 namespace bvlab::detail {
 
 template <class T, int W>
@@ -65,6 +67,14 @@ template <class T, int W, class Row>
   columns[other] = shuffled<T, W, 0, 1, true>(second01, second23);
   columns[3] = shuffled<T, W, 2, 3, true>(second01, second23);
   return columns;
+}
+
+template <class S, class L>
+[[gnu::always_inline]] inline S batch_from(const L& lanes) {
+  static_assert(sizeof(L) == sizeof(Element<S>) * width<S>());
+  alignas(64) Element<S> number[width<S>()];
+  std::memcpy(number, &lanes, sizeof lanes);
+  return S(number, stdx::vector_aligned);
 }
 
 }  // namespace bvlab::detail

@@ -3,6 +3,7 @@
 /// batch, one volume broadcast to all lanes, and a loop over the registers of a step.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -69,6 +70,29 @@ template <Scalar S>
 }
 
 namespace detail {
+
+/// Writes first + k for each set bit k of the mask, side by side. May write F numbers.
+template <int F>
+[[gnu::always_inline]] inline void write_numbers(std::uint32_t* out, std::uint64_t mask,
+                                                 std::uint32_t first) {
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+  if constexpr (F == 16) {
+    const __m512i lanes = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
+    const __m512i all = _mm512_add_epi32(_mm512_set1_epi32(static_cast<int>(first)), lanes);
+    _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), all));
+    return;
+  }
+  if constexpr (F == 8) {
+    const __m256i lanes = _mm256_set_epi32(7, 6, 5, 4, 3, 2, 1, 0);
+    const __m256i all = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first)), lanes);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
+                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), all));
+    return;
+  }
+#endif
+  for (; mask; mask &= mask - 1)
+    *out++ = first + static_cast<std::uint32_t>(std::countr_zero(mask));
+}
 
 /// The number of lanes. Volumes are plain aggregates of scalars, stored field by field.
 template <class V, class Lanes>

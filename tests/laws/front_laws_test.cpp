@@ -495,32 +495,32 @@ TEST(MarginFronts, CollectWhatIsDue) {
   for (std::size_t n = 1; n < 70; ++n) {
     Ball a, b;
     MarginFront front;
-    std::vector<std::uint32_t> due;
-    const auto measure = [&](std::size_t slot, PresentPoses& now) {
-      const NodeSphere point(std::vector{Vec3<double>(0, 0, 0)});
-      front.set_gap(slot, static_cast<float>(slot),
-                    reference_sphere_of(point, slot % 2, now.transforms()), now);
-    };
-    for (std::size_t i = 0; i < n; ++i) {
+    std::vector<std::uint32_t> buffer;
+    std::array<NodeSphere, 2> spheres{};
+    spheres[1].radius = 1e-6f;
+    const auto measure_all = [&] {
       PresentPoses now(a, b);
-      measure(front.add({0, 0}), now);
-    }
+      for (std::size_t i = 0; i < n; ++i) front.set_gap(i, static_cast<float>(i));
+      front.measure(now, {spheres.data(), spheres.data()}, 0);
+    };
+    // The smaller sphere is that of a, and of b, by turns.
+    for (std::uint32_t i = 0; i < n; ++i) front.add({i % 2, 1 - i % 2});
+    measure_all();
     const auto expect_due = [&](double time, double limit) {
       PresentPoses now(a, b);
-      const float left = front.collect(now, limit, due);
+      const MarginFront::Due due = front.collect(now, limit, buffer);
       const auto passed = static_cast<std::size_t>(std::clamp(time + 1, 0.0, double(n)));
-      ASSERT_EQ(due.size(), passed) << n << " entries at " << time;
-      for (std::size_t i = 0; i < passed; ++i) ASSERT_EQ(due[i], i);
+      ASSERT_EQ(due.slots.size(), passed) << n << " entries at " << time;
+      for (std::size_t i = 0; i < passed; ++i) ASSERT_EQ(due.slots[i], i);
       if (passed < n && limit == 0) {
-        EXPECT_LE(left, static_cast<double>(passed) - time);
-        EXPECT_GE(left, static_cast<double>(passed) - time - 1e-3);
+        EXPECT_LE(due.least_of_others, static_cast<double>(passed) - time);
+        EXPECT_GE(due.least_of_others, static_cast<double>(passed) - time - 1e-3);
       }
       for (std::size_t i = 0; i < n; ++i) EXPECT_EQ(front.gap(i) > 0, i >= passed);
     };
     for (const double limit : {0.0, n / 2.0, 1e3, std::numeric_limits<double>::infinity()}) {
       expect_due(limit, limit);
-      PresentPoses now(a, b);
-      for (std::size_t i = 0; i < n; ++i) measure(i, now);
+      measure_all();
     }
     for (const double x : {0.25, 0.75, 1.5, 6.25, 40.5}) {
       b.move_to(x);
@@ -528,9 +528,37 @@ TEST(MarginFronts, CollectWhatIsDue) {
     }
     b.move_to(0.5);  // a sphere that came back is as far as it was, but what was forgotten is due
     PresentPoses now(a, b);
-    front.collect(now, 0, due);
-    EXPECT_EQ(due.size(), std::min<std::size_t>(n, 41));
+    EXPECT_EQ(front.collect(now, 0, buffer).slots.size(), std::min<std::size_t>(n, 41));
   }
+}
+
+/// What was set since the last measurement is the least of its numbers; it is unknown before, where
+/// it was forgotten, and where the gap of volumes is too small to be useful.
+TEST(MarginFronts, MeasureWhatWasSet) {
+  Ball a, b;
+  MarginFront front;
+  const NodeSphere point{};
+  for (int i = 0; i < 40; ++i) front.add({0, 0});
+  front.set_gap(0, 1);
+  front.set_gap(1, 0.25f);  // not useful
+  front.set_gap(17, 2);
+  front.forget_gap(17);
+  front.expect_gap(18);
+  front.lower_gap(18, 0.25f);  // of triangles: kept
+  front.lower_gap(18, 3);
+  front.expect_gap(39);
+  front.lower_gap(39, std::numeric_limits<float>::quiet_NaN());
+  for (const std::size_t slot : {0u, 1u, 17u, 18u, 39u}) EXPECT_FALSE(front.gap(slot) > 0);
+  PresentPoses now(a, b);
+  EXPECT_EQ(front.measure(now, {&point, &point}, 0.5f), 0);
+  for (std::size_t slot = 0; slot < front.size(); ++slot) {
+    const double gap = slot == 0 ? 1 : slot == 18 ? 0.25 : 0;
+    EXPECT_LE(front.gap(slot), gap) << slot;
+    EXPECT_EQ(front.gap(slot) > 0.99 * gap, gap > 0) << slot;
+  }
+  front.set_gap(2, 0.75f);
+  EXPECT_NEAR(front.measure(now, {&point, &point}, 0.5f), 0.75, 1e-5);
+  EXPECT_EQ(front.measure(now, {&point, &point}, 0.5f), std::numeric_limits<float>::infinity());
 }
 
 }  // namespace

@@ -207,6 +207,13 @@ TEST(Wide, FrontsPromiseNoMoreThanThereIs) {
     MeasuredGaps gaps;
     gaps.add(), gaps.add();
     gaps.set(1, gap, reference_sphere_of(around, side, between()), turn());
+    MeasuredGaps many;  // measured for a register of entries: the same
+    many.add(), many.add();
+    many.announce(1, gap, MeasuredGaps::Of::volumes);
+    NodeSphere larger{};
+    larger.radius = std::numeric_limits<float>::infinity();
+    many.measure(0, between(), turn(), 0,
+                 [&](std::size_t of, int) { return of == side ? &around : &larger; });
     const double speed = std::exp2(-4 + 4 * number(random));
     for (int frame = 0; frame < 6; ++frame) {
       const Vec3<double> nearest = ball[0].to(ball[1]);
@@ -226,6 +233,7 @@ TEST(Wide, FrontsPromiseNoMoreThanThereIs) {
       }
       const auto remaining = gaps.remaining(0, between()[0], turn());
       EXPECT_FALSE(remaining[0] > 0);  // never measured
+      EXPECT_EQ(many.remaining(0, between()[0], turn())[1], remaining[1]) << round;
       const double distance = stable_norm(ball[0].to(ball[1]));
       EXPECT_FALSE(static_cast<double>(remaining[1]) > distance)
           << round << " frame " << frame << ": " << remaining[1] << " of " << distance;

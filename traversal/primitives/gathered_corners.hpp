@@ -26,14 +26,6 @@ namespace detail {
                                row(4)[8], row(5)[8], row(6)[8], row(7)[8]};
 }
 
-template <class S, class L>
-[[gnu::always_inline]] inline S batch_from(const L& lanes) {
-  static_assert(sizeof(L) == sizeof(Element<S>) * width<S>());
-  alignas(64) Element<S> number[width<S>()];
-  std::memcpy(number, &lanes, sizeof lanes);
-  return S(number, stdx::vector_aligned);
-}
-
 static_assert(sizeof(Triangle) == 9 * sizeof(double));
 
 /// The corners of W triangles, one triangle a lane, rounded to the element of S.

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "traversal/lasting_answer.hpp"
@@ -70,6 +71,12 @@ class PresentPoses {
 
 class MarginFront {
  public:
+  /// The slots of due entries, and a lower bound on the remaining gaps of all other entries.
+  struct Due {
+    std::span<std::uint32_t> slots;
+    float least_of_others;
+  };
+
   static constexpr std::uint32_t nowhere = static_cast<std::uint32_t>(-1);
 
   std::size_t size() const { return entries_.size(); }
@@ -91,37 +98,59 @@ class MarginFront {
 
   void open(std::size_t slot) { holes_.push_back(static_cast<std::uint32_t>(slot)); }
 
+  /// Begins to load what collect() reads first.
+  void prefetch() const {
+    if (!empty()) gaps_.prefetch(0), gaps_.prefetch(width);
+  }
+
   /// Adds an entry, which is due, and returns its slot.
   std::size_t add(const NodePair& pair) {
-    if (holes_.empty()) {
-      if (entries_.size() % width == 0) until_.push_back(due);
-      entries_.push_back(pair);
-      gaps_.add();
-      until_.back() = due;
-      return entries_.size() - 1;
+    if (!holes_.empty()) {
+      const std::size_t slot = holes_.back();
+      holes_.pop_back();
+      entries_[slot] = pair;
+      forget_gap(slot);
+      return slot;
     }
-    const std::size_t slot = holes_.back();
-    holes_.pop_back();
-    entries_[slot] = pair;
-    forget_gap(slot);
+    const std::size_t slot = entries_.size();
+    if (slot % width == 0) [[unlikely]]
+      until_.push_back(due);
+    entries_.push_back(pair);
+    gaps_.add();
+    until_.back() = std::min(until_.back(), due);
     return slot;
   }
 
-  /// Sets the gap of an entry: `sphere` is around what is below one of its two nodes.
-  void set_gap(std::size_t slot, float gap, const ReferenceSphere& sphere,
-               const PresentPoses& now) {
-    gaps_.set(slot, gap, sphere, now.rotation());
-    lasts_until(slot, now);
+  /// Sets the gap of an entry whose volumes are apart. It is not known until measure().
+  void set_gap(std::size_t slot, float gap) { announce(slot, gap, MeasuredGaps::Of::volumes); }
+  /// The same for an entry whose triangles are tested: each margin then lowers the gap.
+  void expect_gap(std::size_t slot) {
+    announce(slot, std::numeric_limits<float>::max(), MeasuredGaps::Of::triangles);
   }
-  /// Makes the gap of an entry smaller, which was set at the same poses.
-  void lower_gap(std::size_t slot, float gap, float error_bound, const PresentPoses& now) {
-    gaps_.lower(slot, gap, error_bound);
-    lasts_until(slot, now);
+  void lower_gap(std::size_t slot, float gap) { gaps_.lower(slot, gap); }
+  /// Makes known the gaps that were set at the present poses, but forgets those of volumes below
+  /// `useful`. `spheres` point to the spheres of all nodes of a, and of b. Returns the least of
+  /// these gaps, 0 where one is forgotten.
+  float measure(PresentPoses& now, const std::array<const NodeSphere*, 2>& spheres, float useful) {
+    float least = std::numeric_limits<float>::infinity();
+    for (std::size_t group = 0; group < until_.size(); ++group) {
+      if (until_[group] != to_be_measured) continue;
+      until_[group] = due;
+      const std::size_t first = group * width, last = entries_.size() - 1;
+      const auto sphere = [&](std::size_t side, int k) __attribute__((always_inline)) {
+        const NodePair& pair = entries_[std::min(first + static_cast<std::size_t>(k), last)];
+        return spheres[side] + (side ? pair.b : pair.a);
+      };
+      least =
+          std::min(least, gaps_.measure(first, now.transforms(), now.rotation(), useful, sphere));
+    }
+    return least;
   }
   /// Makes an entry due.
   void forget_gap(std::size_t slot) {
     gaps_.forget(slot);
-    until_[slot / width] = due;
+    double& group = until_[slot / width];
+    group = std::min(group, due);
   }
   /// The gap of an entry when it was measured; not positive where none is known.
   float gap(std::size_t slot) const { return gaps_[slot]; }
@@ -130,39 +159,42 @@ class MarginFront {
     return !(one_of(gaps_, slot, now) > 0);
   }
   /// Collects, in order, the slots of the entries whose surfaces may be within `limit` of each
-  /// other, and forgets their gaps. Returns a lower bound on the remaining gaps of all other
-  /// entries.
-  float collect(const PresentPoses& now, double limit, std::vector<std::uint32_t>& due_slots) {
+  /// other, and forgets their gaps. The buffer `slots` is enlarged where that is needed.
+  Due collect(const PresentPoses& now, double limit, std::vector<std::uint32_t>& slots) {
     using S = MeasuredGaps::S;
     const S limits(just_above(limit));
     const std::size_t n = entries_.size();
-    due_slots.resize(n);
+    if (slots.size() < n + width) slots.resize(n + width);
     std::size_t found = 0;
     S least(std::numeric_limits<float>::infinity());
     double until = std::numeric_limits<double>::infinity();
     const double reached = now.displacement() + limit;
     for (std::size_t first = 0; first < n; first += width) {
-      if (double& group = until_[first / width]; reached < group) {
+      double& group = until_[first / width];
+      if (reached < group) {
         until = std::min(until, group);
         continue;
       }
+      gaps_.prefetch(first + 2 * width);
       const S remaining = gaps_.remaining(first, now.a_to_b(), now.rotation());
       const auto later = remaining > limits;
       S of_group(std::numeric_limits<float>::infinity());
       stdx::where(later, of_group) = remaining;
       least = stdx::min(least, of_group);
-      until_[first / width] = displacement_at_expiry(now.displacement(), stdx::hmin(of_group));
-      const std::size_t taken = std::min(width, n - first);
-      for (std::uint64_t rest = ~bits(later) & ((std::uint64_t{1} << taken) - 1); rest;
-           rest &= rest - 1) {
-        const auto slot =
-            static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(std::countr_zero(rest));
-        due_slots[found++] = slot;
-        forget_gap(slot);
+      const std::uint64_t all = (std::uint64_t{1} << std::min(width, n - first)) - 1;
+      const std::uint64_t due_lanes = ~bits(later) & all;
+      if (!due_lanes) {
+        group = displacement_at_expiry(now.displacement(), stdx::hmin(of_group));
+        continue;
       }
+      group = due;
+      gaps_.forget(first, !later);
+      detail::write_numbers<MeasuredGaps::width>(slots.data() + found, due_lanes,
+                                                 static_cast<std::uint32_t>(first));
+      found += static_cast<std::size_t>(std::popcount(due_lanes));
     }
-    due_slots.resize(found);
-    return std::min(stdx::hmin(least), just_below(until - now.displacement()));
+    return {std::span(slots).first(found),
+            std::min(stdx::hmin(least), just_below(until - now.displacement()))};
   }
 
   /// Makes all entries due.
@@ -208,16 +240,15 @@ class MarginFront {
  private:
   static constexpr int most_brief_tests = 32;
   static constexpr std::size_t width = MeasuredGaps::width;
-  static constexpr double due = -1;
+  static constexpr double due = -1, to_be_measured = -2;
 
+  [[gnu::always_inline]] void announce(std::size_t slot, float gap, MeasuredGaps::Of what) {
+    gaps_.announce(slot, gap, what);
+    until_[slot / width] = to_be_measured;
+  }
   static float one_of(const MeasuredGaps& gaps, std::size_t i, const PresentPoses& now) {
     const std::size_t first = i / width * width;
     return gaps.remaining(first, now.a_to_b(), now.rotation())[i - first];
-  }
-  void lasts_until(std::size_t slot, const PresentPoses& now) {
-    double& group = until_[slot / width];
-    const double until = displacement_at_expiry(now.displacement(), gaps_[slot]);
-    group = until >= due ? std::min(group, until) : due;  // NaN: due
   }
 
   std::vector<NodePair> entries_;

@@ -37,28 +37,36 @@ class MarginSweep : public FrontDefaults {
     const std::uint32_t witness = front_.witness();
     const bool first = !FindsAllHits<Query> && front_.witnessed() &&
                        (wants_bound<Query>() || front_.is_due(witness, now_));
-    if (first && test_witness(traversal, witness)) return true;
-    auto& due = traversal.workspace().template scratch<std::vector<std::uint32_t>>();
-    lower_least(front_.collect(now_, traversal.query().limit(), due));
+    if (first) {
+      if (test_witness(traversal, witness)) return true;
+      measure();
+    }
+    auto& buffer = traversal.workspace().template scratch<std::vector<std::uint32_t>>();
+    const MarginFront::Due due = front_.collect(now_, traversal.query().limit(), buffer);
+    lower_least(due.least_of_others);
     if constexpr (FindsAllHits<Query>) {
       front_.remove_hits_of_due();
       for (const KnownHit& hit : front_.hits()) traversal.query().known(hit.a, hit.b);
     }
-    if (first) std::erase(due, witness);
-    return traversal.test_entries(due.size(), [&](std::size_t i) { return due[i]; });
+    std::size_t count = due.slots.size();
+    if (first)  // it has been tested
+      count -= std::ranges::remove(due.slots, witness).size();
+    return traversal.test_entries(count, [&](std::size_t i) { return due.slots[i]; });
   }
   /// After a complete run, a lower bound on what is left of every gap; after one that a hit ended,
   /// the margin of that hit. Not positive where it is not known.
   float least() const { return least_; }
 
   void keep(std::size_t slot, EntryState state, double gap) {
-    if (state == EntryState::culled) return record_gap(slot, just_below(gap));
-    if (state == EntryState::not_yet) {
-      forget_gap(slot);
-      return;
+    switch (state) {
+      case EntryState::culled:
+        return front_.set_gap(slot, just_below(gap));
+      case EntryState::near:
+        return front_.expect_gap(slot);
+      case EntryState::not_yet:
+        front_.forget_gap(slot);
+        least_ = 0;
     }
-    // Its triangles lower it.
-    set_gap(slot, std::numeric_limits<float>::max());
   }
   void open(std::size_t slot) { front_.open(slot); }
   std::size_t add(const NodePair& pair, EntryState state, double gap) {
@@ -69,6 +77,7 @@ class MarginSweep : public FrontDefaults {
 
   void finish(std::size_t witness, bool satisfied) {
     if (witness != Outcome::none) front_.bring_forward(witness);
+    measure();
     if (satisfied) least_ = margin_of_hit_;
   }
 
@@ -82,11 +91,13 @@ class MarginSweep : public FrontDefaults {
   bool opens(const Query& query, const Node& a, const Node& b, double gap) const {
     constexpr double triangle_cost = 3, leaf_gain = 0.5, inner_gain = 0.25, long_enough = 4;
     const double spare = gap - query.limit();
-    const bool leaves = a.count && b.count;
-    const double wider = leaves ? leaf_gain * static_cast<double>(a.size + b.size)
-                                : inner_gain * static_cast<double>(std::max(a.size, b.size));
-    const double cost = leaves ? 1 + triangle_cost : 2;
-    return spare < long_enough * step_ && cost * std::max(spare, step_) < spare + wider;
+    // Without a branch, which would be unpredictable.
+    const std::size_t leaves = (a.count != 0) & (b.count != 0);
+    const std::array<double, 2> size{static_cast<double>(std::max(a.size, b.size)),
+                                     static_cast<double>(a.size + b.size)};
+    constexpr std::array gain{inner_gain, leaf_gain}, costs{2.0, 1 + triangle_cost};
+    const double wider = gain[leaves] * size[leaves], cost = costs[leaves];
+    return (spare < long_enough * step_) & (cost * std::max(spare, step_) < spare + wider);
   }
 
   /// A pair of leaves is due when the first of its verdicts may change.
@@ -111,7 +122,7 @@ class MarginSweep : public FrontDefaults {
         }
       }
       // Two large leaves are tested in several portions: the least margin counts.
-      if (slot != Outcome::none) lower_gap(slot, just_below(least));
+      if (slot != Outcome::none) front_.lower_gap(slot, just_below(least));
       first = i;
     }
     if (outcome.witness != Outcome::none) {
@@ -130,25 +141,7 @@ class MarginSweep : public FrontDefaults {
   ReferenceSphere reference_sphere(const NodePair& pair) {
     return reference_sphere_of_smaller(spheres_[0][pair.a], spheres_[1][pair.b], now_.transforms());
   }
-  void set_gap(std::size_t slot, float gap) {
-    front_.set_gap(slot, gap, reference_sphere(front_[slot]), now_);
-  }
-  void record_gap(std::size_t slot, float gap) {
-    if (gap < least_useful * step_) return forget_gap(slot);
-    set_gap(slot, gap);
-    lower_least(front_.gap(slot));
-  }
-  void forget_gap(std::size_t slot) {
-    front_.forget_gap(slot);
-    least_ = 0;
-  }
-  /// The gap of an entry whose triangles have been tested, set in this run.
-  void lower_gap(std::size_t slot, float gap) {
-    const auto& transforms = now_.transforms();
-    front_.lower_gap(slot, gap, std::max(transforms[0].error_bound(), transforms[1].error_bound()),
-                     now_);
-    lower_least(front_.gap(slot));
-  }
+  void measure() { lower_least(front_.measure(now_, spheres_, just_below(least_useful * step_))); }
   /// NaN counts as 0.
   void lower_least(float gap) { least_ = gap > 0 ? std::min(least_, gap) : 0; }
   template <class Query>

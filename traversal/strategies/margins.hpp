@@ -57,6 +57,7 @@ class Margins {
     // entry.
     if (last_query_ != &Query::name) front_.expire();
     last_query_ = &Query::name;
+    front_.prefetch();
     PresentPoses now(a, b);
     if constexpr (Query::one_hit_is_enough)
       if (const float margin = repeat_hits(query, now); margin > 0) {

@@ -14,7 +14,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "hierarchies/geometry/scalar.hpp"
+#include "hierarchies/wide/lanes.hpp"
 #include "traversal/node_pair.hpp"
 
 #if defined(__AVX512F__)
@@ -24,29 +24,6 @@
 namespace bvlab {
 
 namespace detail {
-
-/// Writes first + k for each set bit k of the mask, side by side. May write F numbers.
-template <int F>
-[[gnu::always_inline]] inline void write_numbers(std::uint32_t* out, std::uint64_t mask,
-                                                 std::uint32_t first) {
-#if defined(__AVX512F__) && defined(__AVX512VL__)
-  if constexpr (F == 16) {
-    const __m512i lanes = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
-    const __m512i all = _mm512_add_epi32(_mm512_set1_epi32(static_cast<int>(first)), lanes);
-    _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), all));
-    return;
-  }
-  if constexpr (F == 8) {
-    const __m256i lanes = _mm256_set_epi32(7, 6, 5, 4, 3, 2, 1, 0);
-    const __m256i all = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first)), lanes);
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
-                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), all));
-    return;
-  }
-#endif
-  for (; mask; mask &= mask - 1)
-    *out++ = first + static_cast<std::uint32_t>(std::countr_zero(mask));
-}
 
 /// Writes the lanes of `x` whose bits are set, side by side. May write F numbers.
 template <int F>
