@@ -36,7 +36,7 @@ class Front : public FrontDefaults {
   void restart_from(const Other& front) {
     entries_ = front.entries();
     witnessed_ = false;
-    if (front.witnessed()) bring_forward(front.witness());
+    if (front.witnessed()) set_witness(front.witness());
   }
 
   void clear() { entries_.clear(), holes_.clear(); }
@@ -65,11 +65,11 @@ class Front : public FrontDefaults {
   }
 
   void finish(std::size_t witness, bool) {
-    if (witness != Outcome::none) bring_forward(witness);
+    if (witness != Outcome::none) set_witness(witness);
   }
 
   /// Makes the entry in `slot` the first to be tested in the next run.
-  void bring_forward(std::size_t slot) {
+  void set_witness(std::size_t slot) {
     std::swap(entries_[0], entries_[slot]);
     witnessed_ = true;
   }

@@ -41,9 +41,10 @@
 
 namespace bvlab {
 
-class MeasuredGaps {
+template <int kWidth>
+class MeasuredGapsOf {
  public:
-  static constexpr int width = std::clamp(native_width<float>, 4, 16);
+  static constexpr int width = kWidth;
   using S = Batch<float, width>;
 
   std::size_t size() const { return size_; }
@@ -178,5 +179,9 @@ class MeasuredGaps {
   std::vector<Measured> measured_;
   std::size_t size_ = 0;
 };
+
+using MeasuredGaps = MeasuredGapsOf<std::clamp(native_width<float>, 4, 16)>;
+/// Of which there are few.
+using FewMeasuredGaps = MeasuredGapsOf<4>;
 
 }  // namespace bvlab

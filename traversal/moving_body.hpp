@@ -26,15 +26,15 @@ class MovingBody {
          [this] { orthonormal_pose_ = OrthonormalPose(pose_, extent_.reach); });
     return orthonormal_pose_;
   }
-  /// The current pose, for bounds on later motion. Computed on request: a strategy without margins
-  /// never requests it.
-  const ReferencePose& reference_pose() {
+  /// The present pose, to serve as the reference pose of bounds on later motion. Computed on
+  /// request: a strategy without margins never requests it.
+  const ReferencePose& present_pose() {
     follow();
     return reference_pose_;
   }
-  /// An upper bound on how far any point of the body has moved from each requested reference pose
-  /// to the next, summed over all of them. It never falls, while RelativeMotionBound does when a
-  /// body moves back.
+  /// An upper bound on how far any point of the body has moved from each pose that was requested to
+  /// the next, summed over all of them. It never falls, while RelativeMotionBound does when a body
+  /// moves back.
   double displacement_bound() {
     follow();
     return displacement_bound_;

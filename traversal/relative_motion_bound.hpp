@@ -13,13 +13,13 @@ class RelativeMotionBound {
   /// Makes the current poses the reference poses. The bound starts at what poses and rounding may
   /// be off by.
   void restart(MovingBody& a, MovingBody& b) {
-    a_ = a.reference_pose(), b_ = b.reference_pose();
+    a_ = a.present_pose(), b_ = b.present_pose();
     nearer_ = a_.error_bound + b_.error_bound;
   }
 
   /// Updates the bound after the bodies have moved.
   void advance(MovingBody& a, MovingBody& b) {
-    const ReferencePose &to_a = a.reference_pose(), &to_b = b.reference_pose();
+    const ReferencePose &to_a = a.present_pose(), &to_b = b.present_pose();
     const Vec3<double> shift = (to_a.centre - a_.centre) - (to_b.centre - b_.centre);
     nearer_ = (shift.norm() + rotation_difference(a_, to_a) * a.extent().radius +
                rotation_difference(b_, to_b) * b.extent().radius) *

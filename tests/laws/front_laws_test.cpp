@@ -466,7 +466,7 @@ TEST(RisingFronts, WitnessesComeAndGo) {
   }
   const std::size_t n = front.size();
   std::mt19937_64 random(3);
-  for (int i = 0; i < 20000; ++i) front.bring_forward(random() % n);
+  for (int i = 0; i < 20000; ++i) front.set_witness(random() % n);
   Proposals proposals;
   front.propose(hierarchy, hierarchy, proposals);
   std::size_t siblings = 0;

@@ -44,7 +44,7 @@ class Adaptive : public AdaptivePrices {
 
   template <class Pair>
   void run(const Pair& pair) {
-    if (watched_ && margins_.quiet(pair)) return step_.skip();
+    if (has_margins_ && margins_.quiet(pair)) return step_.skip();
     if (use_ == Use::margins) return run_margins(pair);
     if (use_ == Use::roots && spheres_apart(pair)) return;
     if (answer_.repeat(pair)) return;
@@ -88,7 +88,8 @@ class Adaptive : public AdaptivePrices {
   /// Measures the step; where it is too far for anything to be reused, gives up the list.
   template <class Pair>
   void follow(const Pair& pair) {
-    if (step_.measure(pair.a(), pair.b(), watched_) && use_ != Use::roots && jumped()) fail_list();
+    if (step_.measure(pair.a(), pair.b(), has_margins_) && use_ != Use::roots && jumped())
+      fail_list();
   }
   bool jumped() const { return step_.expected_in_leaves() > jump; }
 
@@ -115,7 +116,7 @@ class Adaptive : public AdaptivePrices {
     } else if (witness_lasts(pair)) {
       return;
     }
-    if (watched_) forget_margins();
+    if (has_margins_) forget_margins();
     const bool rebuild = rebuild_due_;
     if (rebuild) list_.restart();
     const TraversalStatistics statistics = pair.from_front(list_);
@@ -135,10 +136,10 @@ class Adaptive : public AdaptivePrices {
   bool witness_lasts(const Pair& pair) {
     if constexpr (YesOrNoByOneHit<typename Pair::Query>) {
       TraversalStatistics statistics;
-      if (watched_) {
+      if (has_margins_) {
         statistics = margins_.test_without_rebuild(pair);
       } else {
-        watched_ = true;
+        has_margins_ = true;
         margins_.start_from(list_, 1, pair.a(), pair.b(), step_.expected());
         margins_.expect(!is_slow());
         statistics = margins_.run(pair);
@@ -153,7 +154,7 @@ class Adaptive : public AdaptivePrices {
 
   void forget_margins() {
     margins_.forget();
-    watched_ = false;
+    has_margins_ = false;
   }
 
   /// Applies the rule of by_cost.hpp, with triangles included, and compares with recursion.
@@ -215,7 +216,7 @@ class Adaptive : public AdaptivePrices {
       return;
     }
     use_ = Use::margins;
-    watched_ = true;
+    has_margins_ = true;
     list_cost_per_entry_ = (next_run_ - of_list.run) / static_cast<double>(list_.size());
     balance_ = 0;
     loss_limit_ = cost;
@@ -262,7 +263,7 @@ class Adaptive : public AdaptivePrices {
   // Members that every run reads are next to each other.
   Use use_ = Use::roots;
   bool in_batches_ = false;
-  bool watched_ = false;      // there are margins, of all entries or of the witness
+  bool has_margins_ = false;  // there are margins, of all entries or of the witness
   bool rebuild_due_ = false;  // the list is due for a rebuild
   bool everything_ = true;    // the list's last run was complete
   ObservedStep step_;

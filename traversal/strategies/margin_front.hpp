@@ -91,20 +91,21 @@ class MarginFront {
   }
 
   void clear() {
-    entries_.clear(), gaps_.clear(), until_.clear(), holes_.clear();
+    entries_.clear(), gaps_.clear(), expires_at_.clear(), holes_.clear();
     clear_hits();
     witness_ = nowhere;
   }
 
   void open(std::size_t slot) { holes_.push_back(static_cast<std::uint32_t>(slot)); }
 
-  /// Begins to load what collect() reads first.
+  /// Begins to load what a run reads first: the margins of hits, or what collect() reads.
   void prefetch() const {
+    if (hit_margins_.size() > 0) return hit_margins_.prefetch(0);
     if (!empty()) gaps_.prefetch(0), gaps_.prefetch(width);
   }
 
   /// Adds an entry, which is due, and returns its slot.
-  std::size_t add(const NodePair& pair) {
+  [[gnu::always_inline]] std::size_t add(const NodePair& pair) {
     if (!holes_.empty()) {
       const std::size_t slot = holes_.back();
       holes_.pop_back();
@@ -114,10 +115,10 @@ class MarginFront {
     }
     const std::size_t slot = entries_.size();
     if (slot % width == 0) [[unlikely]]
-      until_.push_back(due);
+      expires_at_.push_back(due);
     entries_.push_back(pair);
     gaps_.add();
-    until_.back() = std::min(until_.back(), due);
+    expires_at_.back() = std::min(expires_at_.back(), due);
     return slot;
   }
 
@@ -133,9 +134,9 @@ class MarginFront {
   /// these gaps, 0 where one is forgotten.
   float measure(PresentPoses& now, const std::array<const NodeSphere*, 2>& spheres, float useful) {
     float least = std::numeric_limits<float>::infinity();
-    for (std::size_t group = 0; group < until_.size(); ++group) {
-      if (until_[group] != to_be_measured) continue;
-      until_[group] = due;
+    for (std::size_t group = 0; group < expires_at_.size(); ++group) {
+      if (expires_at_[group] != to_be_measured) continue;
+      expires_at_[group] = due;
       const std::size_t first = group * width, last = entries_.size() - 1;
       const auto sphere = [&](std::size_t side, int k) __attribute__((always_inline)) {
         const NodePair& pair = entries_[std::min(first + static_cast<std::size_t>(k), last)];
@@ -149,7 +150,7 @@ class MarginFront {
   /// Makes an entry due.
   void forget_gap(std::size_t slot) {
     gaps_.forget(slot);
-    double& group = until_[slot / width];
+    double& group = expires_at_[slot / width];
     group = std::min(group, due);
   }
   /// The gap of an entry when it was measured; not positive where none is known.
@@ -170,7 +171,7 @@ class MarginFront {
     double until = std::numeric_limits<double>::infinity();
     const double reached = now.displacement() + limit;
     for (std::size_t first = 0; first < n; first += width) {
-      double& group = until_[first / width];
+      double& group = expires_at_[first / width];
       if (reached < group) {
         until = std::min(until, group);
         continue;
@@ -204,7 +205,7 @@ class MarginFront {
   }
 
   /// Makes the entry in `slot` the first to be tested in the next run.
-  void bring_forward(std::size_t slot) { witness_ = static_cast<std::uint32_t>(slot); }
+  void set_witness(std::size_t slot) { witness_ = static_cast<std::uint32_t>(slot); }
   /// Whether there is a witness, brought forward since the last restart, and its slot.
   bool witnessed() const { return witness_ != nowhere; }
   std::uint32_t witness() const { return witness_; }
@@ -221,11 +222,15 @@ class MarginFront {
   void remove_hits_of_due() {
     std::erase_if(hits_, [&](const KnownHit& hit) { return !(gaps_[hit.slot] > 0); });
   }
-  /// Adds a hit that lasts as long as its own margin. For queries that one hit may end.
-  void add_hit(const KnownHit& hit, float margin, const ReferenceSphere& reference,
-               double rotation) {
+  /// Adds a hit that lasts while the bodies do not move. For queries that one hit may end.
+  void add_brief_hit(const KnownHit& hit) {
     hits_.push_back(hit);
     hit_margins_.add();
+  }
+  /// The same for a hit that lasts as long as its own margin.
+  void add_hit(const KnownHit& hit, float margin, const ReferenceSphere& reference,
+               double rotation) {
+    add_brief_hit(hit);
     hit_margins_.set(hits_.size() - 1, margin, reference, rotation);
   }
   /// Sets which hit is repeated while the answer lasts, for queries that one hit may end.
@@ -233,7 +238,7 @@ class MarginFront {
   std::size_t repeated_hit() const { return repeated_; }
   /// What is left of the margin of hit i, in `hits()`.
   float remaining_of_hit(std::size_t i, const PresentPoses& now) const {
-    return one_of(hit_margins_, i, now);
+    return hit_margins_[i] > 0 ? one_of(hit_margins_, i, now) : 0;
   }
   void clear_hits() { hits_.clear(), hit_margins_.clear(), repeated_ = 0; }
 
@@ -244,20 +249,21 @@ class MarginFront {
 
   [[gnu::always_inline]] void announce(std::size_t slot, float gap, MeasuredGaps::Of what) {
     gaps_.announce(slot, gap, what);
-    until_[slot / width] = to_be_measured;
+    expires_at_[slot / width] = to_be_measured;
   }
-  static float one_of(const MeasuredGaps& gaps, std::size_t i, const PresentPoses& now) {
-    const std::size_t first = i / width * width;
-    return gaps.remaining(first, now.a_to_b(), now.rotation())[i - first];
+  template <class Gaps>
+  static float one_of(const Gaps& gaps, std::size_t i, const PresentPoses& now) {
+    constexpr std::size_t W = Gaps::width;
+    return gaps.remaining(i / W * W, now.a_to_b(), now.rotation())[i % W];
   }
 
   std::vector<NodePair> entries_;
   MeasuredGaps gaps_;
   // For each group of `width` entries: while the displacements sum to less than this, the query's
   // limit included, none of them is due, and their gaps need not be looked at.
-  std::vector<double> until_;
+  std::vector<double> expires_at_;
   std::vector<KnownHit> hits_;
-  MeasuredGaps hit_margins_;
+  FewMeasuredGaps hit_margins_;
   std::size_t repeated_ = 0;  // of hits_
   std::uint32_t witness_ = nowhere;
   int brief_tests_ = 0;

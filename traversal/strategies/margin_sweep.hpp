@@ -76,7 +76,7 @@ class MarginSweep : public FrontDefaults {
   }
 
   void finish(std::size_t witness, bool satisfied) {
-    if (witness != Outcome::none) front_.bring_forward(witness);
+    if (witness != Outcome::none) front_.set_witness(witness);
     measure();
     if (satisfied) least_ = margin_of_hit_;
   }
@@ -149,6 +149,8 @@ class MarginSweep : public FrontDefaults {
     const KnownHit hit{static_cast<std::uint32_t>(candidate.slot), candidate.a, candidate.b};
     if constexpr (FindsAllHits<Query>)
       front_.add_hit(hit);
+    else if (!(margin > 0))
+      front_.add_brief_hit(hit);
     else
       front_.add_hit(hit, just_below(margin), reference_sphere(front_[hit.slot]), now_.rotation());
   }

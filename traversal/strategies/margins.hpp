@@ -85,7 +85,7 @@ class Margins {
     epoch_a_ = a.epoch() - 1, epoch_b_ = b.epoch() - 1;
     front_.open(0);
     for (std::size_t slot = 0; slot < count; ++slot) front_.add(list[slot]);
-    if (list.witnessed()) front_.bring_forward(0);
+    if (list.witnessed()) front_.set_witness(0);
     cost_ = static_cast<double>(count);  // the other half of a rebuild's tests
     last_query_ = nullptr;
   }

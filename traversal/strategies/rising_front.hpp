@@ -135,13 +135,13 @@ class RisingFront : public Front {
   }
 
   void finish(std::size_t witness, bool) {
-    if (witness != Outcome::none) bring_forward(witness);
+    if (witness != Outcome::none) set_witness(witness);
   }
 
-  void bring_forward(std::size_t slot) {
+  void set_witness(std::size_t slot) {
     // The table finds entries by their pairs, so they leave it before they are exchanged.
     if (slot != 0) table_.erase(entries_[0], entries_), table_.erase(entries_[slot], entries_);
-    Front::bring_forward(slot);
+    Front::set_witness(slot);
     std::swap(failures_[0], failures_[slot]);
     if (slot != 0) table_.set(slot, entries_), table_.set(0, entries_);
   }

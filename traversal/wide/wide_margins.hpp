@@ -88,7 +88,7 @@ class WideMargins {
   void move(std::size_t i, Body&, const Pose& pose, EarlyCulling& culling,
             const Vec3<double>& origin) {
     if (!bodies_.set_pose(i, pose)) return;
-    const ReferencePose& at = bodies_[i].reference_pose();
+    const ReferencePose& at = bodies_[i].present_pose();
     culling.set_pose(i, at.rotation, at.centre - origin, bodies_[i].extent().radius,
                      at.defect < 0.1 ? at.error_bound : std::numeric_limits<double>::infinity());
   }
