@@ -68,7 +68,7 @@ class Front : public FrontDefaults {
     if (witness != Outcome::none) set_witness(witness);
   }
 
-  /// Makes the entry in `slot` the first to be tested in the next run.
+  /// Makes the entry in `slot` the first to be tested in the next run: exchanges it with entry 0.
   void set_witness(std::size_t slot) {
     std::swap(entries_[0], entries_[slot]);
     witnessed_ = true;

@@ -185,7 +185,7 @@ class FrontRecorder {
   [[gnu::always_inline]] std::uint64_t record(Pair& pair, const Step& step, LanesApart found,
                                               std::uint64_t near, const Entries& entries,
                                               Query& query) const {
-    // In two loops: whether a pair is opened is unpredictable.
+    // In two loops, since opens() is unpredictable: its result becomes a bit, not a branch.
     std::uint64_t opened = 0;
     for (std::uint64_t rest = found.apart; rest; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));

@@ -74,60 +74,64 @@ class MeasuredGapsOf {
     at.gap[i % width] = unknown, at.radius[i % width] = 0;
   }
 
-  /// Forgets those of the gaps `first` and up that a mask has, `first` a multiple of `width`.
+  /// Forgets those of the `width` gaps from `first` on whose lanes are set in a mask; `first` is a
+  /// multiple of `width`.
   void forget(std::size_t first, const typename S::mask_type& these) {
     Measured& at = measured_[first / width];
     put(at.gap, these, S(unknown));
     put(at.radius, these, S(0.0f));
   }
 
-  // The spheres of many gaps are cheaper found for a register of them at once, after a run: one by
-  // one each cost 25 ns, and margins in fast motion took 1.4 times as long.
+  // Finding one sphere at a time cost 25 ns per gap and made margins in fast motion 1.4 times as
+  // slow. So tests only announce gaps, and measure() then finds the spheres of `width` at once.
 
-  /// What a gap is of.
+  /// Whether a gap lies between two volumes or is the least margin of tested triangles.
   enum class Of { volumes, triangles };
-  /// Sets a gap, which is not known until measure() sets its sphere.
+  /// Announces a gap: it is unknown until measure() finds its sphere.
   [[gnu::always_inline]] void announce(std::size_t i, float gap, Of what) {
     Measured& at = measured_[i / width];
-    at.radius[i % width] = what == Of::volumes ? announced : 2 * announced;
+    at.gap[i % width] = unknown;
+    at.radius[i % width] = what == Of::volumes ? of_volumes : of_triangles;
     at.rotation[i % width] = gap;
   }
-  /// Makes an announced gap smaller, never larger.
+  /// Makes a gap smaller, never larger, that has been announced and not yet measured.
   void lower(std::size_t i, float gap) {
     float& least = measured_[i / width].rotation[i % width];
-    least = gap < least ? gap : gap >= least ? least : unknown;  // NaN
+    least = gap < least ? gap : gap >= least ? least : unknown;  // a NaN gap is unknown
   }
-  /// Sets the spheres and rotations of the announced gaps among `first` and up, `first` a multiple
-  /// of `width`; forgets those of volumes below `useful`. sphere(0, k) and sphere(1, k) point to
+  /// Finds the spheres of those of the `width` gaps from `first` on that were announced at the
+  /// present poses; forgets those of volumes below `useful`. sphere(0, k) and sphere(1, k) point to
   /// the spheres of the two nodes of gap first + k, also where it is not announced. Returns the
-  /// least of these gaps, 0 where one is forgotten.
+  /// least of these gaps: infinity where none was announced, 0 where one is forgotten or used up by
+  /// rounding.
   template <class SphereOf>
   [[gnu::always_inline]] float measure(std::size_t first,
                                        const std::array<CornerTransform, 2>& transforms,
                                        double rotation, float useful, const SphereOf& sphere) {
     Measured& at = measured_[first / width];
-    const S kind = batch(at.radius), gap = batch(at.rotation);
-    const auto set = kind < S(0.0f), keep = !(gap < S(useful)) || kind < S(announced);
+    const S mark = batch(at.radius), gap = batch(at.rotation);
+    const auto announced = mark < S(0.0f), stays = !(gap < S(useful)) || mark < S(of_volumes);
     const auto spheres = reference_spheres_of_smaller<S>(sphere, transforms);
     for (std::size_t k = 0; k < 3; ++k) {
-      put(at.of_a[k], set, spheres.centre_in[0][k]);
-      put(at.of_b[k], set, spheres.centre_in[1][k]);
+      put(at.of_a[k], announced, spheres.centre_in[0][k]);
+      put(at.of_b[k], announced, spheres.centre_in[1][k]);
     }
-    const S known = select(keep, gap - S(8.0f) * spheres.error_bound, S(unknown));
-    put(at.gap, set, known);
-    put(at.rotation, set, S(rounded_down(rotation)));
-    put(at.radius, set, spheres.radius);
+    const S known = select(stays, gap - S(8.0f) * spheres.error_bound, S(unknown));
+    put(at.gap, announced, known);
+    put(at.rotation, announced, S(rounded_down(rotation)));
+    put(at.radius, announced, spheres.radius);
     const S left = select(known > S(0.0f), known, S(0.0f));
-    return stdx::hmin(select(set, left, S(std::numeric_limits<float>::infinity())));
+    return stdx::hmin(select(announced, left, S(std::numeric_limits<float>::infinity())));
   }
 
   /// The gap when it was measured, less what rounding may add; not positive where none is known.
   float operator[](std::size_t i) const { return measured_[i / width].gap[i % width]; }
 
-  /// Begins to load gap i and those beside it, of which there need not be any.
+  /// Begins to load gap i, if there is one, and those beside it.
   void prefetch(std::size_t i) const {
-    const char* const at = reinterpret_cast<const char*>(measured_.data() + i / width);
-    for (std::size_t line = 0; line < sizeof(Measured); line += 64) __builtin_prefetch(at + line);
+    if (i < size_)
+      for (std::size_t at = 0; at < sizeof(Measured); at += 64)
+        __builtin_prefetch(reinterpret_cast<const char*>(&measured_[i / width]) + at);
   }
 
   /// Lower bounds on what is left of the gaps `first` and up, `first` a multiple of `width`; not
@@ -154,8 +158,8 @@ class MeasuredGapsOf {
   // would be left of a gap of 0.
   static constexpr float unknown = -std::numeric_limits<float>::infinity();
 
-  // In place of a radius: the gap is in `rotation` until it is measured. Twice that: of triangles.
-  static constexpr float announced = -1;
+  // A negative radius marks an announced gap, which `rotation` holds until it is measured.
+  static constexpr float of_volumes = -1, of_triangles = -2;
 
   static float rounded_down(double rotation) {
     return static_cast<float>(rotation) * (1 - 2 * unit_roundoff<float>);
@@ -181,7 +185,7 @@ class MeasuredGapsOf {
 };
 
 using MeasuredGaps = MeasuredGapsOf<std::clamp(native_width<float>, 4, 16)>;
-/// Of which there are few.
+/// For short lists, as the margins of hits: a register of four wastes less memory.
 using FewMeasuredGaps = MeasuredGapsOf<4>;
 
 }  // namespace bvlab

@@ -30,7 +30,7 @@ class MovingBody {
   /// request: a strategy without margins never requests it.
   const ReferencePose& present_pose() {
     follow();
-    return reference_pose_;
+    return present_pose_;
   }
   /// An upper bound on how far any point of the body has moved from each pose that was requested to
   /// the next, summed over all of them. It never falls, while RelativeMotionBound does when a body
@@ -72,19 +72,19 @@ class MovingBody {
     if (displacement_bound_ < 0) {
       displacement_bound_ = 0;
     } else {  // NaN stays NaN
-      const double rotation = rotation_difference(reference_pose_, now);
-      const double step = step_between(reference_pose_, now, rotation, extent_.radius);
+      const double rotation = rotation_difference(present_pose_, now);
+      const double step = step_between(present_pose_, now, rotation, extent_.radius);
       displacement_bound_ = (displacement_bound_ + step) * up;
       rotation_bound_ = (rotation_bound_ + rotation * (1 + 32 * unit_roundoff<double>)) * up;
     }
-    reference_pose_ = now;
+    present_pose_ = now;
   }
 
   HierarchyExtent extent_;
-  ReferencePose reference_pose_;
-  double displacement_bound_ = -1;  // before the first reference pose
+  ReferencePose present_pose_;
+  double displacement_bound_ = -1;  // before the first request
   double rotation_bound_ = 0;
-  std::uint32_t followed_ = never_done;  // the epoch of the reference pose
+  std::uint32_t followed_ = never_done;  // the epoch of `present_pose_`
   OrthonormalPose orthonormal_pose_;
 };
 

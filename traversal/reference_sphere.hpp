@@ -97,14 +97,15 @@ struct ReferenceSpheres {
   std::array<std::array<S, 3>, 2> centre_in;
   S radius, error_bound;
 };
-/// The same for the smaller of two nodes' spheres in each lane: `sphere(side, k)` points to one.
+/// The reference sphere of the smaller of two nodes, one pair of nodes per lane: sphere(side, k)
+/// points to the sphere of a node.
 template <Batched S, class SphereOf>
 [[gnu::always_inline]] inline ReferenceSpheres<S> reference_spheres_of_smaller(
     const SphereOf& sphere, const std::array<CornerTransform, 2>& transforms) {
   constexpr int W = width<S>();
   const auto of_side = [&](std::size_t side) __attribute__((always_inline)) {
     const auto centre_and_radius = [&](int k) __attribute__((always_inline)) {
-      return sphere(side, k)->centre;
+      return sphere(side, k)->centre;  // the radius follows
     };
     return detail::columns_of<float, W>(centre_and_radius);
   };

@@ -69,6 +69,7 @@ template <class T, int W, class Row>
   return columns;
 }
 
+/// The same numbers as a batch. It goes through memory, which compilers optimise away.
 template <class S, class L>
 [[gnu::always_inline]] inline S batch_from(const L& lanes) {
   static_assert(sizeof(L) == sizeof(Element<S>) * width<S>());

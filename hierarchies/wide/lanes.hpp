@@ -71,7 +71,8 @@ template <Scalar S>
 
 namespace detail {
 
-/// Writes first + k for each set bit k of the mask, side by side. May write F numbers.
+/// Writes first + k for each set bit k of the mask, in order. There must be room for F numbers: a
+/// whole register may be stored.
 template <int F>
 [[gnu::always_inline]] inline void write_numbers(std::uint32_t* out, std::uint64_t mask,
                                                  std::uint32_t first) {

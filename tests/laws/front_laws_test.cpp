@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <random>
+#include <stdexcept>
 
 #include "experiments/scenes/formula_mesh.hpp"
 #include "hierarchies/builds.hpp"
@@ -238,6 +239,55 @@ TYPED_TEST(FrontLaws, NoVerdictOfOtherBodiesIsReused) {
     }
     EXPECT_GT(contacts, 100u);
   });
+}
+
+/// A query that throws in place of its last test of triangles.
+class Throwing : public Contacts {
+ public:
+  Throwing(std::vector<Contact>& found, int tests) : Contacts(found), tests_(tests) {}
+
+  Outcome primitives(std::span<const Candidate> pending) {
+    count();
+    return Contacts::primitives(pending);
+  }
+  Outcome primitives(std::span<const Candidate> pending, std::span<Verdict> verdicts) {
+    count();
+    return Contacts::primitives(pending, verdicts);
+  }
+
+ private:
+  void count() {
+    if (tests_-- == 0) throw std::runtime_error("no more tests");
+  }
+
+  int tests_;
+};
+
+TYPED_TEST(FrontLaws, MarginsStartAnewAfterAnException) {
+  Margins margins;
+  NotCounting counter;
+  std::size_t contacts = 0;
+  int thrown = 0;
+  for (int frame = 0; frame < 120; ++frame) {
+    this->place(Pose{}, at(1.1 + 0.002 * (frame % 40), 0.7 + 0.002 * frame));
+    if (frame % 3 > 0) try {
+        std::vector<Contact> some;
+        Throwing query(some, frame % 5);
+        margins.run(this->pair(query, counter));
+      } catch (const std::runtime_error&) {
+        ++thrown;
+        if (frame % 3 == 1) continue;  // else again at these poses
+      }
+    std::vector<Contact> found, expected;
+    Contacts all(found), all_from_roots(expected);
+    margins.run(this->pair(all, counter));
+    Recursive().run(this->pair(all_from_roots, counter));
+    std::sort(found.begin(), found.end()), std::sort(expected.begin(), expected.end());
+    ASSERT_EQ(found, expected) << "in frame " << frame;
+    contacts += found.size();
+  }
+  EXPECT_GT(contacts, 100u);
+  EXPECT_GT(thrown, 20);
 }
 
 /// A query that one hit ends and that says which.
@@ -500,7 +550,7 @@ TEST(MarginFronts, CollectWhatIsDue) {
     spheres[1].radius = 1e-6f;
     const auto measure_all = [&] {
       PresentPoses now(a, b);
-      for (std::size_t i = 0; i < n; ++i) front.set_gap(i, static_cast<float>(i));
+      for (std::size_t i = 0; i < n; ++i) front.announce_gap(i, static_cast<float>(i));
       front.measure(now, {spheres.data(), spheres.data()}, 0);
     };
     // The smaller sphere is that of a, and of b, by turns.
@@ -532,21 +582,21 @@ TEST(MarginFronts, CollectWhatIsDue) {
   }
 }
 
-/// What was set since the last measurement is the least of its numbers; it is unknown before, where
-/// it was forgotten, and where the gap of volumes is too small to be useful.
+/// measure() makes known the least value announced for each entry. An entry is unknown before, if
+/// it was forgotten, and if its volumes' gap is below `useful`.
 TEST(MarginFronts, MeasureWhatWasSet) {
   Ball a, b;
   MarginFront front;
   const NodeSphere point{};
   for (int i = 0; i < 40; ++i) front.add({0, 0});
-  front.set_gap(0, 1);
-  front.set_gap(1, 0.25f);  // not useful
-  front.set_gap(17, 2);
+  front.announce_gap(0, 1);
+  front.announce_gap(1, 0.25f);  // not useful
+  front.announce_gap(17, 2);
   front.forget_gap(17);
-  front.expect_gap(18);
+  front.announce_triangles(18);
   front.lower_gap(18, 0.25f);  // of triangles: kept
   front.lower_gap(18, 3);
-  front.expect_gap(39);
+  front.announce_triangles(39);
   front.lower_gap(39, std::numeric_limits<float>::quiet_NaN());
   for (const std::size_t slot : {0u, 1u, 17u, 18u, 39u}) EXPECT_FALSE(front.gap(slot) > 0);
   PresentPoses now(a, b);
@@ -556,7 +606,10 @@ TEST(MarginFronts, MeasureWhatWasSet) {
     EXPECT_LE(front.gap(slot), gap) << slot;
     EXPECT_EQ(front.gap(slot) > 0.99 * gap, gap > 0) << slot;
   }
-  front.set_gap(2, 0.75f);
+  front.announce_gap(2, 0.75f);
+  front.announce_triangles(0);  // known before
+  front.lower_gap(0, 0.875f);
+  EXPECT_FALSE(front.gap(0) > 0);
   EXPECT_NEAR(front.measure(now, {&point, &point}, 0.5f), 0.75, 1e-5);
   EXPECT_EQ(front.measure(now, {&point, &point}, 0.5f), std::numeric_limits<float>::infinity());
 }

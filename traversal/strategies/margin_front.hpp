@@ -92,6 +92,7 @@ class MarginFront {
 
   void clear() {
     entries_.clear(), gaps_.clear(), expires_at_.clear(), holes_.clear();
+    announced_ = false;
     clear_hits();
     witness_ = nowhere;
   }
@@ -122,18 +123,21 @@ class MarginFront {
     return slot;
   }
 
-  /// Sets the gap of an entry whose volumes are apart. It is not known until measure().
-  void set_gap(std::size_t slot, float gap) { announce(slot, gap, MeasuredGaps::Of::volumes); }
-  /// The same for an entry whose triangles are tested: each margin then lowers the gap.
-  void expect_gap(std::size_t slot) {
+  /// Announces the gap of an entry whose volumes are apart. It is unknown until measure().
+  void announce_gap(std::size_t slot, float gap) { announce(slot, gap, MeasuredGaps::Of::volumes); }
+  /// The same for an entry whose triangles are tested: each of their margins then lowers the gap.
+  void announce_triangles(std::size_t slot) {
     announce(slot, std::numeric_limits<float>::max(), MeasuredGaps::Of::triangles);
   }
   void lower_gap(std::size_t slot, float gap) { gaps_.lower(slot, gap); }
-  /// Makes known the gaps that were set at the present poses, but forgets those of volumes below
-  /// `useful`. `spheres` point to the spheres of all nodes of a, and of b. Returns the least of
-  /// these gaps, 0 where one is forgotten.
+  /// Makes known the gaps that were announced, at the present poses, but forgets those of volumes
+  /// below `useful`. `spheres` point to the spheres of all nodes of a, and of b. Returns the least
+  /// of these gaps: infinity where none was announced, 0 where one is forgotten or used up by
+  /// rounding.
   float measure(PresentPoses& now, const std::array<const NodeSphere*, 2>& spheres, float useful) {
     float least = std::numeric_limits<float>::infinity();
+    if (!announced_) return least;
+    announced_ = false;
     for (std::size_t group = 0; group < expires_at_.size(); ++group) {
       if (expires_at_[group] != to_be_measured) continue;
       expires_at_[group] = due;
@@ -160,12 +164,13 @@ class MarginFront {
     return !(one_of(gaps_, slot, now) > 0);
   }
   /// Collects, in order, the slots of the entries whose surfaces may be within `limit` of each
-  /// other, and forgets their gaps. The buffer `slots` is enlarged where that is needed.
-  Due collect(const PresentPoses& now, double limit, std::vector<std::uint32_t>& slots) {
+  /// other, and forgets their gaps. The slots lie in `buffer`, which is enlarged
+  /// where that is needed, and are valid until the next call.
+  Due collect(const PresentPoses& now, double limit, std::vector<std::uint32_t>& buffer) {
     using S = MeasuredGaps::S;
     const S limits(just_above(limit));
     const std::size_t n = entries_.size();
-    if (slots.size() < n + width) slots.resize(n + width);
+    if (buffer.size() < n + width) buffer.resize(n + width);
     std::size_t found = 0;
     S least(std::numeric_limits<float>::infinity());
     double until = std::numeric_limits<double>::infinity();
@@ -190,11 +195,11 @@ class MarginFront {
       }
       group = due;
       gaps_.forget(first, !later);
-      detail::write_numbers<MeasuredGaps::width>(slots.data() + found, due_lanes,
+      detail::write_numbers<MeasuredGaps::width>(buffer.data() + found, due_lanes,
                                                  static_cast<std::uint32_t>(first));
       found += static_cast<std::size_t>(std::popcount(due_lanes));
     }
-    return {std::span(slots).first(found),
+    return {std::span(buffer).first(found),
             std::min(stdx::hmin(least), just_below(until - now.displacement()))};
   }
 
@@ -206,7 +211,7 @@ class MarginFront {
 
   /// Makes the entry in `slot` the first to be tested in the next run.
   void set_witness(std::size_t slot) { witness_ = static_cast<std::uint32_t>(slot); }
-  /// Whether there is a witness, brought forward since the last restart, and its slot.
+  /// Whether an entry is the witness, set since the last restart; and its slot.
   bool witnessed() const { return witness_ != nowhere; }
   std::uint32_t witness() const { return witness_; }
 
@@ -224,8 +229,8 @@ class MarginFront {
   }
   /// Adds a hit that lasts while the bodies do not move. For queries that one hit may end.
   void add_brief_hit(const KnownHit& hit) {
-    hits_.push_back(hit);
     hit_margins_.add();
+    hits_.push_back(hit);
   }
   /// The same for a hit that lasts as long as its own margin.
   void add_hit(const KnownHit& hit, float margin, const ReferenceSphere& reference,
@@ -245,11 +250,14 @@ class MarginFront {
  private:
   static constexpr int most_brief_tests = 32;
   static constexpr std::size_t width = MeasuredGaps::width;
+  // In place of an expiry: an entry may be due, or a gap is announced (less, so that it is kept by
+  // min()).
   static constexpr double due = -1, to_be_measured = -2;
 
   [[gnu::always_inline]] void announce(std::size_t slot, float gap, MeasuredGaps::Of what) {
     gaps_.announce(slot, gap, what);
     expires_at_[slot / width] = to_be_measured;
+    announced_ = true;
   }
   template <class Gaps>
   static float one_of(const Gaps& gaps, std::size_t i, const PresentPoses& now) {
@@ -259,9 +267,10 @@ class MarginFront {
 
   std::vector<NodePair> entries_;
   MeasuredGaps gaps_;
-  // For each group of `width` entries: while the displacements sum to less than this, the query's
-  // limit included, none of them is due, and their gaps need not be looked at.
+  // For each group of `width` entries: none of them is due while the sum of displacements and the
+  // query's limit is less than this.
   std::vector<double> expires_at_;
+  bool announced_ = false;  // some gaps are to be measured
   std::vector<KnownHit> hits_;
   FewMeasuredGaps hit_margins_;
   std::size_t repeated_ = 0;  // of hits_

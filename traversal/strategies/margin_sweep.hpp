@@ -60,9 +60,9 @@ class MarginSweep : public FrontDefaults {
   void keep(std::size_t slot, EntryState state, double gap) {
     switch (state) {
       case EntryState::culled:
-        return front_.set_gap(slot, just_below(gap));
+        return front_.announce_gap(slot, just_below(gap));
       case EntryState::near:
-        return front_.expect_gap(slot);
+        return front_.announce_triangles(slot);
       case EntryState::not_yet:
         front_.forget_gap(slot);
         least_ = 0;
@@ -91,7 +91,7 @@ class MarginSweep : public FrontDefaults {
   bool opens(const Query& query, const Node& a, const Node& b, double gap) const {
     constexpr double triangle_cost = 3, leaf_gain = 0.5, inner_gain = 0.25, long_enough = 4;
     const double spare = gap - query.limit();
-    // Without a branch, which would be unpredictable.
+    // Chosen by index: a branch would be mispredicted.
     const std::size_t leaves = (a.count != 0) & (b.count != 0);
     const std::array<double, 2> size{static_cast<double>(std::max(a.size, b.size)),
                                      static_cast<double>(a.size + b.size)};

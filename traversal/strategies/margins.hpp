@@ -57,15 +57,18 @@ class Margins {
     // entry.
     if (last_query_ != &Query::name) front_.expire();
     last_query_ = &Query::name;
+    ClearUnlessDone front_is_whole{front_};
     front_.prefetch();
     PresentPoses now(a, b);
     if constexpr (Query::one_hit_is_enough)
       if (const float margin = repeat_hits(query, now); margin > 0) {
         answer_lasts(a, b, margin);
+        front_is_whole.done = true;
         return {};
       }
     MarginSweep sweep(front_, now, step_);
     const TraversalStatistics statistics = pair.from_front(sweep);
+    front_is_whole.done = true;
     account(statistics);
     ended_by_hit_ = !statistics.everything;
     answer_lasts(a, b, sweep.least());
@@ -119,6 +122,16 @@ class Margins {
  private:
   static constexpr double triangles = 4;  // cost of a pair of triangles and of its margin, in pairs
                                           // of volumes
+
+  /// An exception in a run, of a query or of an allocation, leaves a front that lacks entries: the
+  /// next run then starts from the roots.
+  struct ClearUnlessDone {
+    MarginFront& front;
+    bool done = false;
+    ~ClearUnlessDone() {
+      if (!done) front.clear();
+    }
+  };
 
   /// Follows the bodies. If nothing can have changed, answers the query and returns true.
   template <class Query>
