@@ -162,10 +162,11 @@ def fastest(record):
             line.append(f"{part.min() / 1e3:.2f} ({LETTERS[strategy] + ', ' if len(strategies) > 1 else ''}{fan_out}, {frame})")
             least[motion, strategies[0]] = part.min() / 1e3
             binary += [fan_out == 2] * (len(strategies) > 1)
-            frames.append(frame)
+            if motion != "rest":  # where posed volumes are kept
+                frames.append(frame)
         lines.append(line)
     claim(all(binary), "every best list is on a binary tree")
-    claim({*frames} == {"body"}, "every fastest configuration compares in a body's frame")
+    claim({*frames} == {"body"}, "in motion every fastest configuration compares in a body's frame")
     slow, middle = ["rest", fan_outs.SLOW, "0.003 / 0.3"], "0.003 / 0.3"
     claim(all(least[motion, "separation-list"] < least[motion, "recursive"] for motion in slow),
           "a binary list beats recursion on any tree at rest and in slow motion")
