@@ -198,8 +198,7 @@ class FrontRecorder {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
       entries.keep(step.pairs, i, EntryState::culled, step.pairs.gap(i));
     }
-    near |= opened;
-    return near;
+    return near | opened;
   }
 
   /// Pairs that were not tested become entries.

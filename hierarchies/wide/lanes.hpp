@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Operations on SIMD lanes of volumes: fused multiply-adds, access to the volume in one lane of a
-/// batch, one volume broadcast to all lanes, and a loop over the registers of a step.
+/// batch, one volume broadcast to all lanes, the numbers of set lanes, and a loop over the
+/// registers of a step.
 #pragma once
 
 #include <bit>

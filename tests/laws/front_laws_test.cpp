@@ -241,7 +241,7 @@ TYPED_TEST(FrontLaws, NoVerdictOfOtherBodiesIsReused) {
   });
 }
 
-/// A query that throws in place of its last test of triangles.
+/// A query that throws instead of testing triangles once more after so many tests.
 class Throwing : public Contacts {
  public:
   Throwing(std::vector<Contact>& found, int tests) : Contacts(found), tests_(tests) {}
@@ -270,14 +270,16 @@ TYPED_TEST(FrontLaws, MarginsStartAnewAfterAnException) {
   int thrown = 0;
   for (int frame = 0; frame < 120; ++frame) {
     this->place(Pose{}, at(1.1 + 0.002 * (frame % 40), 0.7 + 0.002 * frame));
-    if (frame % 3 > 0) try {
-        std::vector<Contact> some;
-        Throwing query(some, frame % 5);
+    if (frame % 3 > 0) {
+      std::vector<Contact> some;
+      Throwing query(some, frame % 5);
+      try {
         margins.run(this->pair(query, counter));
       } catch (const std::runtime_error&) {
         ++thrown;
         if (frame % 3 == 1) continue;  // else again at these poses
       }
+    }
     std::vector<Contact> found, expected;
     Contacts all(found), all_from_roots(expected);
     margins.run(this->pair(all, counter));
@@ -584,7 +586,7 @@ TEST(MarginFronts, CollectWhatIsDue) {
 
 /// measure() makes known the least value announced for each entry. An entry is unknown before, if
 /// it was forgotten, and if its volumes' gap is below `useful`.
-TEST(MarginFronts, MeasureWhatWasSet) {
+TEST(MarginFronts, MeasureWhatWasAnnounced) {
   Ball a, b;
   MarginFront front;
   const NodeSphere point{};

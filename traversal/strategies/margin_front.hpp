@@ -129,6 +129,7 @@ class MarginFront {
   void announce_triangles(std::size_t slot) {
     announce(slot, std::numeric_limits<float>::max(), MeasuredGaps::Of::triangles);
   }
+  /// Lowers a gap that announce_triangles() has announced since the last measure().
   void lower_gap(std::size_t slot, float gap) { gaps_.lower(slot, gap); }
   /// Makes known the gaps that were announced, at the present poses, but forgets those of volumes
   /// below `useful`. `spheres` point to the spheres of all nodes of a, and of b. Returns the least
@@ -164,8 +165,8 @@ class MarginFront {
     return !(one_of(gaps_, slot, now) > 0);
   }
   /// Collects, in order, the slots of the entries whose surfaces may be within `limit` of each
-  /// other, and forgets their gaps. The slots lie in `buffer`, which is enlarged
-  /// where that is needed, and are valid until the next call.
+  /// other, and forgets their gaps. No gap may be announced. The slots lie in `buffer`, which is
+  /// enlarged where that is needed, and are valid until the next call.
   Due collect(const PresentPoses& now, double limit, std::vector<std::uint32_t>& buffer) {
     using S = MeasuredGaps::S;
     const S limits(just_above(limit));

@@ -92,11 +92,11 @@ class MarginSweep : public FrontDefaults {
     constexpr double triangle_cost = 3, leaf_gain = 0.5, inner_gain = 0.25, long_enough = 4;
     const double spare = gap - query.limit();
     // Chosen by index: a branch would be mispredicted.
-    const std::size_t leaves = (a.count != 0) & (b.count != 0);
+    const std::size_t both_leaves = (a.count != 0) & (b.count != 0);
     const std::array<double, 2> size{static_cast<double>(std::max(a.size, b.size)),
                                      static_cast<double>(a.size + b.size)};
     constexpr std::array gain{inner_gain, leaf_gain}, costs{2.0, 1 + triangle_cost};
-    const double wider = gain[leaves] * size[leaves], cost = costs[leaves];
+    const double wider = gain[both_leaves] * size[both_leaves], cost = costs[both_leaves];
     return (spare < long_enough * step_) & (cost * std::max(spare, step_) < spare + wider);
   }
 
