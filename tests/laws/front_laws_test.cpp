@@ -292,6 +292,35 @@ TYPED_TEST(FrontLaws, MarginsStartAnewAfterAnException) {
   EXPECT_GT(thrown, 20);
 }
 
+/// In fast motion few gaps last and margins stop measuring them; in slow motion they begin again.
+TYPED_TEST(FrontLaws, OnlyGapsThatLastAreMeasured) {
+  Margins margins;
+  NotCounting counter;
+  std::size_t contacts = 0;
+  std::array<int, 2> runs_that_measured{};  // fast, slow
+  double angle = 0;
+  for (int frame = 0; frame < 180; ++frame) {
+    const bool slow = frame / 60 % 2 == 1;
+    angle += slow ? 1e-5 : 0.6;
+    this->place(Pose{}, at(0.6, angle));
+    std::vector<Contact> found, expected;
+    Contacts query(found), from_roots(expected);
+    margins.run(this->pair(query, counter));
+    Recursive().run(this->pair(from_roots, counter));
+    std::sort(found.begin(), found.end()), std::sort(expected.begin(), expected.end());
+    ASSERT_EQ(found, expected) << "in frame " << frame;
+    contacts += found.size();
+    std::size_t known = 0;
+    for (std::size_t slot = 0; slot < margins.front_size(); ++slot)
+      known += margins.front().gap(slot) > 0;
+    runs_that_measured[slow] += 2 * known > margins.front_size();
+    this->expect_partition(margins.front(), "margins");
+  }
+  EXPECT_GT(contacts, 100u);
+  EXPECT_LT(runs_that_measured[0], 20);
+  EXPECT_GT(runs_that_measured[1], 50);
+}
+
 /// A query that one hit ends and that says which.
 class FirstHit : public Touching {
  public:

@@ -92,7 +92,7 @@ class MarginFront {
 
   void clear() {
     entries_.clear(), gaps_.clear(), expires_at_.clear(), holes_.clear();
-    announced_ = false;
+    announced_ = 0;
     clear_hits();
     witness_ = nowhere;
   }
@@ -131,6 +131,8 @@ class MarginFront {
   }
   /// Lowers a gap that announce_triangles() has announced since the last measure().
   void lower_gap(std::size_t slot, float gap) { gaps_.lower(slot, gap); }
+  /// How often a gap was announced since the last measure().
+  std::size_t announced() const { return announced_; }
   /// Makes known the gaps that were announced, at the present poses, but forgets those of volumes
   /// below `useful`. `spheres` point to the spheres of all nodes of a, and of b. Returns the least
   /// of these gaps: infinity where none was announced, 0 where one is forgotten or used up by
@@ -138,7 +140,7 @@ class MarginFront {
   float measure(PresentPoses& now, const std::array<const NodeSphere*, 2>& spheres, float useful) {
     float least = std::numeric_limits<float>::infinity();
     if (!announced_) return least;
-    announced_ = false;
+    announced_ = 0;
     for (std::size_t group = 0; group < expires_at_.size(); ++group) {
       if (expires_at_[group] != to_be_measured) continue;
       expires_at_[group] = due;
@@ -258,7 +260,7 @@ class MarginFront {
   [[gnu::always_inline]] void announce(std::size_t slot, float gap, MeasuredGaps::Of what) {
     gaps_.announce(slot, gap, what);
     expires_at_[slot / width] = to_be_measured;
-    announced_ = true;
+    ++announced_;
   }
   template <class Gaps>
   static float one_of(const Gaps& gaps, std::size_t i, const PresentPoses& now) {
@@ -271,7 +273,7 @@ class MarginFront {
   // For each group of `width` entries: none of them is due while the sum of displacements and the
   // query's limit is less than this.
   std::vector<double> expires_at_;
-  bool announced_ = false;  // some gaps are to be measured
+  std::size_t announced_ = 0;  // gaps to be measured
   std::vector<KnownHit> hits_;
   FewMeasuredGaps hit_margins_;
   std::size_t repeated_ = 0;  // of hits_

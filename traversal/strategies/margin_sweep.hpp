@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// One run from a front with margins: tests the entries that are due, measures their gaps anew, and
-/// opens culled pairs with small gaps into pairs with wider ones.
+/// opens culled pairs with small gaps into pairs with wider ones. A run in which measuring does not
+/// pay (measuring_pays.hpp) only tests: the entries it has tested are due in the next run, too.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 
 #include "traversal/queries/query.hpp"
 #include "traversal/strategies/margin_front.hpp"
+#include "traversal/strategies/measuring_pays.hpp"
 #include "traversal/tracked_front.hpp"
 
 namespace bvlab {
@@ -21,10 +23,10 @@ class MarginSweep : public FrontDefaults {
   static constexpr bool measures_gaps = true;
   static constexpr std::size_t held_at_least = 7;  // margins are measured for a batch at once
 
-  /// `step`: about how much nearer the bodies come from run to run. `front` and `now` must outlive
-  /// this.
-  MarginSweep(MarginFront& front, PresentPoses& now, double step)
-      : front_(front), now_(now), step_(step) {}
+  /// `step`: about how much nearer the bodies come from run to run. `front`, `now` and `pays` must
+  /// outlive this.
+  MarginSweep(MarginFront& front, PresentPoses& now, MeasuringPays& pays, double step)
+      : front_(front), now_(now), pays_(pays), step_(step) {}
 
   const NodePair& operator[](std::size_t slot) const { return front_[slot]; }
   bool witnessed() const { return front_.witnessed(); }
@@ -34,6 +36,9 @@ class MarginSweep : public FrontDefaults {
   bool sweep(Traversal& traversal) {
     using Query = typename Traversal::Query;
     spheres_ = {traversal.a().node_spheres(), traversal.b().node_spheres()};
+    // A distance costs as much with its margin as without it.
+    constexpr bool always_measures = wants_bound<Query>();
+    measures_ = always_measures || pays_.expected(step_);
     const std::uint32_t witness = front_.witness();
     const bool first = !FindsAllHits<Query> && front_.witnessed() &&
                        (wants_bound<Query>() || front_.is_due(witness, now_));
@@ -44,6 +49,8 @@ class MarginSweep : public FrontDefaults {
     auto& buffer = traversal.workspace().template scratch<std::vector<std::uint32_t>>();
     const MarginFront::Due due = front_.collect(now_, traversal.query().limit(), buffer);
     lower_least(due.least_of_others);
+    if constexpr (!always_measures)
+      measures_ = pays_.decide(due.slots.size(), front_.size(), step_);
     if constexpr (FindsAllHits<Query>) {
       front_.remove_hits_of_due();
       for (const KnownHit& hit : front_.hits()) traversal.query().known(hit.a, hit.b);
@@ -58,6 +65,10 @@ class MarginSweep : public FrontDefaults {
   float least() const { return least_; }
 
   void keep(std::size_t slot, EntryState state, double gap) {
+    if (!measures_) {  // the gap is unknown already
+      least_ = 0;
+      return;
+    }
     switch (state) {
       case EntryState::culled:
         return front_.announce_gap(slot, just_below(gap));
@@ -77,6 +88,7 @@ class MarginSweep : public FrontDefaults {
 
   void finish(std::size_t witness, bool satisfied) {
     if (witness != Outcome::none) front_.set_witness(witness);
+    pays_.measured(front_.announced());
     measure();
     if (satisfied) least_ = margin_of_hit_;
   }
@@ -89,6 +101,7 @@ class MarginSweep : public FrontDefaults {
   /// opening does not pay.
   template <class Query, class Node>
   bool opens(const Query& query, const Node& a, const Node& b, double gap) const {
+    if (!measures_) return false;
     constexpr double triangle_cost = 3, leaf_gain = 0.5, inner_gain = 0.25, long_enough = 4;
     const double spare = gap - query.limit();
     // Chosen by index: a branch would be mispredicted.
@@ -103,7 +116,7 @@ class MarginSweep : public FrontDefaults {
   /// A pair of leaves is due when the first of its verdicts may change.
   template <class Query>
   Outcome primitives(Query& query, std::span<const Candidate> pending, Workspace& workspace) {
-    if (brief_) return briefly(query, pending);
+    if (brief_ || !measures_) return briefly(query, pending);
     auto& verdicts = workspace.scratch<std::vector<Verdict>>();
     verdicts.assign(pending.size(), {});
     const Outcome outcome = query.primitives(pending, verdicts);
@@ -159,6 +172,7 @@ class MarginSweep : public FrontDefaults {
   bool test_witness(Traversal& traversal, std::uint32_t witness) {
     const NodePair pair = front_[witness];
     if (front_.take_brief_test() && hits_still(traversal, pair, witness)) return true;
+    front_.forget_gap(witness);
     keep(witness, EntryState::near, 0);
     traversal.hold(pair, witness);
     return traversal.flush();
@@ -184,7 +198,7 @@ class MarginSweep : public FrontDefaults {
   template <class Query>
   Outcome briefly(Query& query, std::span<const Candidate> pending) {
     const Outcome outcome = query.primitives(pending);
-    if (outcome.satisfied) {
+    if (outcome.satisfied && pending[outcome.witness].slot != Outcome::none) {
       // Valid while the bodies do not move; once they do, it is tested again.
       add_hit<Query>(pending[outcome.witness], 0);
       margin_of_hit_ = 0;
@@ -194,8 +208,10 @@ class MarginSweep : public FrontDefaults {
 
   MarginFront& front_;
   PresentPoses& now_;
+  MeasuringPays& pays_;
   std::array<const NodeSphere*, 2> spheres_{};
   double step_;
+  bool measures_ = true;
   float least_ = std::numeric_limits<float>::infinity();
   float margin_of_hit_ = 0;
   bool brief_ = false;  // the witness is tested without its margin

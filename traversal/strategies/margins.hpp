@@ -55,7 +55,10 @@ class Margins {
     if (front_.empty() || rebuild_due_) rebuild(a, b);
     // Verdicts found by one query do not serve another: one may stop at the first hit of an
     // entry.
-    if (last_query_ != &Query::name) front_.expire();
+    if (last_query_ != &Query::name) {
+      front_.expire();
+      measuring_pays_.ignore_last_run();
+    }
     last_query_ = &Query::name;
     ClearUnlessDone front_is_whole{front_};
     front_.prefetch();
@@ -66,7 +69,7 @@ class Margins {
         front_is_whole.done = true;
         return {};
       }
-    MarginSweep sweep(front_, now, step_);
+    MarginSweep sweep(front_, now, measuring_pays_, step_);
     const TraversalStatistics statistics = pair.from_front(sweep);
     front_is_whole.done = true;
     account(statistics);
@@ -199,10 +202,12 @@ class Margins {
 
   void rebuild(MovingBody& a, MovingBody& b) {
     if (front_.empty()) {
+      measuring_pays_ = {};
       displacement_ = a.displacement_bound() + b.displacement_bound();
       epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
     }
     front_.restart();
+    measuring_pays_.ignore_last_run();
     upkeep_ = cost_ = 0;
     runs_ = 0;
     rebuild_due_ = false;
@@ -221,6 +226,7 @@ class Margins {
   static constexpr double never = -1;
 
   MarginFront front_;
+  MeasuringPays measuring_pays_;
   LastingAnswer lasting_;
   std::uint32_t epoch_a_ = 0, epoch_b_ = 0;  // at the last run
   double displacement_ = 0;                  // of both bodies, at the last run
