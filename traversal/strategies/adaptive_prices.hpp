@@ -28,10 +28,9 @@ class AdaptivePrices {
   /// tests in larger batches, and no front to write.
   static constexpr double both_over_rebuild = 0.85;
   /// Motion per frame in sizes of leaves. Above `jump` no part of a front can be reused, and lists
-  /// are not tried (record coherence). Below `small` margins are tried: gaps are about half a leaf
-  /// wide, so after steps of m leaves an entry is due in 2m of the runs. Of 0.15, 0.3, 0.4, 0.6 and
-  /// 1.2, 0.3 was fastest in the mean of 204 replays (four shapes, two volumes, motions of record
-  /// coherence).
+  /// are not tried (record coherence). Below `small` margins are tried: 0.3 was the fastest of
+  /// 0.15, 0.3, 0.4, 0.6 and 1.2 in the mean of 204 replays (four shapes, two volumes, motions of
+  /// record coherence).
   static constexpr double jump = 4, small = 0.3;
   /// The share of the entries predicted to be due that are due: a wandering body moves away from
   /// half of what it passes.

@@ -131,7 +131,7 @@ class MarginFront {
   }
   /// Lowers a gap that announce_triangles() has announced since the last measure().
   void lower_gap(std::size_t slot, float gap) { gaps_.lower(slot, gap); }
-  /// How often a gap was announced since the last measure().
+  /// Announcements since the last measure().
   std::size_t announced() const { return announced_; }
   /// Makes known the gaps that were announced, at the present poses, but forgets those of volumes
   /// below `useful`. `spheres` point to the spheres of all nodes of a, and of b. Returns the least
@@ -273,7 +273,7 @@ class MarginFront {
   // For each group of `width` entries: none of them is due while the sum of displacements and the
   // query's limit is less than this.
   std::vector<double> expires_at_;
-  std::size_t announced_ = 0;  // gaps to be measured
+  std::size_t announced_ = 0;  // since the last measure()
   std::vector<KnownHit> hits_;
   FewMeasuredGaps hit_margins_;
   std::size_t repeated_ = 0;  // of hits_

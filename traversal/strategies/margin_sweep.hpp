@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// One run from a front with margins: tests the entries that are due, measures their gaps anew, and
-/// opens culled pairs with small gaps into pairs with wider ones. A run in which measuring does not
-/// pay (measuring_pays.hpp) only tests: the entries it has tested are due in the next run, too.
+/// opens culled pairs with small gaps into pairs with wider ones. Where measuring does not pay
+/// (measuring_rule.hpp), a run only tests. What it tests is due again in the next run.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 #include "traversal/queries/query.hpp"
 #include "traversal/strategies/margin_front.hpp"
-#include "traversal/strategies/measuring_pays.hpp"
+#include "traversal/strategies/measuring_rule.hpp"
 #include "traversal/tracked_front.hpp"
 
 namespace bvlab {
@@ -23,10 +23,11 @@ class MarginSweep : public FrontDefaults {
   static constexpr bool measures_gaps = true;
   static constexpr std::size_t held_at_least = 7;  // margins are measured for a batch at once
 
-  /// `step`: about how much nearer the bodies come from run to run. `front`, `now` and `pays` must
-  /// outlive this.
-  MarginSweep(MarginFront& front, PresentPoses& now, MeasuringPays& pays, double step)
-      : front_(front), now_(now), pays_(pays), step_(step) {}
+  /// `step`: about how much nearer the bodies come from run to run; `present_step`: since the last
+  /// run. `front`, `now` and `rule` must outlive this.
+  MarginSweep(MarginFront& front, PresentPoses& now, MeasuringRule& rule, double step,
+              double present_step)
+      : front_(front), now_(now), rule_(rule), step_(step), present_step_(present_step) {}
 
   const NodePair& operator[](std::size_t slot) const { return front_[slot]; }
   bool witnessed() const { return front_.witnessed(); }
@@ -36,9 +37,9 @@ class MarginSweep : public FrontDefaults {
   bool sweep(Traversal& traversal) {
     using Query = typename Traversal::Query;
     spheres_ = {traversal.a().node_spheres(), traversal.b().node_spheres()};
-    // A distance costs as much with its margin as without it.
+    // Distances need these bounds anyway.
     constexpr bool always_measures = wants_bound<Query>();
-    measures_ = always_measures || pays_.expected(step_);
+    measures_ = always_measures || rule_.expected(present_step_);
     const std::uint32_t witness = front_.witness();
     const bool first = !FindsAllHits<Query> && front_.witnessed() &&
                        (wants_bound<Query>() || front_.is_due(witness, now_));
@@ -50,7 +51,7 @@ class MarginSweep : public FrontDefaults {
     const MarginFront::Due due = front_.collect(now_, traversal.query().limit(), buffer);
     lower_least(due.least_of_others);
     if constexpr (!always_measures)
-      measures_ = pays_.decide(due.slots.size(), front_.size(), step_);
+      measures_ = rule_.decide(due.slots.size(), front_.size(), present_step_);
     if constexpr (FindsAllHits<Query>) {
       front_.remove_hits_of_due();
       for (const KnownHit& hit : front_.hits()) traversal.query().known(hit.a, hit.b);
@@ -63,9 +64,11 @@ class MarginSweep : public FrontDefaults {
   /// After a complete run, a lower bound on what is left of every gap; after one that a hit ended,
   /// the margin of that hit. Not positive where it is not known.
   float least() const { return least_; }
+  /// Whether margins were measured. If not, the front does not have all hits of the run.
+  bool measures() const { return measures_; }
 
   void keep(std::size_t slot, EntryState state, double gap) {
-    if (!measures_) {  // the gap is unknown already
+    if (!measures_) {  // collect(), add() or test_witness() has forgotten the gap
       least_ = 0;
       return;
     }
@@ -88,7 +91,7 @@ class MarginSweep : public FrontDefaults {
 
   void finish(std::size_t witness, bool satisfied) {
     if (witness != Outcome::none) front_.set_witness(witness);
-    pays_.measured(front_.announced());
+    rule_.add_announced(front_.announced());
     measure();
     if (satisfied) least_ = margin_of_hit_;
   }
@@ -198,7 +201,7 @@ class MarginSweep : public FrontDefaults {
   template <class Query>
   Outcome briefly(Query& query, std::span<const Candidate> pending) {
     const Outcome outcome = query.primitives(pending);
-    if (outcome.satisfied && pending[outcome.witness].slot != Outcome::none) {
+    if (outcome.satisfied && outcome.witness != Outcome::none) {
       // Valid while the bodies do not move; once they do, it is tested again.
       add_hit<Query>(pending[outcome.witness], 0);
       margin_of_hit_ = 0;
@@ -208,9 +211,9 @@ class MarginSweep : public FrontDefaults {
 
   MarginFront& front_;
   PresentPoses& now_;
-  MeasuringPays& pays_;
+  MeasuringRule& rule_;
   std::array<const NodeSphere*, 2> spheres_{};
-  double step_;
+  double step_, present_step_;
   bool measures_ = true;
   float least_ = std::numeric_limits<float>::infinity();
   float margin_of_hit_ = 0;

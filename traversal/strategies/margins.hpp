@@ -57,7 +57,7 @@ class Margins {
     // entry.
     if (last_query_ != &Query::name) {
       front_.expire();
-      measuring_pays_.ignore_last_run();
+      measuring_rule_.ignore_earlier();
     }
     last_query_ = &Query::name;
     ClearUnlessDone front_is_whole{front_};
@@ -69,11 +69,12 @@ class Margins {
         front_is_whole.done = true;
         return {};
       }
-    MarginSweep sweep(front_, now, measuring_pays_, step_);
+    MarginSweep sweep(front_, now, measuring_rule_, step_, rests_ ? 0 : step_);
     const TraversalStatistics statistics = pair.from_front(sweep);
     front_is_whole.done = true;
     account(statistics);
     ended_by_hit_ = !statistics.everything;
+    has_all_hits_ = sweep.measures();
     answer_lasts(a, b, sweep.least());
     if constexpr (requires { query.distance(); }) distance_ = query.distance();
     return statistics;
@@ -139,10 +140,12 @@ class Margins {
   /// Follows the bodies. If nothing can have changed, answers the query and returns true.
   template <class Query>
   bool unchanged(MovingBody& a, MovingBody& b, Query& query) {
+    measuring_rule_.begin_run();
     const double displacement = a.displacement_bound() + b.displacement_bound();
     // By epochs: a short step can be lost in the sum of two long displacement bounds.
     const bool moved = a.epoch() != epoch_a_ || b.epoch() != epoch_b_;
     epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
+    rests_ = !moved;
     if (moved) {
       // Displacement bounds are sums of many steps, rounded up; the rounding of their own sum is
       // added.
@@ -154,7 +157,7 @@ class Margins {
       if (!moved) query.repeat(distance_);
       return !moved;
     } else {
-      if (moved && !still_lasts(a, b)) return false;
+      if (moved ? !still_lasts(a, b) : !has_all_hits_) return false;
       const auto& hits = front_.hits();
       for (std::size_t i = Query::one_hit_is_enough ? front_.repeated_hit() : 0; i < hits.size();
            ++i)
@@ -202,12 +205,13 @@ class Margins {
 
   void rebuild(MovingBody& a, MovingBody& b) {
     if (front_.empty()) {
-      measuring_pays_ = {};
+      measuring_rule_ = {};
+      rests_ = false;
       displacement_ = a.displacement_bound() + b.displacement_bound();
       epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
     }
     front_.restart();
-    measuring_pays_.ignore_last_run();
+    measuring_rule_.ignore_earlier();
     upkeep_ = cost_ = 0;
     runs_ = 0;
     rebuild_due_ = false;
@@ -226,7 +230,7 @@ class Margins {
   static constexpr double never = -1;
 
   MarginFront front_;
-  MeasuringPays measuring_pays_;
+  MeasuringRule measuring_rule_;
   LastingAnswer lasting_;
   std::uint32_t epoch_a_ = 0, epoch_b_ = 0;  // at the last run
   double displacement_ = 0;                  // of both bodies, at the last run
@@ -237,6 +241,8 @@ class Margins {
   double upkeep_ = 0, cost_ = 0, runs_ = 0;  // smoothed cost of a run; totals since the rebuild
   std::uint32_t rebuilds_ = 0;
   bool rebuild_due_ = false;
+  bool rests_ = false;        // no body has moved since the last run
+  bool has_all_hits_ = true;  // the front has all hits of the last run
   bool ended_by_hit_ = false;
   const std::string_view* last_query_ = nullptr;  // the query of the last run
 };
