@@ -30,7 +30,7 @@ struct QueryOptions {
 struct Outcome {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::size_t witness = none;  ///< the index of the one to test first in the next run
-  bool satisfied = false;      ///< the query is satisfied: the traversal can stop
+  bool satisfied = false;      ///< the query is satisfied by the witness: the traversal can stop
 };
 
 /// The verdict on a tested candidate, and its margin: how far the triangles can be moved, relative

@@ -25,7 +25,8 @@ namespace bvlab {
 /// to `found`.
 ///
 /// For strategies that keep margins:
-///   primitives(pending, verdicts)   the same, with a verdict on each candidate
+///   primitives(pending, verdicts)   the same, with a verdict on each candidate. Only hits may
+///                                   satisfy a query that has no repeat()
 ///   limit()                         surfaces farther apart than this no longer matter to the query
 ///   known(a, b)                     triangles a and b share a point (found now, or still valid);
 ///                                   returns whether that satisfies the query. A query answered by

@@ -23,8 +23,8 @@ class MarginSweep : public FrontDefaults {
   static constexpr bool measures_gaps = true;
   static constexpr std::size_t held_at_least = 7;  // margins are measured for a batch at once
 
-  /// `step`: about how much nearer the bodies come from run to run; `present_step`: since the last
-  /// run. `front`, `now` and `rule` must outlive this.
+  /// `step`: about how much nearer the bodies come from run to run; `present_step`: the same for
+  /// this run, 0 at rest. `front`, `now` and `rule` must outlive this.
   MarginSweep(MarginFront& front, PresentPoses& now, MeasuringRule& rule, double step,
               double present_step)
       : front_(front), now_(now), rule_(rule), step_(step), present_step_(present_step) {}
@@ -174,7 +174,7 @@ class MarginSweep : public FrontDefaults {
   template <class Traversal>
   bool test_witness(Traversal& traversal, std::uint32_t witness) {
     const NodePair pair = front_[witness];
-    if (front_.take_brief_test() && hits_still(traversal, pair, witness)) return true;
+    if (measures_ && front_.take_brief_test() && hits_still(traversal, pair, witness)) return true;
     front_.forget_gap(witness);
     keep(witness, EntryState::near, 0);
     traversal.hold(pair, witness);

@@ -10,6 +10,9 @@
 /// a sphere around one of the two nodes (measured_gaps.hpp). Where all gaps last, a run compares
 /// two numbers (lasting_answer.hpp).
 ///
+/// Where the bodies move so far that few gaps last until the next run, none are measured
+/// (measuring_rule.hpp).
+///
 /// The front is rebuilt from the roots when the smoothed cost of a run exceeds the mean cost since
 /// the last rebuild, that rebuild included. This replaces a front that is too long because the
 /// bodies moved apart.
@@ -242,7 +245,7 @@ class Margins {
   std::uint32_t rebuilds_ = 0;
   bool rebuild_due_ = false;
   bool rests_ = false;        // no body has moved since the last run
-  bool has_all_hits_ = true;  // the front has all hits of the last run
+  bool has_all_hits_ = true;  // the last sweep measured: the front has all of its hits
   bool ended_by_hit_ = false;
   const std::string_view* last_query_ = nullptr;  // the query of the last run
 };

@@ -3,6 +3,7 @@
 /// last until the next run, testing every entry costs less than measuring.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -14,20 +15,21 @@ class MeasuringRule {
   void begin_run() { ++runs_; }
 
   /// Whether a run measures, before its due entries are collected. `step`: about how much nearer
-  /// the bodies come from run to run.
+  /// the bodies have come since the last run; 0 at rest.
   bool expected(double step) const { return runs_without_ == 0 || step < stopped_at_ / 2; }
 
   /// Whether this run measures, where `due` of the front's entries are due.
   bool decide(std::size_t due, std::size_t entries, double step) {
     const std::size_t lasting = entries - due;
-    // As many would last if the least share lasted in each run.
+    // How many would be left had only `least_lasting` of them lasted in each run since.
     auto least = static_cast<double>(known_);
     for (std::uint32_t run = 0; run < runs_ && least > 1; ++run) least *= least_lasting;
     if (static_cast<double>(lasting) + 1 < least) {
       runs_without_ = patience;
-      stopped_at_ = step;
+      stopped_at_ = std::max(step, measured_at_);
     }
     const bool measures = expected(step);
+    if (measures) measured_at_ = step;
     runs_without_ = measures ? 0 : runs_without_ - 1;
     runs_ = 0;
     known_ = measures ? lasting : 0;
@@ -44,13 +46,15 @@ class MeasuringRule {
   /// Measuring stops when a smaller share of the gaps lasts until the next run. Of 0.2, 0.3, 0.4
   /// and 0.5 this was fastest in the mean (five motions, touching and contacts, two volumes).
   static constexpr double least_lasting = 0.3;
-  /// Measuring is tried again after this many runs. At worst one run in 33 measures in vain.
+  /// Measuring is tried again after this many runs. At a steady step one run in 33
+  /// measures in vain.
   static constexpr int patience = 32;
 
   std::size_t known_ = 0;   // gaps that lasted, or were announced, when entries were last collected
   std::uint32_t runs_ = 0;  // since then
   int runs_without_ = 0;    // runs to come that do not measure
-  double stopped_at_ = 0;   // step when measuring stopped
+  double measured_at_ = 0;  // step of the last run that measured
+  double stopped_at_ = 0;   // step when measuring stopped, or of the run before: the larger one
 };
 
 }  // namespace bvlab
