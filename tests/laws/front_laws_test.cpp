@@ -34,6 +34,16 @@ class FrontLaws : public ::testing::Test {
     return {a_, b_, query, counter, workspace_};
   }
 
+  /// All contacts that a strategy finds, sorted.
+  template <class Strategy, class Counter>
+  std::vector<Contact> contacts(Strategy&& strategy, Counter& counter) {
+    std::vector<Contact> found;
+    Contacts query(found);
+    strategy.run(pair(query, counter));
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
   /// Of the same mesh, from now on.
   void use(std::uint32_t fan_out, Frame frame) {
     hierarchy_ = Hierarchy<V>(
@@ -223,12 +233,9 @@ TYPED_TEST(FrontLaws, NoVerdictOfOtherBodiesIsReused) {
       this->place(Pose{}, at(x, 0.7 + 0.002 * frame));
       fast_a.move(at(0, 0.7 * frame), Vec3<double>::Zero());
       fast_b.move(at(x, 0.5), Vec3<double>::Zero());
-      std::vector<Contact> found, expected;
-      Contacts all(found), all_from_roots(expected);
-      strategy.run(this->pair(all, counter));
-      Recursive().run(this->pair(all_from_roots, counter));
-      std::sort(found.begin(), found.end()), std::sort(expected.begin(), expected.end());
-      ASSERT_EQ(found, expected) << Strategy::name << " in frame " << frame;
+      const std::vector<Contact> found = this->contacts(strategy, counter);
+      ASSERT_EQ(found, this->contacts(Recursive(), counter))
+          << Strategy::name << " in frame " << frame;
       contacts += found.size();
       Touching one, from_roots;
       strategy.run(BodyPair<B, TypeParam, Touching, NotCounting>(fast_a, fast_b, one, counter,
@@ -280,12 +287,8 @@ TYPED_TEST(FrontLaws, MarginsStartAnewAfterAnException) {
         if (frame % 3 == 1) continue;  // else again at these poses
       }
     }
-    std::vector<Contact> found, expected;
-    Contacts all(found), all_from_roots(expected);
-    margins.run(this->pair(all, counter));
-    Recursive().run(this->pair(all_from_roots, counter));
-    std::sort(found.begin(), found.end()), std::sort(expected.begin(), expected.end());
-    ASSERT_EQ(found, expected) << "in frame " << frame;
+    const std::vector<Contact> found = this->contacts(margins, counter);
+    ASSERT_EQ(found, this->contacts(Recursive(), counter)) << "in frame " << frame;
     contacts += found.size();
   }
   EXPECT_GT(contacts, 100u);
@@ -304,18 +307,12 @@ TYPED_TEST(FrontLaws, OnlyGapsThatLastAreMeasured) {
     const bool slow = frame / 60 % 2 == 1;
     angle += slow ? 1e-5 : 0.6;
     this->place(Pose{}, at(slow ? 0.8 : 0.6 + 0.4 * (frame % 5), angle));
-    std::vector<Contact> expected;
-    Contacts from_roots(expected);
-    Recursive().run(this->pair(from_roots, counter));
-    std::sort(expected.begin(), expected.end());
+    const std::vector<Contact> expected = this->contacts(Recursive(), counter);
     for (int runs = 0; runs < (frame % 13 == 12 ? 3 : 1); ++runs) {  // also at rest
-      std::vector<Contact> found;
-      Contacts query(found);
+      ASSERT_EQ(this->contacts(margins, counter), expected)
+          << "in frame " << frame << ", run " << runs;
       Touching yes_or_no;
-      margins.run(this->pair(query, counter));
       touching.run(this->pair(yes_or_no, counter));
-      std::sort(found.begin(), found.end());
-      ASSERT_EQ(found, expected) << "in frame " << frame << ", run " << runs;
       ASSERT_EQ(yes_or_no.touching(), !expected.empty()) << "in frame " << frame;
       if (runs > 0) continue;
       std::size_t known = 0;
@@ -421,13 +418,9 @@ TYPED_TEST(FrontLaws, AdaptiveTestsContactsAtRestNoMore) {
       else if (run == jumps)
         this->place(Pose{}, at(0.8, 0.7));
       Counting counter, from_roots;
-      std::vector<Contact> found, expected;
-      Contacts query(found), query_from_roots(expected);
-      adaptive.run(this->pair(query, counter));
+      const std::vector<Contact> found = this->contacts(adaptive, counter);
       if (run < jumps + 400) continue;
-      Recursive().run(this->pair(query_from_roots, from_roots));
-      std::sort(found.begin(), found.end()), std::sort(expected.begin(), expected.end());
-      EXPECT_EQ(found, expected);
+      EXPECT_EQ(found, this->contacts(Recursive(), from_roots));
       EXPECT_GT(found.size(), 10u);
       EXPECT_EQ(counter.n_v, 0u) << jumps;
       EXPECT_EQ(counter.n_p, 0u) << jumps;
@@ -512,12 +505,8 @@ TYPED_TEST(FrontLaws, AWitnessDecidesBeforeAnyVolumeIsTested) {
   EXPECT_EQ(again.n_u, 0u);
   EXPECT_EQ(again.n_p, 1u);
   // All contacts are sought from the roots, each found once, and so is an answer after them.
-  std::vector<Contact> expected, found;
-  Contacts all(expected), after(found);
-  RecursiveBoth().run(this->pair(all, other));
-  witness.run(this->pair(after, other));
-  std::sort(expected.begin(), expected.end()), std::sort(found.begin(), found.end());
-  EXPECT_EQ(found, expected);
+  const std::vector<Contact> expected = this->contacts(RecursiveBoth(), other);
+  EXPECT_EQ(this->contacts(witness, other), expected);
   this->place(Pose{}, at(9));
   Touching apart;
   witness.run(this->pair(apart, other));

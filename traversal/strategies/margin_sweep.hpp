@@ -23,11 +23,10 @@ class MarginSweep : public FrontDefaults {
   static constexpr bool measures_gaps = true;
   static constexpr std::size_t held_at_least = 7;  // margins are measured for a batch at once
 
-  /// `step`: about how much nearer the bodies come from run to run; `present_step`: the same for
-  /// this run, 0 at rest. `front`, `now` and `rule` must outlive this.
-  MarginSweep(MarginFront& front, PresentPoses& now, MeasuringRule& rule, double step,
-              double present_step)
-      : front_(front), now_(now), rule_(rule), step_(step), present_step_(present_step) {}
+  /// `step`: about how much nearer the bodies come from run to run. `front`, `now` and `rule` must
+  /// outlive this.
+  MarginSweep(MarginFront& front, PresentPoses& now, MeasuringRule& rule, double step)
+      : front_(front), now_(now), rule_(rule), step_(step) {}
 
   const NodePair& operator[](std::size_t slot) const { return front_[slot]; }
   bool witnessed() const { return front_.witnessed(); }
@@ -39,7 +38,7 @@ class MarginSweep : public FrontDefaults {
     spheres_ = {traversal.a().node_spheres(), traversal.b().node_spheres()};
     // Distances need these bounds anyway.
     constexpr bool always_measures = wants_bound<Query>();
-    measures_ = always_measures || rule_.expected(present_step_);
+    measures_ = always_measures || rule_.expected();
     const std::uint32_t witness = front_.witness();
     const bool first = !FindsAllHits<Query> && front_.witnessed() &&
                        (wants_bound<Query>() || front_.is_due(witness, now_));
@@ -50,8 +49,7 @@ class MarginSweep : public FrontDefaults {
     auto& buffer = traversal.workspace().template scratch<std::vector<std::uint32_t>>();
     const MarginFront::Due due = front_.collect(now_, traversal.query().limit(), buffer);
     lower_least(due.least_of_others);
-    if constexpr (!always_measures)
-      measures_ = rule_.decide(due.slots.size(), front_.size(), present_step_);
+    if constexpr (!always_measures) measures_ = rule_.decide(due.slots.size(), front_.size());
     if constexpr (FindsAllHits<Query>) {
       front_.remove_hits_of_due();
       for (const KnownHit& hit : front_.hits()) traversal.query().known(hit.a, hit.b);
@@ -213,7 +211,7 @@ class MarginSweep : public FrontDefaults {
   PresentPoses& now_;
   MeasuringRule& rule_;
   std::array<const NodeSphere*, 2> spheres_{};
-  double step_, present_step_;
+  double step_;
   bool measures_ = true;
   float least_ = std::numeric_limits<float>::infinity();
   float margin_of_hit_ = 0;

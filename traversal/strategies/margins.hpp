@@ -72,7 +72,7 @@ class Margins {
         front_is_whole.done = true;
         return {};
       }
-    MarginSweep sweep(front_, now, measuring_rule_, step_, rests_ ? 0 : step_);
+    MarginSweep sweep(front_, now, measuring_rule_, step_);
     const TraversalStatistics statistics = pair.from_front(sweep);
     front_is_whole.done = true;
     account(statistics);
@@ -143,18 +143,17 @@ class Margins {
   /// Follows the bodies. If nothing can have changed, answers the query and returns true.
   template <class Query>
   bool unchanged(MovingBody& a, MovingBody& b, Query& query) {
-    measuring_rule_.begin_run();
     const double displacement = a.displacement_bound() + b.displacement_bound();
     // By epochs: a short step can be lost in the sum of two long displacement bounds.
     const bool moved = a.epoch() != epoch_a_ || b.epoch() != epoch_b_;
     epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
-    rests_ = !moved;
     if (moved) {
       // Displacement bounds are sums of many steps, rounded up; the rounding of their own sum is
       // added.
       step_ = displacement - displacement_ + 4 * unit_roundoff<double> * displacement;
       displacement_ = displacement;
     }
+    measuring_rule_.begin_run(moved ? step_ : 0);
     if (last_query_ != &Query::name) return false;
     if constexpr (requires { query.distance(); }) {
       if (!moved) query.repeat(distance_);
@@ -209,7 +208,6 @@ class Margins {
   void rebuild(MovingBody& a, MovingBody& b) {
     if (front_.empty()) {
       measuring_rule_ = {};
-      rests_ = false;
       displacement_ = a.displacement_bound() + b.displacement_bound();
       epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
     }
@@ -244,7 +242,6 @@ class Margins {
   double upkeep_ = 0, cost_ = 0, runs_ = 0;  // smoothed cost of a run; totals since the rebuild
   std::uint32_t rebuilds_ = 0;
   bool rebuild_due_ = false;
-  bool rests_ = false;        // no body has moved since the last run
   bool has_all_hits_ = true;  // the last sweep measured: the front has all of its hits
   bool ended_by_hit_ = false;
   const std::string_view* last_query_ = nullptr;  // the query of the last run

@@ -11,25 +11,28 @@ namespace bvlab {
 
 class MeasuringRule {
  public:
-  /// Counts a run, whether or not it collects due entries.
-  void begin_run() { ++runs_; }
+  /// Counts a run, whether or not it collects due entries. `step`: about how much nearer the
+  /// bodies have come since the last run; 0 at rest.
+  void begin_run(double step) {
+    ++runs_;
+    step_ = step;
+  }
 
-  /// Whether a run measures, before its due entries are collected. `step`: about how much nearer
-  /// the bodies have come since the last run; 0 at rest.
-  bool expected(double step) const { return runs_without_ == 0 || step < stopped_at_ / 2; }
+  /// Whether this run measures, before its due entries are collected.
+  bool expected() const { return runs_without_ == 0 || step_ < stopped_at_ / 2; }
 
   /// Whether this run measures, where `due` of the front's entries are due.
-  bool decide(std::size_t due, std::size_t entries, double step) {
+  bool decide(std::size_t due, std::size_t entries) {
     const std::size_t lasting = entries - due;
     // How many would be left had only `least_lasting` of them lasted in each run since.
     auto least = static_cast<double>(known_);
     for (std::uint32_t run = 0; run < runs_ && least > 1; ++run) least *= least_lasting;
     if (static_cast<double>(lasting) + 1 < least) {
       runs_without_ = patience;
-      stopped_at_ = std::max(step, measured_at_);
+      stopped_at_ = std::max(step_, measured_at_);
     }
-    const bool measures = expected(step);
-    if (measures) measured_at_ = step;
+    const bool measures = expected();
+    if (measures) measured_at_ = step_;
     runs_without_ = measures ? 0 : runs_without_ - 1;
     runs_ = 0;
     known_ = measures ? lasting : 0;
@@ -52,6 +55,7 @@ class MeasuringRule {
 
   std::size_t known_ = 0;   // gaps that lasted, or were announced, when entries were last collected
   std::uint32_t runs_ = 0;  // since then
+  double step_ = 0;         // of this run
   int runs_without_ = 0;    // runs to come that do not measure
   double measured_at_ = 0;  // step of the last run that measured
   double stopped_at_ = 0;   // step when measuring stopped, or of the run before: the larger one
