@@ -72,28 +72,43 @@ template <Scalar S>
 
 namespace detail {
 
-/// Writes first + k for each set bit k of the mask, in order. There must be room for F numbers: a
-/// whole register may be stored.
+/// Writes value(k) for each set bit k of the mask, side by side, and returns how many. There must
+/// be room for F. Every lane is written, and the next one overwrites it where its bit is not set: a
+/// loop over the set bits would end at a branch that cannot be predicted.
+template <int F, class T, class Value>
+[[gnu::always_inline]] inline std::size_t write_set_lanes(T* out, std::uint64_t mask,
+                                                          Value&& value) {
+  std::size_t count = 0;
+  for (int k = 0; k < F; ++k) {
+    out[count] = value(k);
+    count += mask >> k & 1;
+  }
+  return count;
+}
+
+/// Writes first + k for each set bit k of the mask, in order, and returns how many. There must be
+/// room for F numbers.
 template <int F>
-[[gnu::always_inline]] inline void write_numbers(std::uint32_t* out, std::uint64_t mask,
-                                                 std::uint32_t first) {
+[[gnu::always_inline]] inline std::size_t write_numbers(std::uint32_t* out, std::uint64_t mask,
+                                                        std::uint32_t first) {
 #if defined(__AVX512F__) && defined(__AVX512VL__)
+  const auto count = static_cast<std::size_t>(std::popcount(mask));
   if constexpr (F == 16) {
     const __m512i lanes = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
     const __m512i all = _mm512_add_epi32(_mm512_set1_epi32(static_cast<int>(first)), lanes);
     _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), all));
-    return;
+    return count;
   }
   if constexpr (F == 8) {
     const __m256i lanes = _mm256_set_epi32(7, 6, 5, 4, 3, 2, 1, 0);
     const __m256i all = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first)), lanes);
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
                         _mm256_maskz_compress_epi32(static_cast<__mmask8>(mask), all));
-    return;
+    return count;
   }
 #endif
-  for (; mask; mask &= mask - 1)
-    *out++ = first + static_cast<std::uint32_t>(std::countr_zero(mask));
+  return write_set_lanes<F>(out, mask,
+                            [first](int k) { return first + static_cast<std::uint32_t>(k); });
 }
 
 /// The number of lanes. Volumes are plain aggregates of scalars, stored field by field.

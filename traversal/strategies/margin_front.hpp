@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -198,9 +197,8 @@ class MarginFront {
       }
       group = due;
       gaps_.forget(first, !later);
-      detail::write_numbers<MeasuredGaps::width>(buffer.data() + found, due_lanes,
-                                                 static_cast<std::uint32_t>(first));
-      found += static_cast<std::size_t>(std::popcount(due_lanes));
+      found += detail::write_numbers<MeasuredGaps::width>(buffer.data() + found, due_lanes,
+                                                          static_cast<std::uint32_t>(first));
     }
     return {std::span(buffer).first(found),
             std::min(stdx::hmin(least), just_below(until - now.displacement()))};

@@ -41,7 +41,7 @@ template <int F>
     return;
   }
 #endif
-  for (; mask; mask &= mask - 1) *out++ = x[static_cast<std::size_t>(std::countr_zero(mask))];
+  write_set_lanes<F>(out, mask, [&x](int k) { return x[static_cast<std::size_t>(k)]; });
 }
 
 /// The lane of the mask with the least number, as a bit; the first if there are several, any if
@@ -106,11 +106,12 @@ class WorkQueue {
   [[gnu::always_inline]] void push_lanes(int side, std::uint64_t mask, std::uint32_t first,
                                          std::uint32_t other, const Order& order) {
     reserve();
-    detail::write_numbers<F>(&id_[static_cast<std::size_t>(side)][size_], mask, first);
+    const std::size_t count =
+        detail::write_numbers<F>(&id_[static_cast<std::size_t>(side)][size_], mask, first);
     std::fill_n(&id_[static_cast<std::size_t>(1 - side)][size_], F, other);
     if constexpr (!std::is_same_v<Order, NoOrder>)
       detail::write_lanes<F>(&order_[window + size_], mask, order);
-    size_ += static_cast<std::size_t>(std::popcount(mask));
+    size_ += count;
   }
 
   /// The same for a pair in each of sixteen lanes.
@@ -204,18 +205,38 @@ class WorkQueue {
         _mm512_cmp_ps_mask(first, value, _CMP_NGT_UQ);
     return size_ - 1 - static_cast<std::size_t>(std::countl_zero(found));
 #else
-    std::size_t at = size_ - 1;
-    for (std::size_t k = at; k-- > 0 && k + window >= size_;)
-      if (order_[window + k] < order_[window + at]) at = k;
-    return at;
+    using S = NativeBatch<float>;
+    if constexpr (S::size() > 1) {
+      constexpr std::size_t parts = window / S::size();
+      const float* begin = &order_[size_];
+      const auto part = [begin](std::size_t k) {
+        return S(begin + k * S::size(), stdx::element_aligned);
+      };
+      S of_parts = part(0);
+      for (std::size_t k = 1; k < parts; ++k) of_parts = stdx::min(of_parts, part(k));
+      const S value(stdx::hmin(of_parts));
+      // Written so that NaN is found, too.
+      std::uint64_t found = 0;
+      for (std::size_t k = 0; k < parts; ++k) found |= bits(!(part(k) > value)) << (k * S::size());
+      return size_ - window + static_cast<std::size_t>(std::bit_width(found)) - 1;
+    } else {
+      std::size_t at = size_ - 1;
+      float least = order_[window + at];
+      for (std::size_t k = at; k-- > 0 && k + window >= size_;) {
+        const float order = order_[window + k];
+        at = order < least ? k : at;
+        least = order < least ? order : least;
+      }
+      return at;
+    }
 #endif
   }
 
-  void reserve() {
+  [[gnu::always_inline]] void reserve() {
     if (size_ + 16 > id_[0].size()) grow(2 * id_[0].size());
   }
   /// The first order is preceded by 32 infinite ones, which are never the least.
-  void grow(std::size_t capacity) {
+  [[gnu::noinline]] void grow(std::size_t capacity) {
     id_[0].resize(capacity), id_[1].resize(capacity);
     order_.resize(window + capacity + 16);
     std::fill_n(order_.begin(), window, std::numeric_limits<float>::infinity());
