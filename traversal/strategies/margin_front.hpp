@@ -115,7 +115,7 @@ class MarginFront {
     }
     const std::size_t slot = entries_.size();
     if (slot % width == 0) [[unlikely]]
-      expires_at_.push_back(due);
+      expires_at_.push_back(all_due);
     entries_.push_back(pair);
     gaps_.add();
     expires_at_.back() = std::min(expires_at_.back(), due);
@@ -183,22 +183,29 @@ class MarginFront {
         until = std::min(until, group);
         continue;
       }
+      const std::uint64_t all = (std::uint64_t{1} << std::min(width, n - first)) - 1;
+      const auto add_due = [&](std::uint64_t lanes) __attribute__((always_inline)) {
+        found += detail::write_numbers<width>(buffer.data() + found, lanes,
+                                              static_cast<std::uint32_t>(first));
+      };
+      if (group == all_due) {
+        add_due(all);
+        continue;
+      }
       gaps_.prefetch(first + 2 * width);
       const S remaining = gaps_.remaining(first, now.a_to_b(), now.rotation());
       const auto later = remaining > limits;
       S of_group(std::numeric_limits<float>::infinity());
       stdx::where(later, of_group) = remaining;
       least = stdx::min(least, of_group);
-      const std::uint64_t all = (std::uint64_t{1} << std::min(width, n - first)) - 1;
       const std::uint64_t due_lanes = ~bits(later) & all;
       if (!due_lanes) {
         group = displacement_at_expiry(now.displacement(), stdx::hmin(of_group));
         continue;
       }
-      group = due;
+      group = due_lanes == all ? all_due : due;
       gaps_.forget(first, !later);
-      found += detail::write_numbers<MeasuredGaps::width>(buffer.data() + found, due_lanes,
-                                                          static_cast<std::uint32_t>(first));
+      add_due(due_lanes);
     }
     return {std::span(buffer).first(found),
             std::min(stdx::hmin(least), just_below(until - now.displacement()))};
@@ -251,9 +258,9 @@ class MarginFront {
  private:
   static constexpr int most_brief_tests = 32;
   static constexpr std::size_t width = MeasuredGaps::width;
-  // In place of an expiry: an entry may be due, or a gap is announced (less, so that it is kept by
-  // min()).
-  static constexpr double due = -1, to_be_measured = -2;
+  // In place of an expiry: an entry may be due, a gap is announced, or no gap is known. The lesser
+  // are kept by min().
+  static constexpr double due = -1, to_be_measured = -2, all_due = -3;
 
   [[gnu::always_inline]] void announce(std::size_t slot, float gap, MeasuredGaps::Of what) {
     gaps_.announce(slot, gap, what);
