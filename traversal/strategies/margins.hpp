@@ -207,7 +207,8 @@ class Margins {
 
   void rebuild(MovingBody& a, MovingBody& b) {
     if (front_.empty()) {
-      measuring_rule_ = {};
+      measuring_rule_ = MeasuringRule(a.mean_step() + b.mean_step(),
+                                      (a.extent().leaf_size() + b.extent().leaf_size()) / 2);
       displacement_ = a.displacement_bound() + b.displacement_bound();
       epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
     }

@@ -11,6 +11,11 @@ namespace bvlab {
 
 class MeasuringRule {
  public:
+  /// `step`: about how much nearer two bodies are expected to come from run to run, whose leaves
+  /// are of `leaf_size` in the mean. Where they are fast, the first runs do not measure.
+  explicit MeasuringRule(double step = 0, double leaf_size = 0)
+      : step_(step), runs_without_(step > fast * leaf_size ? patience : 0), stopped_at_(step) {}
+
   /// Counts a run, whether or not it collects due entries. `step`: about how much nearer the
   /// bodies have come since the last run; 0 at rest.
   void begin_run(double step) {
@@ -52,13 +57,15 @@ class MeasuringRule {
   /// Measuring is tried again after this many runs. At a steady step one run in 33
   /// measures in vain.
   static constexpr int patience = 32;
+  /// Sizes of a leaf per run. Of faster bodies, hardly any gaps last.
+  static constexpr double fast = 2;
 
   std::size_t known_ = 0;   // gaps that lasted, or were announced, when entries were last collected
   std::uint32_t runs_ = 0;  // since then
-  double step_ = 0;         // of this run
-  int runs_without_ = 0;    // runs to come that do not measure
+  double step_;             // of this run
+  int runs_without_;        // runs to come that do not measure
   double measured_at_ = 0;  // step of the last run that measured
-  double stopped_at_ = 0;   // step when measuring stopped, or of the run before: the larger one
+  double stopped_at_;       // step when measuring stopped, or of the run before: the larger one
 };
 
 }  // namespace bvlab

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include "traversal/moving_body.hpp"
@@ -32,10 +31,9 @@ class ObservedStep {
     }
     const double displacement = a.displacement_bound() + b.displacement_bound();
     if (leaf_ == 0) {
-      leaf_ = (leaf_size(a.extent()) + leaf_size(b.extent())) / 2;
-      // At least the mean displacement per move of both bodies; a move may combine several frames.
-      step_ =
-          std::max(leaf_, a.displacement_bound() / a.epoch() + b.displacement_bound() / b.epoch());
+      leaf_ = (a.extent().leaf_size() + b.extent().leaf_size()) / 2;
+      // A move may combine several frames.
+      step_ = std::max(leaf_, a.mean_step() + b.mean_step());
     } else if ((always || unseen_ == 0) && displacement != displacement_) {
       step_ = (displacement - displacement_) / (1 + unseen_);
     }
@@ -55,11 +53,6 @@ class ObservedStep {
   static constexpr int long_rest = 4;
 
   bool at_rest() const { return rests_ == long_rest; }
-
-  /// The size of a leaf, in units of the mesh, for leaves about as wide as long.
-  static double leaf_size(const HierarchyExtent& extent) {
-    return 2 * extent.radius / std::sqrt(static_cast<double>(extent.leaves));
-  }
 
   int unseen_ = 0;              // runs since the bodies were measured
   int rests_ = 0;               // successive runs without a move, at most long_rest
