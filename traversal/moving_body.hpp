@@ -39,7 +39,8 @@ class MovingBody {
     follow();
     return displacement_bound_;
   }
-  /// The mean of displacement_bound() per move, so far.
+  /// displacement_bound() over the number of poses so far, the first included: at most its mean per
+  /// move.
   double mean_step() { return displacement_bound() / epoch_; }
   /// The same for the rotation: the sum of the spectral norms of its matrix differences.
   double rotation_bound() {

@@ -57,7 +57,7 @@ class MeasuringRule {
   /// Measuring is tried again after this many runs. At a steady step one run in 33
   /// measures in vain.
   static constexpr int patience = 32;
-  /// Sizes of a leaf per run. Of faster bodies, hardly any gaps last.
+  /// In leaf sizes per run. Hardly any gap of faster bodies lasts until the next run.
   static constexpr double fast = 2;
 
   std::size_t known_ = 0;   // gaps that lasted, or were announced, when entries were last collected
