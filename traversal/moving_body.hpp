@@ -39,9 +39,6 @@ class MovingBody {
     follow();
     return displacement_bound_;
   }
-  /// displacement_bound() over the number of poses so far, the first included: at most its mean per
-  /// move.
-  double mean_step() { return displacement_bound() / epoch_; }
   /// The same for the rotation: the sum of the spectral norms of its matrix differences.
   double rotation_bound() {
     follow();
@@ -90,5 +87,15 @@ class MovingBody {
   std::uint32_t followed_ = never_done;  // the epoch of `present_pose_`
   OrthonormalPose orthonormal_pose_;
 };
+
+/// About how much nearer two bodies come when both move: their displacement bounds, each over the
+/// number of the body's poses so far, the first included. At most the mean per move.
+inline double mean_step(MovingBody& a, MovingBody& b) {
+  return a.displacement_bound() / a.epoch() + b.displacement_bound() / b.epoch();
+}
+/// The mean of the leaf sizes of two bodies.
+inline double mean_leaf_size(const MovingBody& a, const MovingBody& b) {
+  return (a.extent().leaf_size() + b.extent().leaf_size()) / 2;
+}
 
 }  // namespace bvlab

@@ -207,8 +207,7 @@ class Margins {
 
   void rebuild(MovingBody& a, MovingBody& b) {
     if (front_.empty()) {
-      measuring_rule_ = MeasuringRule(a.mean_step() + b.mean_step(),
-                                      (a.extent().leaf_size() + b.extent().leaf_size()) / 2);
+      measuring_rule_ = MeasuringRule(mean_step(a, b), mean_leaf_size(a, b));
       displacement_ = a.displacement_bound() + b.displacement_bound();
       epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
     }

@@ -31,9 +31,9 @@ class ObservedStep {
     }
     const double displacement = a.displacement_bound() + b.displacement_bound();
     if (leaf_ == 0) {
-      leaf_ = (a.extent().leaf_size() + b.extent().leaf_size()) / 2;
+      leaf_ = mean_leaf_size(a, b);
       // A move may combine several frames.
-      step_ = std::max(leaf_, a.mean_step() + b.mean_step());
+      step_ = std::max(leaf_, mean_step(a, b));
     } else if ((always || unseen_ == 0) && displacement != displacement_) {
       step_ = (displacement - displacement_) / (1 + unseen_);
     }

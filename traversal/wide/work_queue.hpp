@@ -188,37 +188,21 @@ class WorkQueue {
   }
 
  private:
+  /// Of the last 32 orders the least: the last one if there are several.
   [[gnu::always_inline]] std::size_t least() const {
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
-    const float* end = &order_[window + size_];
-    const __m512 last = _mm512_loadu_ps(end - 16), first = _mm512_loadu_ps(end - 32);
-    const __m512 both = _mm512_min_ps(last, first);
-    const __m256 eight =
-        _mm256_min_ps(_mm512_castps512_ps256(both), _mm512_extractf32x8_ps(both, 1));
-    __m128 four = _mm_min_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
-    four = _mm_min_ps(four, _mm_permute_ps(four, 0x4e));
-    four = _mm_min_ps(four, _mm_permute_ps(four, 0xb1));
-    const __m512 value = _mm512_broadcastss_ps(four);
-    // Written so that NaN is found, too.
-    const std::uint32_t found =
-        static_cast<std::uint32_t>(_mm512_cmp_ps_mask(last, value, _CMP_NGT_UQ)) << 16 |
-        _mm512_cmp_ps_mask(first, value, _CMP_NGT_UQ);
-    return size_ - 1 - static_cast<std::size_t>(std::countl_zero(found));
-#else
     using S = NativeBatch<float>;
     if constexpr (S::size() > 1) {
       constexpr std::size_t parts = window / S::size();
-      const float* begin = &order_[size_];
-      const auto part = [begin](std::size_t k) {
+      const auto part = [begin = &order_[size_]](std::size_t k) {
         return S(begin + k * S::size(), stdx::element_aligned);
       };
       S of_parts = part(0);
       for (std::size_t k = 1; k < parts; ++k) of_parts = stdx::min(of_parts, part(k));
       const S value(stdx::hmin(of_parts));
-      // Written so that NaN is found, too.
-      std::uint64_t found = 0;
-      for (std::size_t k = 0; k < parts; ++k) found |= bits(!(part(k) > value)) << (k * S::size());
-      return size_ - window + static_cast<std::size_t>(std::bit_width(found)) - 1;
+      std::uint32_t found = 0;
+      for (std::size_t k = 0; k < parts; ++k)  // written so that NaN is found, too
+        found |= static_cast<std::uint32_t>(bits(!(part(k) > value))) << (k * S::size());
+      return size_ - 1 - static_cast<std::size_t>(std::countl_zero(found));
     } else {
       std::size_t at = size_ - 1;
       float least = order_[window + at];
@@ -229,7 +213,6 @@ class WorkQueue {
       }
       return at;
     }
-#endif
   }
 
   [[gnu::always_inline]] void reserve() {
