@@ -9,6 +9,7 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/peers.hpp"
 #include "experiments/replay/configurations.hpp"
+#include "experiments/replay/registry.hpp"
 #include "experiments/replay/touches_any.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/public/public_scenes.hpp"
@@ -206,7 +207,11 @@ Prepared prepared(const Cell& cell) {
 }
 
 void check(const Cell& cell) {
-  check(configured_variant_of(cell));
+  Variant variant = configured_variant_of(cell);
+  // A peer has none of our volumes, so the default one need not be compiled.
+  if (!cell["peer"].empty() && variant.volume == Variant{}.volume)
+    variant.volume = name_or_first(variant.volume, volumes());
+  check(variant);
   number<std::size_t>("polygons", cell["polygons"]);
   with_scene(cell, [](const auto& scene) {
     if constexpr (requires { scene.check(); }) scene.check();
