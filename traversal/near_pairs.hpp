@@ -3,8 +3,9 @@
 /// and a slot for each pair whose boxes overlap. A pair keeps its slot from the frame in which its
 /// boxes begin to overlap to the frame in which they part; slots are reused.
 ///
-/// A frame costs O(m + q) plus the broad phase, for m bodies that moved and q pairs that involve
-/// them. A body is in the scene from its first move until it is taken out.
+/// A frame costs the broad phase and O(m + q), for m bodies that moved and q pairs that involve
+/// them; O(slots) where over a quarter of the bodies moved. A body is in the scene from its first
+/// move until it is taken out.
 #pragma once
 
 #include <algorithm>
@@ -61,8 +62,9 @@ class NearPairs {
   }
 
   /// Finds the pairs whose boxes overlap. Calls `part(slot)` for each pair that no longer overlaps,
-  /// then `meet(slot, pair)` for each that begins to. Before both, calls `set_pose(object)`, on any
-  /// thread, for every body of the scene that has moved.
+  /// then `meet(slot, pair)` for each that begins to; both, at last, for each pair of a body that
+  /// was taken out. Before them, calls `set_pose(object)`, on any thread, for every body of the
+  /// scene that has moved.
   template <class SetPose, class Meet, class Part>
   void update(SetPose&& set_pose, Meet&& meet, Part&& part) {
     due_.clear();
@@ -166,6 +168,7 @@ class NearPairs {
     for (const auto i : movers_) all.extend(poses_[i].translation);
     ordered_.clear();
     for (const auto i : movers_) {
+      moved_[i] = Moved::yes;  // it is `done` if an exception ended the last frame before `settle`
       const std::uint64_t code = morton_code(poses_[i].translation, all);
       ordered_.push_back({static_cast<std::uint32_t>(code >> (63 - code_bits)), i});
     }

@@ -6,6 +6,7 @@
 ///   name, description   as texts;
 ///   run(pair)      answers the pair's query for the bodies' current poses (see body_pair.hpp);
 ///   front_size()   the number of entries it keeps.
+/// After an exception in `run` a new strategy takes its place. It is copy-assignable for that.
 /// Law: after every run, whatever happened between runs, the query holds the answer that
 /// `Recursive` gives; a distance within 2^-45 of it (distance.hpp).
 #pragma once

@@ -117,8 +117,10 @@ class StrategyPairs {
     if (sharing != sharing_) bodies_.set_sharing(sharing_ = sharing);
   }
 
+  /// After an exception, of a query or of an allocation, what the strategy keeps may lack entries:
+  /// the next run begins with a new one.
   template <class Pair, class Counter>
-  void run_pair(std::uint32_t slot, const Pair& pair, Counter& counter) {
+  void run_pair(std::uint32_t slot, const Pair& pair, Counter& counter) try {
     Strategy& strategy = strategies_[slot];
     if constexpr (roots_as_batches && !wants_bound<typename Pair::Query>())
       if (are_all_moved_ && strategy.starts_at_roots()) {
@@ -130,6 +132,9 @@ class StrategyPairs {
         return;
       }
     strategy.run(pair);
+  } catch (...) {
+    drop(slot);
+    throw;
   }
 
   template <class Counter, class MakeQuery>

@@ -44,7 +44,9 @@ void check_wide(const Variant& variant) {
   if (fan_out == 0)
     throw Unusable("--volume " + variant.volume + ": the kernel " + variant.kernel +
                    " is not compiled for it; there is " + volumes);
-  wide_entry(variant.volume, variant.query);
+  if (!wide_entry(variant.volume, variant.query).play)
+    throw Unusable("--query " + variant.query + ": not with --kernel " + variant.kernel +
+                   ", which culls by whether volumes are disjoint; use --kernel gathered");
   const std::string with = ": not with --kernel " + variant.kernel + "; there ";
   if (variant.strategy != "recursive" && variant.strategy != "margins")
     throw Unusable("--strategy " + variant.strategy + with + "are recursive, margins");

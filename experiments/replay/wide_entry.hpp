@@ -18,7 +18,8 @@ struct WideEntry {
   std::string_view volume, volume_description, query;
   /// Of a kernel; 0 where it is not compiled for the volume.
   std::uint32_t (*fan_out)(std::string_view kernel);
-  /// Adds to the result, the time to build included.
+  /// Adds to the result, the time to build included. This and `world` are null for a query that
+  /// wide trees cannot answer.
   void (*play)(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
                const ReplayOptions& options, ReplayResult& result);
   /// A whole scene; null for a query that is not answered by yes or no.

@@ -111,12 +111,10 @@ constexpr std::uint32_t fan_out_with(std::string_view kernel) {
 
 template <BoundingVolume V, class Query>
 constexpr WideEntry wide_of() {
-  return {V::name,
-          V::description,
-          Query::name,
-          detail::fan_out_with<V>,
-          detail::play_wide<V, Query>,
-          detail::wide_world<V, Query>};
+  WideEntry entry{V::name, V::description, Query::name, detail::fan_out_with<V>, nullptr, nullptr};
+  if constexpr (for_wide_trees<Query>())
+    entry.play = detail::play_wide<V, Query>, entry.world = detail::wide_world<V, Query>;
+  return entry;
 }
 
 }  // namespace bvlab

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <random>
-#include <stdexcept>
 
 #include "experiments/scenes/formula_mesh.hpp"
 #include "hierarchies/builds.hpp"
@@ -246,53 +245,6 @@ TYPED_TEST(FrontLaws, NoVerdictOfOtherBodiesIsReused) {
     }
     EXPECT_GT(contacts, 100u);
   });
-}
-
-/// A query that throws instead of testing triangles once more after so many tests.
-class Throwing : public Contacts {
- public:
-  Throwing(std::vector<Contact>& found, int tests) : Contacts(found), tests_(tests) {}
-
-  Outcome primitives(std::span<const Candidate> pending) {
-    count();
-    return Contacts::primitives(pending);
-  }
-  Outcome primitives(std::span<const Candidate> pending, std::span<Verdict> verdicts) {
-    count();
-    return Contacts::primitives(pending, verdicts);
-  }
-
- private:
-  void count() {
-    if (tests_-- == 0) throw std::runtime_error("no more tests");
-  }
-
-  int tests_;
-};
-
-TYPED_TEST(FrontLaws, MarginsStartAnewAfterAnException) {
-  Margins margins;
-  NotCounting counter;
-  std::size_t contacts = 0;
-  int thrown = 0;
-  for (int frame = 0; frame < 120; ++frame) {
-    this->place(Pose{}, at(1.1 + 0.002 * (frame % 40), 0.7 + 0.002 * frame));
-    if (frame % 3 > 0) {
-      std::vector<Contact> some;
-      Throwing query(some, frame % 5);
-      try {
-        margins.run(this->pair(query, counter));
-      } catch (const std::runtime_error&) {
-        ++thrown;
-        if (frame % 3 == 1) continue;  // else again at these poses
-      }
-    }
-    const std::vector<Contact> found = this->contacts(margins, counter);
-    ASSERT_EQ(found, this->contacts(Recursive(), counter)) << "in frame " << frame;
-    contacts += found.size();
-  }
-  EXPECT_GT(contacts, 100u);
-  EXPECT_GT(thrown, 20);
 }
 
 /// In fast motion few gaps last and margins stop measuring them; in slow motion and at rest they

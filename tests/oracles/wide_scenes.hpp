@@ -222,6 +222,8 @@ class PlayedWide {
         all_object_pairs(static_cast<std::uint32_t>(shapes.size())));
   }
 
+  auto& engine() { return *engine_; }
+
   void expect_touching(const Truth& truth) {
     std::vector<std::uint8_t> found(truth.touching.size(), 2);
     Counting counter;

@@ -9,6 +9,14 @@
 namespace bvlab {
 namespace {
 
+/// A query that culls boxes farther apart than some distance. Wide trees never call its `culls`.
+struct Within : Touching {
+  static constexpr bool culls_disjoint = false;
+};
+static_assert(!for_wide_trees<Within>());
+static_assert(for_wide_trees<Touching>() && for_wide_trees<Contacts>() &&
+              for_wide_trees<Distance>());
+
 TEST(Wide, ScenesAreNeitherAllTouchingNorAllApart) {
   for (const auto& [scene, truth] : scenes_with_truth()) {
     const auto hits = std::count(truth.touching.begin(), truth.touching.end(), 1);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 #include <random>
+#include <stdexcept>
 
 #include "hierarchies/volumes/sphere.hpp"
 #include "tests/oracles/wide_scenes.hpp"
@@ -167,6 +168,58 @@ TEST(WorldThatComesAndGoes, TouchesWhereBruteForceDoes) {
     expect(binary_world<Recursive>(threads), "binary, from the roots", threads);
     expect(binary_world<Margins>(threads), "binary, margins", threads);
     expect(binary_world<Adaptive>(threads), "binary, adaptive", threads);
+  }
+}
+
+/// In every other frame an exception ends the update. Few bodies move at a time.
+template <class World>
+void expect_answers_after_exceptions(World world, const char* name) {
+  std::mt19937 random(20261126);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Script script{std::vector<std::optional<Pose>>(hostile_bodies)};
+  for (auto& pose : script[0])
+    pose = pose_from(1.4 * Vec3<double>(unit(random), unit(random), unit(random)), unit(random),
+                     unit(random), unit(random), unit(random) + 2);
+  for (std::size_t frame = 1; frame < 121; ++frame) {
+    script.push_back(script.back());
+    auto& pose = script.back()[random() % hostile_bodies];
+    pose->translation += 0.3 * Vec3<double>(unit(random), unit(random), unit(random));
+  }
+  const auto& truth = truth_of(script, hostile_meshes()).touching;
+  const auto pairs = all_object_pairs(hostile_bodies);
+  NotCounting counter;
+  TouchingPairs touching;
+  int thrown = 0;
+  for (std::size_t frame = 0; frame < script.size(); ++frame) {
+    follow(world, script, frame);
+    const bool throws = frame % 2;
+    try {
+      world.update(
+          counter, [](const ObjectPair&) { return Touching(); },
+          [&](std::uint32_t slot, const ObjectPair& pair, const Touching& query) {
+            if (throws) throw std::runtime_error("no answer is wanted");
+            touching.put(slot, pair, query.touching());
+          },
+          [&](std::uint32_t slot) { touching.drop(slot); });
+    } catch (const std::runtime_error&) {
+      ++thrown;
+    }
+    if (throws) continue;
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      const auto found = std::count_if(
+          touching.pairs().begin(), touching.pairs().end(),
+          [&](const auto& each) { return each.i == pairs[p].i && each.j == pairs[p].j; });
+      ASSERT_EQ(found, truth[frame * pairs.size() + p]) << name << ", frame " << frame;
+    }
+  }
+  EXPECT_GT(thrown, 30) << name;
+}
+
+TEST(WorldThatComesAndGoes, PairsOfAFrameThatEndedByAnExceptionAreDueInTheNext) {
+  for (const int threads : {1, 3}) {
+    expect_answers_after_exceptions(wide_world(threads), "recommended");
+    expect_answers_after_exceptions(binary_world<Recursive>(threads), "binary, from the roots");
+    expect_answers_after_exceptions(binary_world<Margins>(threads), "binary, margins");
   }
 }
 

@@ -22,10 +22,12 @@ class Contacts {
  public:
   static constexpr std::string_view name = "contacts";
   static constexpr std::string_view description = "all pairs of triangles that share a point";
+  static constexpr bool culls_disjoint = true;
   static constexpr std::size_t buffer_size = 15;
   static constexpr bool one_hit_is_enough = false;
 
-  /// Contacts are appended to `found`.
+  /// Contacts are appended to `found`. Each pair of bodies needs a list of its own, which stays
+  /// where it is until the answer is taken: queries of several pairs run interleaved, or at once.
   explicit Contacts(std::vector<Contact>& found, TriangleTest test = intersect_batch<Exact>)
       : test_(test), found_(found) {}
 

@@ -15,6 +15,10 @@ namespace bvlab {
 ///   culls(p, q)           a mask over posed volumes p of body a and q of body b; unless the query
 ///                         wants a bound, it depends on the volumes alone
 ///   primitives(pending)   tests one candidate or more; its outcome: is the query satisfied?
+///   culls_disjoint        if present and true: `culls(p, q)` is `disjoint(p, q)`. Wide trees need
+///   it,
+///                         unless the query wants a bound: they cull pairs, and whole bodies, that
+///                         are disjoint, and never call `culls(p, q)`
 ///   buffer_size           once more candidates than this are held, `primitives` is called
 ///   one_hit_is_enough     whether one pair of triangles that share a point can end the query; if
 ///                         not, and it wants no bound, hits must not satisfy it: it finds them all
@@ -23,6 +27,8 @@ namespace bvlab {
 /// The bvlab program makes a query by `from_options(options)` and reads `answer()`, a bool or a
 /// number; or makes it by `from_options(options, found)`, and the query appends pairs of primitives
 /// to `found`.
+///
+/// A bool `answer()` of a query that one hit can end is true exactly if a hit was found.
 ///
 /// For strategies that keep margins:
 ///   primitives(pending, verdicts)   the same, with a verdict on each candidate. Only hits may
@@ -46,6 +52,15 @@ template <class Q>
 constexpr bool wants_bound() {
   if constexpr (requires { Q::wants_bound; }) return Q::wants_bound;
   return false;
+}
+
+/// A query that wide trees can answer.
+template <class Q>
+constexpr bool for_wide_trees() {
+  if constexpr (requires { Q::culls_disjoint; })
+    return Q::culls_disjoint || wants_bound<Q>();
+  else
+    return wants_bound<Q>();
 }
 
 /// A query whose answer is yes or no.

@@ -17,6 +17,7 @@ class Touching {
  public:
   static constexpr std::string_view name = "touching";
   static constexpr std::string_view description = "do the two surfaces share a point, yes or no";
+  static constexpr bool culls_disjoint = true;
   static constexpr std::size_t buffer_size = 3;
   static constexpr bool one_hit_is_enough = true;
 

@@ -240,13 +240,13 @@ struct MixedKernel {
     [[gnu::always_inline]] static void push_nodes(WorkQueue& nodes, WorkQueue& triangles,
                                                   std::uint64_t remaining, const NodesOfLanes& a,
                                                   const NodesOfLanes& b, const Order& order,
-                                                  NextPair next) {
+                                                  [[maybe_unused]] NextPair next) {
       const std::uint64_t leaves = remaining & highest_bits(a & b);
-      if (next == NextPair::nearest_child)
-        nodes.push_sixteen_least_last(remaining & ~leaves, a, b, order);
-      else
-        nodes.push_sixteen(remaining & ~leaves, a, b, order);
       if (leaves) triangles.push_sixteen(leaves, a, b, order);
+      if constexpr (!std::is_same_v<Order, NoOrder>)
+        if (next == NextPair::nearest_child)
+          return nodes.push_sixteen_least_last(remaining & ~leaves, a, b, order);
+      nodes.push_sixteen(remaining & ~leaves, a, b, order);
     }
 
     std::array<const Tree*, 2> trees_;

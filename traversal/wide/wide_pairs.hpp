@@ -126,6 +126,8 @@ class WidePairs {
   template <class Query, class Slots, class Counter, class MakeQuery, class Take>
   void query_pairs(const Slots& slots, Worker& worker, Counter& counter, MakeQuery& make_query,
                    Take& take) {
+    static_assert(for_wide_trees<Query>(),
+                  "wide trees cull by `disjoint`: a query says `culls_disjoint`, or wants a bound");
     PairSieve& sieve = worker.sieve;
     sieve.begin(slots.size());
     const auto repeat = [&](std::size_t p) {
@@ -158,7 +160,7 @@ class WidePairs {
   template <class Query, class Counter, class MakeQuery, class Take>
   void traverse_interleaved(std::span<const std::int32_t> near, Worker& worker,
                             std::uint64_t before, Counter& counter, MakeQuery& make_query,
-                            Take& take) {
+                            Take& take) try {
     using Lanes = typename Kernel::template PairFrame<V, F>::S;
     using Measure = std::conditional_t<wants_bound<Query>(), NoRecord,
                                        typename Memory::template Measure<Lanes>>;
@@ -202,6 +204,10 @@ class WidePairs {
           std::swap(running[k], running[active]);
         }
       }
+  } catch (...) {
+    // Fronts of traversals that did not end may lack entries.
+    for (const std::int32_t p : near) drop(static_cast<std::uint32_t>(p));
+    throw;
   }
 
   std::vector<ObjectPair> pairs_;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The pairs (node_pair.hpp) that a traversal still has to test, as an approximate priority queue:
-/// it takes the pair of smallest order (a gap, or minus a penetration) among the last 32 that were
-/// pushed, which is found in registers without a branch. That is nearly always the smallest of all.
+/// it takes the pair of least order among the last 32 in the queue, which is found in registers
+/// without a branch. That is nearly always the least of all. The order is the kernel's: the less it
+/// is, the likelier the pair ends the search.
 ///
 /// Where order does not matter the last pair is taken, as from a stack.
 #pragma once
@@ -79,7 +80,7 @@ template <class S, std::size_t parts>
 /// Which pair of a step is to be taken next; pairs are pushed accordingly.
 enum class NextPair { any, nearest_child };
 
-/// In place of the order of pairs, where they are taken in any: none is kept.
+/// In place of the orders of pairs that are taken in any order: none is kept.
 struct NoOrder {};
 
 /// The nodes of one body in sixteen lanes.
@@ -154,10 +155,6 @@ class WorkQueue {
     }
   }
 
-  [[gnu::always_inline]] void push_sixteen_least_last(std::uint64_t mask, const NodesOfLanes& a,
-                                                      const NodesOfLanes& b, NoOrder order) {
-    push_sixteen(mask, a, b, order);
-  }
   /// The same, the least in order last.
   template <class S, std::size_t parts>
   [[gnu::always_inline]] void push_sixteen_least_last(std::uint64_t mask, const NodesOfLanes& a,
@@ -218,11 +215,12 @@ class WorkQueue {
   [[gnu::always_inline]] void reserve() {
     if (size_ + 16 > id_[0].size()) grow(2 * id_[0].size());
   }
-  /// The first order is preceded by 32 infinite ones, which are never the least.
+  /// The first order is preceded by 32 infinite ones, which are never the least. `id_[0]` grows
+  /// last, since `reserve` tests its size: an allocation before may throw.
   [[gnu::noinline]] void grow(std::size_t capacity) {
-    id_[0].resize(capacity), id_[1].resize(capacity);
     order_.resize(window + capacity + 16);
     std::fill_n(order_.begin(), window, std::numeric_limits<float>::infinity());
+    id_[1].resize(capacity), id_[0].resize(capacity);
   }
 
   std::array<std::vector<std::uint32_t>, 2> id_;

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// A query or a caller that throws loses no later answer: frames after an exception are answered as
+/// by brute force, whatever is kept from frame to frame.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "hierarchies/volumes/slab_box.hpp"
+#include "hierarchies/wide/obb_sibling_test.hpp"
+#include "hierarchies/wide/slab_box_sibling_test.hpp"
+#include "tests/oracles/wide_scenes.hpp"
+#include "traversal/strategies.hpp"
+#include "traversal/world.hpp"
+
+namespace bvlab {
+namespace {
+
+/// A query that throws in place of one call too many.
+template <class Query>
+class Throwing : public Query {
+ public:
+  template <class... Arguments>
+  explicit Throwing(int calls, Arguments&... arguments) : Query(arguments...), calls_(calls) {}
+
+  Outcome primitives(std::span<const Candidate> pending) {
+    count();
+    return Query::primitives(pending);
+  }
+  Outcome primitives(std::span<const Candidate> pending, std::span<Verdict> verdicts) {
+    count();
+    return Query::primitives(pending, verdicts);
+  }
+  bool known(std::uint32_t a, std::uint32_t b) {
+    count();
+    return Query::known(a, b);
+  }
+
+ private:
+  void count() {
+    if (calls_-- == 0) throw std::runtime_error("one call too many");
+  }
+  int calls_;
+};
+
+constexpr int always = 1 << 30;  // calls, without an exception
+
+/// Some frames end by an exception, of a query or of the caller that takes its answer, and are
+/// followed by the next frame or by another run at the same poses.
+template <class Engine>
+void expect_answers_after_exceptions(Engine& engine, const Scene& scene, const Truth& truth,
+                                     std::string_view whose) {
+  const std::size_t pairs = engine.pairs().size();
+  std::mt19937 random(20261126);
+  std::vector<std::vector<Contact>> found(pairs);
+  std::vector<std::uint8_t> touching(pairs);
+  NotCounting counter;
+  int thrown = 0;
+  const auto run = [&](std::size_t f, bool contacts, int calls, std::size_t answers) {
+    for (auto& each : found) each.clear();
+    std::size_t taken = 0;
+    const auto take = [&] {
+      if (taken++ == answers) throw std::runtime_error("enough answers");
+    };
+    if (contacts)
+      engine.frame(
+          scene.frames[f], counter,
+          [&](std::size_t p) { return Throwing<Contacts>(calls, found[p]); },
+          [&](std::size_t, const auto&) { take(); });
+    else
+      engine.frame(
+          scene.frames[f], counter, [&](std::size_t) { return Throwing<Touching>(calls); },
+          [&](std::size_t p, const auto& query) { take(), touching[p] = query.touching(); });
+  };
+  for (const bool contacts : {false, true})
+    for (std::size_t f = 0; f < scene.frames.size(); ++f) {
+      if (f % 3 > 0) {
+        try {
+          const bool by_query = random() % 2;
+          run(f, contacts, by_query ? static_cast<int>(random() % 3) : always,
+              by_query ? pairs : random() % pairs);
+        } catch (const std::runtime_error&) {
+          ++thrown;
+        }
+        if (f % 3 == 1) continue;
+      }
+      run(f, contacts, always, pairs);
+      for (std::size_t p = 0; p < pairs; ++p)
+        if (contacts) {
+          std::sort(found[p].begin(), found[p].end());
+          ASSERT_EQ(found[p], truth.contacts[f * pairs + p]) << whose << ", frame " << f;
+        } else {
+          ASSERT_EQ(touching[p], truth.touching[f * pairs + p]) << whose << ", frame " << f;
+        }
+    }
+  EXPECT_GT(thrown, 10) << whose;
+}
+
+TEST(Exceptions, EveryStrategyStartsAnew) {
+  using V = Obb<float>;
+  for (const auto& [scene, truth] : motions_with_truth()) {
+    std::vector<Hierarchy<V>> hierarchies;
+    for (const auto& mesh : scene.meshes)
+      hierarchies.emplace_back(mesh, builds::TopDownPrincipal::topology(mesh, 1));
+    std::vector<Shape<V>> shapes;
+    for (std::size_t i = 0; i < scene.frames[0].size(); ++i)
+      shapes.push_back(
+          {&scene.meshes[i % scene.meshes.size()], &hierarchies[i % scene.meshes.size()]});
+    const auto pairs = all_object_pairs(static_cast<std::uint32_t>(shapes.size()));
+    Strategies::for_each([&]<class Strategy>(std::type_identity<Strategy>) {
+      AllPairs<Batch<float, 8>, V, Strategy> engine(shapes, pairs, Strategy{});
+      expect_answers_after_exceptions(engine, scene, truth, Strategy::name);
+    });
+  }
+}
+
+template <class V, int F, class Kernel>
+void expect_wide_pairs_start_anew() {
+  for (const auto& [scene, truth] : motions_with_truth()) {
+    PlayedWide<V, F, WideMargins, Kernel> played(scene, static_cast<std::uint32_t>(F));
+    expect_answers_after_exceptions(played.engine(), scene, truth, Kernel::name);
+  }
+}
+TEST(Exceptions, WidePairsStartAnew) {
+  expect_wide_pairs_start_anew<SlabBox<float>, 8, SiblingsKernel>();
+  expect_wide_pairs_start_anew<Obb<float>, 4, MixedKernel>();
+}
+
+}  // namespace
+}  // namespace bvlab
