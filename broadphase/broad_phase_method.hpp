@@ -15,9 +15,10 @@ namespace bvlab {
 ///   exactness    a pair is listed if and only if `overlap<Contact>` holds for it;
 ///   uniqueness   each pair is listed once, with i < j; the order is the same in every run;
 ///   freedom      successive frames are arbitrary: boxes may jump, appear and disappear;
-///   steadiness   once frames stop growing, a frame allocates nothing.
+///   steadiness   on one thread a frame allocates nothing once frames stop growing.
 /// Boxes must be valid (see `first_fault`). The returned span is valid until the next call. With
-/// `Coherence::off` a method uses nothing of earlier frames; it keeps only its buffers.
+/// `Coherence::off` a method uses nothing of earlier frames; it keeps only its buffers. After an
+/// exception, which only an allocation throws, a method is not to be used again.
 template <class M>
 concept BroadPhaseMethod = std::constructible_from<M, const MethodSettings&> &&
                            requires(M method, Boxes<typename M::Scalar> boxes) {
@@ -26,8 +27,8 @@ concept BroadPhaseMethod = std::constructible_from<M, const MethodSettings&> &&
                              { method.overlapping(boxes) } -> std::same_as<std::span<const Pair>>;
                            };
 
-/// A method that knows, made with `Changes::reported`, which pairs began and ended since the last
-/// frame.
+/// A method that knows which pairs began and ended since the last frame, if it is made with
+/// `Changes::reported`.
 template <class M>
 concept ReportsChanges = BroadPhaseMethod<M> && requires(const M method) {
   { method.changes() } -> std::same_as<PairChanges>;

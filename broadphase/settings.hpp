@@ -22,7 +22,7 @@ enum class Sort { radix, comparison };
 struct MethodSettings {
   Coherence coherence = Coherence::on;
   Changes changes = Changes::unreported;
-  int threads = 1;
+  int threads = 1;              ///< used by `auto` and `blocks`
   Sort sort = Sort::radix;      ///< used by `hash`, the sweeps and `sort-and-sweep`
   std::uint32_t cutoff = 1000;  ///< below so many boxes `hybrid` scans
 };

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Picks a method by the number of boxes. Up to 64 are swept along one axis, which costs less than
-/// sorting them into spatial order. More go to `blocks`, which makes its own choices: how many size
-/// classes to sort into, from the spread of sizes; whether to keep the list, change it in place,
-/// follow the boxes (and for how many frames) or start over, from overlap and motion.
+/// sorting them into spatial order, unless changes are to be reported. More go to `blocks`, which
+/// makes its own choices: how many size classes to sort into, from the spread of sizes; whether to
+/// keep the list, change it in place, follow the boxes (and for how many frames) or start over,
+/// from overlap and motion.
 #pragma once
 
 #include <string>

@@ -7,8 +7,8 @@
 ///
 /// - nothing moved: the boxes are compared with the last frame's, and the list is kept.
 /// - a few moved: the tree is queried for the pairs that *change*, and the list is changed in place
-///   (ChangedBlocks). A caller who knows which boxes moved passes them (`update`); the others are
-///   not even read.
+///   (ChangedBlocks). A caller who knows which boxes moved passes them (`update`); others are read
+///   only when this begins and when the tree is sorted anew.
 /// - moved steadily: boxes are *followed* within fat boxes (FollowedBlocks). A frame reads every
 ///   box once and compares each candidate, in under two nanoseconds in the cache. Fat boxes
 ///   last for the number of frames that costs least, including the search for the next candidates.
@@ -54,7 +54,8 @@ class Blocks {
   std::span<const Pair> overlapping(Boxes<T> boxes) { return next_frame(boxes, nullptr); }
 
   /// As `overlapping`, where only the boxes in `moved` and new ones differ from the last frame;
-  /// where these are few, no other box is read. Duplicates and boxes that did not move are allowed.
+  /// where these are few, hardly any other box is read. Duplicates and boxes that did not move are
+  /// allowed.
   std::span<const Pair> update(Boxes<T> boxes, std::span<const std::uint32_t> moved) {
     return next_frame(boxes, &moved);
   }
@@ -68,11 +69,6 @@ class Blocks {
   std::string_view reason() const { return reason_; }
   /// The number of classes of size and shape in the last spatial order.
   std::uint32_t classes() const { return joined_.order().classes(); }
-
-  std::size_t bytes() const {
-    return joined_.bytes() + changed_.bytes() + followed_.bytes() + pairs_.bytes() +
-           last_frame_.bytes() + 4 * moved_.capacity();
-  }
 
  private:
   using Moved = std::span<const std::uint32_t>;
@@ -176,6 +172,7 @@ class Blocks {
   // ---- most move ----------------------------------------------------------------------------
 
   bool follow(Boxes<T> boxes) {
+    if (boxes.size() != count_ && followed_.overgrown()) return false;
     if (boxes.size() != count_ || followed_.candidates_valid()) {
       if (boxes.size() == count_ && followed_.time_to_prepare())
         followed_.prepare(followed_.nearly_still()
@@ -271,8 +268,8 @@ class Blocks {
       if (ahead > 0 && follow + begin / ahead > cost_of_starting_over()) continue;
       // The shortest horizon leaves no frames to prepare the next candidates in, so any longer one
       // that is affordable is preferred.
-      const bool rather = followed_.margins_exceeded() && horizon == shortest;
-      if (cost < (rather ? most : best)) best = cost, horizon = frames;
+      const bool any_longer = followed_.margins_exceeded() && horizon == shortest;
+      if (cost < (any_longer ? most : best)) best = cost, horizon = frames;
     }
     return horizon;
   }
@@ -286,7 +283,8 @@ class Blocks {
   ChangedBlocks<T, Contact> changed_;
   FollowedBlocks<T, Contact> followed_;
   std::vector<std::uint32_t> moved_;
-  int wait_ = 0, waiting_ = 0;  ///< frames to start over without sampling
+  int wait_ = 0;     ///< length of the last pause, in frames that start over without sampling
+  int waiting_ = 0;  ///< frames left of it
   /// One beginning is allowed per so many frames.
   static constexpr int frames_a_beginning = 256;
   int frame_credit_ = 2 * frames_a_beginning;  ///< frames not yet used up by beginnings

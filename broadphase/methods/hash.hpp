@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// HASH2 (koziara2005bounding): voxels of the boxes' average size, hashed; the boxes of each bucket
-/// are sorted along x and scanned. A pair is reported once, in the voxel of the componentwise
-/// maximum of the two lower corners. O(n log n + k) for boxes that are alike and spread out, O(n^2)
-/// for crowded ones. Boxes migrate between buckets, so coherence has no effect.
+/// HASH2 (koziara2005bounding): voxels of the boxes' average size, hashed. Boxes are sorted along
+/// x, distributed to buckets in that order, and scanned. A pair is reported once, in the voxel of
+/// the componentwise maximum of the two lower corners. O(n + k) for boxes that are alike and spread
+/// out, O(n^2) for crowded ones. Boxes migrate between buckets, so coherence has no effect.
 #pragma once
 
 #include "broadphase/settings.hpp"

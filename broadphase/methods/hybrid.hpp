@@ -2,7 +2,8 @@
 /// HYBRID, the streamed segment tree (BibTeX: zomorodian2002fast): two boxes overlap where on every
 /// axis one contains the other's lower end. The segment tree over lower ends is never stored: boxes
 /// are partitioned in place during the recursion, an interval that spans a node descends to the
-/// next axis, and below the cutoff boxes are scanned along x. O(n log^3 n + k) time, O(n) space.
+/// next axis, and below the cutoff boxes are scanned along x. O(n log^3 n + k) time, O(n) space;
+/// but boxes whose lower ends are equal are scanned along x, in O(n^2) at worst.
 /// The tree is made top down in each frame, so coherence has no effect.
 #pragma once
 

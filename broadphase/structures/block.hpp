@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Sixteen boxes in arrays, one array per coordinate, compared with one box at once: six vector
-/// comparisons in AVX-512, and the same code for narrower registers. Empty lanes hold a sentinel
-/// that overlaps nothing. Pairs are packed to the left as they are written, as in published box
-/// pruning (BibTeX: terdiman2018boxpruning).
+/// comparisons in AVX-512; narrower registers compare four boxes at a time. Empty lanes hold a
+/// sentinel that overlaps nothing. Pairs are packed to the left as they are written, as in
+/// published box pruning (BibTeX: terdiman2018boxpruning).
 #pragma once
 
 #include <algorithm>

@@ -67,15 +67,20 @@ class BlockTree {
     levels_[1][k / block_width].put(k % block_width, box);
   }
 
-  /// Mean extent of a leaf along an axis.
+  /// Mean extent of a leaf along an axis. Leaves as large as the range of floats do not count: they
+  /// have boxes that stand for bodies outside the scene (NearPairs).
   double mean_leaf_extent() const {
+    constexpr double huge = double{std::numeric_limits<float>::max()} * 0x1p-20;
     double sum = 0;
+    std::uint32_t count = 0;
     for (std::uint32_t k = 0; k < leaves(); ++k) {
       const Box<T> box = leaf_bounds(k);
+      double of_leaf = 0;
       for (int axis = 0; axis < 3; ++axis)
-        sum += static_cast<double>(box.hi[axis]) - static_cast<double>(box.lo[axis]);
+        of_leaf += static_cast<double>(box.hi[axis]) - static_cast<double>(box.lo[axis]);
+      if (of_leaf < huge) sum += of_leaf, ++count;
     }
-    return leaves() ? sum / (3.0 * leaves()) : 0;
+    return count ? sum / (3.0 * count) : 0;
   }
 
   /// Enlarges the box in this slot, sixteen to a leaf, and its bounds on every level above, to
@@ -230,12 +235,6 @@ class BlockTree {
       std::swap(finds.leaves, finds.spare_leaves), std::swap(finds.boxes, finds.spare_boxes);
       finds.count = count;
     }
-  }
-
-  std::size_t bytes() const {
-    std::size_t sum = ids_.capacity() * sizeof(std::uint32_t);
-    for (const auto& level : levels_) sum += level.capacity() * sizeof(Block<T>);
-    return sum;
   }
 
  private:

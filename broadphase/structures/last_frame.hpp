@@ -22,7 +22,8 @@ class LastFrame {
   }
 
   /// Appends the indices of boxes that differ from the last frame's to `moved`, and updates the
-  /// copy; new boxes are copied but not listed. Stops early once more than `most` are found.
+  /// copy; new boxes are copied but not listed. Stops early once more than `most` are found; then
+  /// the copy is incomplete, and to be forgotten.
   void find_moved(Boxes<T> boxes, std::size_t most, std::vector<std::uint32_t>& moved) {
     const std::size_t staying = std::min(boxes.size(), boxes_.size());
     std::size_t first = 0;
@@ -40,8 +41,6 @@ class LastFrame {
       if (id < staying) boxes_[id] = boxes[id];
     take_over_from(boxes, staying);
   }
-
-  std::size_t bytes() const { return boxes_.capacity() * sizeof(Box<T>); }
 
  private:
   static constexpr std::size_t group = 8;  ///< boxes compared between two branches

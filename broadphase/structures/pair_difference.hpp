@@ -13,7 +13,8 @@ namespace bvlab {
 
 class PairDifference {
  public:
-  /// Fills `began` with the pairs in `now` but not in `before`, `ended` with the opposite.
+  /// Fills `began` with the pairs in `now` but not in `before`, `ended` with the opposite. The
+  /// lists may be those that `before` and `now` are views of.
   void operator()(std::span<const Pair> before, std::span<const Pair> now, PairList& began,
                   PairList& ended) {
     sort(before, old_);

@@ -52,12 +52,6 @@ class PairShares {
     list.set_end(out + sum);
   }
 
-  std::size_t bytes() const {
-    std::size_t sum = 0;
-    for (const Own& own : own_) sum += own.pairs.capacity() * sizeof(Pair);
-    return sum;
-  }
-
  private:
   struct alignas(128) Own {  // in cache lines of its own
     PairList pairs;

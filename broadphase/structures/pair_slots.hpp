@@ -15,8 +15,6 @@ class PairSlots {
   static constexpr std::uint32_t none = 0xffffffffu;
 
   std::size_t size() const { return size_; }
-  std::size_t bytes() const { return cells_.capacity() * sizeof(Cell); }
-
   void clear() {
     if (size_) std::fill(cells_.begin(), cells_.end(), Cell{});
     size_ = 0;
@@ -53,7 +51,7 @@ class PairSlots {
   };
   std::size_t mask() const { return cells_.size() - 1; }
   std::size_t next(std::size_t k) const { return (k + 1) & mask(); }
-  std::size_t home(Pair pair) const {  // multiplicative hashing: the top bits of a product
+  std::size_t home(Pair pair) const {  // multiplicative hashing: bits of a product
     const std::uint64_t key = std::uint64_t{pair.i} << 32 | pair.j;
     return static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> 32) & mask();
   }

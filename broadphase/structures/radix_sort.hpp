@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Radix sort by integer keys in passes of at most eleven bits: O(n), stable; one thread skips a
-/// pass in which all keys agree. Floating-point numbers are sorted by their `sort_key`.
+/// Radix sort by integer keys in passes of at most eleven bits: O(n), stable. On one thread, a
+/// pass in which all keys agree is skipped. Floating-point numbers are sorted by their `sort_key`.
 #pragma once
 
 #include <algorithm>

@@ -67,7 +67,6 @@ class TreeBuckets {
  public:
   void prepare(Boxes<T> all, std::span<const std::uint32_t> starts,
                std::span<const std::uint32_t> members) {
-    starts_ = starts;
     trees_.prepare(starts, [&](std::uint32_t seat) {
       return Interval<T>{all[members[seat]].lo[Axis], all[members[seat]].hi[Axis]};
     });
@@ -80,7 +79,6 @@ class TreeBuckets {
   }
 
  private:
-  std::span<const std::uint32_t> starts_;
   PrioritySearchTrees<T> trees_;
 };
 

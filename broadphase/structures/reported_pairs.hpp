@@ -27,20 +27,12 @@ struct ReportedPairs {
 
   /// Removes pairs that both began and ended: their box only changed its slot.
   void cancel_out() {
-    before_.clear();
-    before_.append(ended.view());
-    after_.clear();
-    after_.append(began.view());
-    difference_(before_.view(), after_.view(), began, ended);
-  }
-
-  std::size_t bytes() const {
-    return sizeof(Pair) * (all.capacity() + began.capacity() + ended.capacity() +
-                           before_.capacity() + after_.capacity());
+    // Both lists are read before either is written.
+    difference_(ended.view(), began.view(), began, ended);
   }
 
  private:
-  PairList before_, after_;
+  PairList before_;
   PairDifference difference_;
 };
 

@@ -35,8 +35,6 @@ class SortedEnds {
     return items_;
   }
 
-  std::size_t bytes() const { return (items_.capacity() + spare_.capacity()) * sizeof(Item); }
-
  private:
   void sort() {
     if (sort_ == Sort::radix) return radix_sort(items_, spare_);

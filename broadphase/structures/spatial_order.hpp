@@ -2,8 +2,8 @@
 /// A spatial order of boxes, in which neighbours in the list are near in space and alike in size:
 /// by class (size within a factor of eight, elongation), and within a class along a Morton curve of
 /// the centres. A run of more than 32 centres in one Morton cell is sorted again within its own
-/// bounds, so that one far box, or clusters within clusters, cost only that run. O(n) for each such
-/// level; keys are integers in a radix sort.
+/// bounds, so that one far box, or clusters within clusters, cost only that run. The first sort
+/// is a radix sort, O(n); a run of m boxes is sorted by comparison on one thread, O(m log m).
 #pragma once
 
 #include <array>
@@ -44,10 +44,6 @@ class SpatialOrder {
   }
 
   std::uint32_t classes() const { return classes_; }
-  std::size_t bytes() const {
-    return (items_.capacity() + spare_.capacity()) * sizeof(Item) +
-           kinds_.capacity() * sizeof(std::uint16_t);
-  }
 
  private:
   static constexpr std::size_t crowd =

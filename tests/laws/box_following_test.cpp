@@ -195,5 +195,32 @@ TYPED_TEST(BoxFollowing, MarginsHoldWhatTurns) {
   }
 }
 
+/// A box that comes and goes in every other frame leaves slots behind. They do not pile up: the
+/// method starts over.
+TYPED_TEST(BoxFollowing, StartsOverWhereTheNumberOfBoxesNeverSettles) {
+  using T = typename TypeParam::Scalar;
+  using Contact = decltype(contact_of(std::declval<TypeParam>()));
+  BoxMaker<T> random(6);
+  const Frame<T> start = random.boxes(1000, 0, 1, T(0.01), T(0.05));
+  TypeParam method(MethodSettings{});
+  int followed = 0, restarted = 0;
+  for (int frame = 0; frame < 400; ++frame) {
+    Frame<T> boxes = start;
+    for (auto& box : boxes)
+      for (int axis = 0; axis < 3; ++axis) {
+        const T by = random.uniform(T(-3e-4), T(3e-4));
+        box.lo[axis] += by, box.hi[axis] += by;
+      }
+    if (frame > 20 && frame % 2) boxes.push_back(random.box(0, 1, T(0.01), T(0.05)));
+    const auto found = sorted(method.overlapping(boxes));
+    if (frame % 40 < 2) ASSERT_EQ(found, pairs_by_definition<Contact>(boxes)) << frame;
+    if (frame <= 20) continue;
+    followed += method.reason().starts_with("followed");
+    restarted += method.reason().starts_with("from scratch");
+  }
+  EXPECT_GT(followed, 100);
+  EXPECT_GT(restarted, 0);
+}
+
 }  // namespace
 }  // namespace bvlab

@@ -75,11 +75,6 @@ class ChangedBlocks {
   /// Whether the last update ended with a new spatial order.
   bool sorted() const { return sorted_; }
 
-  std::size_t bytes() const {
-    return places_.bytes() + 4 * (slots_.capacity() + was_at_.capacity() + touched_.capacity()) +
-           2 * changed_.capacity() + was_.capacity() * sizeof(Block<T>);
-  }
-
  private:
   static constexpr std::uint32_t no_slot = 0xffffffffu;
 

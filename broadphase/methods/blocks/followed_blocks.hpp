@@ -7,12 +7,13 @@
 /// can overlap. A box that leaves it gets a wider one, and a box that jumps or is new gets another
 /// slot.
 ///
-/// Boxes that change direction too often for that, or jitter, get margins all around instead.
-/// Margins have no fixed horizon: they are used until a sample of the boxes has used half of them.
-/// If no sample uses half of its margin for long, the narrowest margins take over.
+/// Once too many boxes have left their fat boxes before the horizon, since they change direction
+/// often or jitter, all boxes get margins all around instead, for good. Margins have no fixed
+/// horizon: they are used until a sample of the boxes has used half of them. If no sample uses half
+/// of its margin for long, the narrowest margins take over.
 ///
 /// A frame reads every box once and compares all candidates. The next candidates are found in
-/// parts, one in each frame (NextCandidates). Only a frame that begins without them takes longer
+/// parts over several frames (NextCandidates). Only a frame that begins without them takes longer
 /// than starting over.
 #pragma once
 
@@ -44,7 +45,9 @@ class FollowedBlocks {
 
   /// Whether the candidates are valid for another frame.
   bool candidates_valid() const { return !must_rebuild_ && (age_ < horizon_ || !steady_); }
-  /// The number of frames in a row, up to the last, in which at most one box in eight moved.
+  /// Whether slots have piled up, as where the number of boxes changes in every frame.
+  bool overgrown() const { return tree_.slots() > 2 * count_ + 1024; }
+  /// The number of frames in a row, up to the last, in which fewer than one box in eight moved.
   int few_moved() const { return few_moved_; }
   /// Whether boxes keep their motion well enough for one-sided fat boxes.
   bool steady() const { return steady_; }
@@ -148,12 +151,6 @@ class FollowedBlocks {
           .put(static_cast<int>(slot % block_width), box_of(candidates_.rows()[slot]));
     tree_.refit_all();
     stop();
-  }
-
-  std::size_t bytes() const {
-    return candidates_.bytes() + next_.bytes() +
-           (fat_boxes_.capacity() + spare_.capacity() + last_rows_.capacity()) * sizeof(Row<T>) +
-           4 * slots_.capacity();
   }
 
  private:
@@ -480,7 +477,8 @@ class FollowedBlocks {
     for (const std::uint32_t id : inserted_) new_boxes_.push_back(boxes[id]);
     const auto order = insertion_order_(new_boxes_, joined_.shares().threads());
     const std::uint32_t first = tree_.add_slots(order.size());
-    slots_.resize(boxes.size());
+    // Never fewer: the search for the next candidates reads a slot of a box that comes back.
+    slots_.resize(std::max(slots_.size(), boxes.size()));
     auto& rows = candidates_.rows();
     rows.resize(tree_.slots(), nowhere_row<T>());
     fat_boxes_.resize(tree_.slots());

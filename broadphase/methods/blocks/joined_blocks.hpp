@@ -123,8 +123,6 @@ class JoinedBlocks {
     return tree_.slots() >= boxes + block_width;
   }
 
-  std::size_t bytes() const { return tree_.bytes() + order_.bytes() + shares_.bytes(); }
-
  private:
   /// Below this, waking a thread takes longer than the join.
   static constexpr std::uint32_t leaves_worth_sharing = 200;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Finds the candidates for the next horizon in parts, one in each frame while the present ones are
-/// still valid, since a frame that found all at once would take twice as long as one from scratch.
-/// The stages: one for the spatial order; three for fat boxes that hold from the takeover to the
-/// end of the next horizon; eight for the join.
+/// Finds the candidates for the next horizon in parts, one to three in each frame while the present
+/// ones are still valid, since a frame that found all at once would take twice as long as one from
+/// scratch. The stages: one for the spatial order; three for fat boxes that hold from the takeover
+/// to the end of the next horizon; eight for the join.
 #pragma once
 
 #include <span>
@@ -56,11 +56,6 @@ class NextCandidates {
   PairList& candidates() { return candidates_; }
   /// The number of pairs of leaves visited by the join.
   std::size_t visits() const { return visits_; }
-
-  std::size_t bytes() const {
-    return tree_.bytes() + fat_boxes_.capacity() * sizeof(Row<T>) +
-           candidates_.capacity() * sizeof(Pair);
-  }
 
  private:
   static constexpr int fat_parts = 3, joins = 8, stages = 1 + fat_parts + joins;
