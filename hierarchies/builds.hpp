@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// THE list of ways to build a topology, each a builder and its options under one name.
+/// THE list of ways to build a topology, each a builder and its options under one name. A mesh has
+/// at least one triangle; its vertices are finite.
 #pragma once
 
 #include <cstdint>

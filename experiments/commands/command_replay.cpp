@@ -31,10 +31,11 @@ struct Arguments {
 };
 
 void write_answers(const Arguments& arguments, const Trace& trace, const ReplayResult& result) {
-  if (arguments.variant.query == "touching") {
+  const AnswerKind kind = kind_of_answers(result, arguments.variant.query);
+  if (kind == AnswerKind::yes_or_no) {
     const std::size_t shape[] = {trace.frames, trace.pairs()};
     write_npy<std::uint8_t>(arguments.out, shape, result.touching);
-  } else if (arguments.variant.query == "distance") {
+  } else if (kind == AnswerKind::number) {
     const std::size_t shape[] = {trace.frames, trace.pairs()};
     write_npy<double>(arguments.out, shape, result.distances);
   } else {

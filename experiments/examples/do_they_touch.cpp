@@ -24,7 +24,7 @@ int main() {
   NotCounting counter;
   for (const double x : {3.0, 2.4, 2.0, 1.0}) {
     // Where it is, and a quaternion: a quarter turn about the x axis links the rings at x = 1.
-    moving.move(*pose_from({x, 0, 0}, 1, 1, 0, 0), Vec3<double>::Zero());
+    moving.move(pose_from({x, 0, 0}, 1, 1, 0, 0).value(), Vec3<double>::Zero());
     Touching touching;
     traverse_from_roots<Lanes>(still, moving, touching, counter, workspace);
     std::vector<Contact> found;  // triangle of the one, triangle of the other

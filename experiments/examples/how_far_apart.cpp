@@ -19,9 +19,9 @@ int main() {
 
   NotCounting counter;
   for (int frame = 0; frame < 4; ++frame) {
-    const std::vector<Pose> poses{*pose_from({0, 0, 0}, 1, 0, 0, 0),
-                                  *pose_from({4, 0, 0}, 1, 0, 0, 0),
-                                  *pose_from({0, 4 - frame * 0.5, 0}, 1, 0, 0, 0)};
+    const std::vector<Pose> poses{pose_from({0, 0, 0}, 1, 0, 0, 0).value(),
+                                  pose_from({4, 0, 0}, 1, 0, 0, 0).value(),
+                                  pose_from({0, 4 - frame * 0.5, 0}, 1, 0, 0, 0).value()};
     std::printf("frame %d:", frame);
     bodies.frame(
         poses, counter, [](std::size_t) { return Distance(); },

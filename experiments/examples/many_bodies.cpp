@@ -16,13 +16,13 @@ int main() {
   const std::vector<Recommended::Shape> shapes(bodies, {&mesh, &hierarchy});
   World world(shapes);
   // A row of rings that do not touch. What was never moved is not in the scene.
-  for (std::uint32_t i = 0; i < bodies; ++i) world.move(i, *pose_from({3.0 * i, 0, 0}, 1, 0, 0, 0));
+  for (std::uint32_t i = 0; i < bodies; ++i) world.move(i, pose_from({3.0 * i, 0, 0}, 1, 0, 0, 0).value());
 
   TouchingPairs touching;
   NotCounting counter;
   for (int frame = 0; frame < 3; ++frame) {
     // Body 0 goes along the row, into one after the other.
-    world.move(0, *pose_from({3.0 * frame + 1, 0, 0}, 1, 0, 0, 0));
+    world.move(0, pose_from({3.0 * frame + 1, 0, 0}, 1, 0, 0, 0).value());
     int queried = 0;
     world.update(
         counter, [](const ObjectPair&) { return Touching(); },

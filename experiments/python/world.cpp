@@ -49,7 +49,8 @@ class PyWorld : public MadeByCalls {
   std::size_t objects() const { return objects_; }
 
   void move(const py::object& which, const py::object& pose) {
-    if (PyLong_Check(which.ptr())) {
+    // Also an integer of NumPy's; an array has an index, too, but is a sequence.
+    if (PyIndex_Check(which.ptr()) && !PySequence_Check(which.ptr())) {
       const auto row = array_of<double>(pose, "pose", Numbers::real, {{"7", 7}});
       const std::uint32_t object = index(which);
       const Pose to = pose_of(row.data(), object);

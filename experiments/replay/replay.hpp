@@ -77,6 +77,15 @@ struct ReplayResult {
   std::vector<double> frame_seconds;  ///< of each frame, where asked for; of threads the longest
 };
 
+/// Which vector of a result has the answers of a query.
+enum class AnswerKind { yes_or_no, number, contacts };
+/// By what is filled; by name where nothing is, as in a trace without frames.
+inline AnswerKind kind_of_answers(const ReplayResult& result, std::string_view query) {
+  if (!result.touching.empty() || query == "touching") return AnswerKind::yes_or_no;
+  if (!result.distances.empty() || query == "distance") return AnswerKind::number;
+  return AnswerKind::contacts;
+}
+
 /// Object i uses mesh i mod meshes.size(). Throws Unusable for unknown names.
 ReplayResult replay(std::span<const TriangleMesh> meshes, const Trace& trace,
                     const Variant& variant, const ReplayOptions& options);

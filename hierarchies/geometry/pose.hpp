@@ -12,8 +12,10 @@
 namespace bvlab {
 
 struct Pose {
-  Mat3<double> rotation = Mat3<double>::Identity();  ///< orthonormal up to rounding
-  Vec3<double> translation = Vec3<double>::Zero();   ///< in units of the mesh
+  /// Finite. Answers are exact for any such matrix; volumes cull only where it is orthonormal to
+  /// within about 0.01.
+  Mat3<double> rotation = Mat3<double>::Identity();
+  Vec3<double> translation = Vec3<double>::Zero();  ///< in units of the mesh
 
   /// The position of vertex `v` in the world.
   ///

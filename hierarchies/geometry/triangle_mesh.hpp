@@ -14,7 +14,7 @@ namespace bvlab {
 using Triangle = std::array<Vec3<double>, 3>;
 
 struct TriangleMesh {
-  std::vector<Vec3<double>> vertices;
+  std::vector<Vec3<double>> vertices;                   ///< finite
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `vertices`
 
   Triangle corners(std::size_t triangle) const {

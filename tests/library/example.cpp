@@ -21,8 +21,8 @@ int main() {
 
   // One pair: how far apart are two bodies?
   Body<Volume> a(mesh, hierarchy), b(mesh, hierarchy);
-  a.move(*pose_from({0, 0, 0}, 1, 0, 0, 0), Vec3<double>::Zero());
-  b.move(*pose_from({3, 0, 0}, 1, 0, 0, 0.5), Vec3<double>::Zero());
+  a.move(pose_from({0, 0, 0}, 1, 0, 0, 0).value(), Vec3<double>::Zero());
+  b.move(pose_from({3, 0, 0}, 1, 0, 0, 0.5).value(), Vec3<double>::Zero());
   Workspace workspace;
   Distance distance;
   traverse_from_roots<Eight>(a, b, distance, counter, workspace);
@@ -35,7 +35,7 @@ int main() {
   TouchingPairs touching;
   for (int frame = 0; frame < 10; ++frame) {
     for (std::uint32_t i = 0; i < shapes.size(); ++i)
-      world.move(i, *pose_from({0.9 * i, 0.05 * frame * (i % 3), 0}, 1, 0, 0, 0.1 * i));
+      world.move(i, pose_from({0.9 * i, 0.05 * frame * (i % 3), 0}, 1, 0, 0, 0.1 * i).value());
     world.update(
         counter, [](const ObjectPair&) { return Touching(); },
         [&](std::uint32_t slot, const ObjectPair& pair, const Touching& query) {

@@ -31,6 +31,19 @@ ReplayOptions options(unsigned threads) {
   return options;
 }
 
+/// A query of any name is written by what it answered.
+TEST(WideReplays, AnswersAreKnownByWhatIsFilled) {
+  ReplayResult result;
+  EXPECT_EQ(kind_of_answers(result, "touching"), AnswerKind::yes_or_no);
+  EXPECT_EQ(kind_of_answers(result, "distance"), AnswerKind::number);
+  EXPECT_EQ(kind_of_answers(result, "contacts"), AnswerKind::contacts);
+  result.touching = {0, 1};
+  EXPECT_EQ(kind_of_answers(result, "mine"), AnswerKind::yes_or_no);
+  result = {};
+  result.distances = {0.5};
+  EXPECT_EQ(kind_of_answers(result, "mine"), AnswerKind::number);
+}
+
 /// Distances to the rounding that both leave open.
 void expect_same(const ReplayResult& found, const ReplayResult& truth, const std::string& where) {
   EXPECT_EQ(found.touching, truth.touching) << where;

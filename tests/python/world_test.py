@@ -83,7 +83,7 @@ class Worlds(unittest.TestCase):
         world.update()
         self.assertEqual(world.touching().tolist(), [])
         self.assertEqual(len(world.contacts()), 0)
-        world.move(2, at)
+        world.move(np.int64(2), at)
         world.update()
         self.assertEqual(world.touching().tolist(), [[0, 2]])
         self.assertEqual(world.distances(9)[0].tolist(), [[0, 1], [0, 2], [1, 2]])

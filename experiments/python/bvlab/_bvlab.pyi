@@ -127,8 +127,8 @@ def predict(
     leaf_size: int = ...,
     fit: str = ...,
     relative_error: float = ...,
-    stride: int = ...,
-    window: int = ...,
+    stride: int | None = ...,
+    window: int | None = ...,
 ) -> dict[str, Any]: ...
 def names(kind: str) -> dict[str, str]: ...
 def kinds() -> list[str]: ...

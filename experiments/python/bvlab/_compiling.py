@@ -24,14 +24,15 @@ def compile_in(volumes: str | Iterable[str] = (), strategies: str | Iterable[str
 
     volumes, strategies   ["mine.hpp:Mine<float>"]: header and type, as -DBVLAB_EXTRA_VOLUMES has them; see
                           hierarchies/adding_a_volume.md and traversal/adding_a_strategy.md
-    source, build         the source tree, and its build folder; as this module was built
+    source, build         the source tree, and its build folder; as this module was built, and then an import
+                          of bvlab from that folder has the new entries from now on
     only_volumes, only_strategies   compile only these of the built-in lists, which takes less time
 
         mine = bvlab.compile_in(volumes=["capsule.hpp:Capsule<float>"])
         mine.replay([mine.Mesh(vertices, faces)], poses, volume="capsule")
 
     Only the new entry and a table are compiled: a minute or two. The returned module is independent of this one:
-    a Mesh of one cannot be used with the other. ValueError: the compiler's first error.
+    a Mesh of one cannot be used with the other. ValueError: the first error of CMake or the compiler.
     """
     extra = {"VOLUMES": _entries(volumes), "STRATEGIES": _entries(strategies)}
     if not any(extra.values()):
@@ -42,8 +43,9 @@ def compile_in(volumes: str | Iterable[str] = (), strategies: str | Iterable[str
     if not (source / "CMakeLists.txt").is_file():
         raise ValueError(f"{source}: no source tree of bvlab; name one: source=...")
     options = [f"-DBVLAB_EXTRA_{kind}={';'.join(each)}" for kind, each in extra.items()]
+    # Also where all are wanted: the build folder remembers what the last call named.
     options += [f"-DBVLAB_{kind}={';'.join(only)}" for kind, only in
-                (("VOLUMES", only_volumes), ("STRATEGIES", only_strategies)) if only]
+                (("VOLUMES", only_volumes), ("STRATEGIES", only_strategies))]
     if not (build / "CMakeCache.txt").is_file():
         options += ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DBVLAB_BUILD_TESTS=OFF"]
     _call(["cmake", "-S", str(source), "-B", str(build), *options])
@@ -71,8 +73,11 @@ def _call(command):
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment)
     if done.returncode == 0:
         return
-    lines = [line for line in done.stdout.splitlines() if "error" in line.lower()] or done.stdout.splitlines()[-1:]
-    raise ValueError(f"{' '.join(command[:2])}: {lines[0].strip() if lines else 'failed'}")
+    lines = [line.strip() for line in done.stdout.splitlines() if line.strip()]
+    first = next((k for k, line in enumerate(lines) if "error" in line.lower()), -1)
+    if lines and lines[first].endswith("(message):"):  # CMake puts the text below
+        first = min(first + 1, len(lines) - 1)
+    raise ValueError(f"{' '.join(command[:2])}: {lines[first] if lines else 'failed'}")
 
 
 def _loaded(package, key):

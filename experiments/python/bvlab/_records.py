@@ -28,13 +28,13 @@ def record(path: str | os.PathLike) -> pandas.DataFrame:
         return records.read(os.fspath(path))
 
 
-def figures(path: str | os.PathLike, **figure: str) -> dict[str, matplotlib.figure.Figure]:
+def figures(path: str | os.PathLike, **figure: str | list[str]) -> dict[str, matplotlib.figure.Figure]:
     """The figures of a record, drawn as plots/draw draws them: {name: matplotlib.figure.Figure}.
 
     path      folder of the record
     figure    one figure instead of those that its definition declares: x="degrees", y="time_ns / pairs",
-              series="strategy", panels=..., over="strategy=recursive", kind="line" | "bars" | "map" ...; the keys of a
-              [[figure]] table, see experiments/definitions/README.md
+              series="strategy", panels=..., over="strategy=recursive", kind="line" | "bars" | "map" ..., where=["query=touching"]; the keys
+              of a [[figure]] table but "table", see experiments/definitions/README.md
 
     ValueError: no such column, an answer that differs from the reference ...
     """
@@ -46,7 +46,8 @@ def figures(path: str | os.PathLike, **figure: str) -> dict[str, matplotlib.figu
         if unknown := set(figure) - set(keys):
             raise ValueError(f"{min(unknown)}: unknown; available: {', '.join(keys)}")
         options = [f"--{key.replace('_', '-')}={value}" for key, value in figure.items() if key != "where"]
-        options += [f"--where={each}" for each in figure.get("where", [])]
+        where = figure.get("where", [])
+        options += [f"--where={each}" for each in ([where] if isinstance(where, str) else where)]
         arguments = draw.arguments_of([folder, *options])
         rows = kinds.Rows(arguments.record)
         all_rows = rows.of(declared.Figure(name="", x="", clock=arguments.clock or ""))
