@@ -27,7 +27,8 @@ def cells(record):
     return rows, {
         "sixteen": beside(called(OURS, SOURCE), fresh), "eight": beside(called(OURS, EIGHT), fresh),
         "one": beside(called(OURS, ONE), scalar), "roots": beside(called("wide, from the roots", SOURCE), fresh),
-        "roots, one": beside(called("wide, from the roots", ONE), scalar), "one, native": beside(called(OURS, ONE), [called("OPCODE", SOURCE)]),
+        "roots, one": beside(called("wide, from the roots", ONE), scalar),
+        "oriented, one": beside(called("oriented boxes, from the roots", ONE), scalar), "one, native": beside(called(OURS, ONE), [called("OPCODE", SOURCE)]),
         "one, physx": beside(called(OURS, ONE), [called("PhysX", SOURCE)]),
         "coherent": beside(called(OURS, SOURCE), [called("OPCODE, coherent", SOURCE)]),
         "one, coherent": beside(called(OURS, ONE), [called("OPCODE, coherent", ONE)]),
@@ -80,9 +81,10 @@ def tournament_headline(record):
     return {"libraries": names, "other_choice": int(other.sum()), "choices": len(other), "one_physx": Interval(found["one, physx"].ratio), "one_physx_faster": int(slower.sum()),
             "coal_wrong": int(wrong["coal-obb"]), "opcode_wrong": int(wrong["opcode"]), "physx_wrong": int(wrong["physx"]), "processor": provenance.processor_of(provenance.machine_of(record)), "coherent": Interval(beside_all(record).ratio), "contact_frames": rows[contacts].frames.max(), "rows": len(rows), "shared": int((rows.alone == "no").sum()),
             "repetitions": rows.repetition.nunique(), "cells": len(found["one"]), "roots_one_slower": int((found["roots, one"].ratio < 1).sum()),
+            "oriented_one_slower": int((found["oriented, one"].ratio < 1).sum()),
             "tests": Interval(beside_opcode(rows, "n_v")), "triangles": Interval(beside_opcode(rows, "n_p")), "one_native": Interval(found["one, native"].ratio),
             **{key: Interval(found[name].ratio) for key, name in (("one_coherent", "one, coherent"), ("sixteen", "sixteen"), ("eight", "eight"), ("one", "one"),
-                                                                   ("roots", "roots"), ("roots_one", "roots, one"))},
+                                                                   ("roots", "roots"), ("roots_one", "roots, one"), ("oriented_one", "oriented, one"))},
             "width": Interval(found["one"].ours_ns / found["sixteen"].ours_ns), "fcl": Interval(1 / found["fcl"].ratio)}
 
 
