@@ -40,10 +40,11 @@ class AllPairsOf {
     engine_.make_room(threads_);
   }
 
-  /// Moves every body to its pose and runs every pair's query. `make_query(p)` returns the query
-  /// for pair p (an index into `pairs()`); `take(p, query)` receives it with its answer:
-  /// StrategyPairs in the order of pairs, WidePairs in any order. More queries may be made than
-  /// are taken: to test roots of all pairs at once, or triangles that a pair kept.
+  /// Moves every body to its pose, poses[i] for body i, and runs every pair's query.
+  /// `make_query(p)` returns the query for pair p (an index into `pairs()`); `take(p, query)`
+  /// receives it with its answer: StrategyPairs in the order of pairs, WidePairs in any order. More
+  /// queries may be made than are taken: to test roots of all pairs at once, or triangles that a
+  /// pair kept.
   ///
   /// With several threads, all queries run before the first `take`, the order is that of pairs, and
   /// `make_query` is called on any thread, concurrently. Answers, contacts and counts equal those

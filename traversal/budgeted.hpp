@@ -73,8 +73,8 @@ struct PairOfPatches {
   bool operator<(const PairOfPatches& other) const { return size < other.size; }
 };
 
-/// The front of a traversal within a budget. Its sweep is the whole run: largest pairs first, one
-/// per lane of the traversal. Pairs left in the queue at the end are undecided.
+/// The front of a traversal within a budget. Its sweep is the whole run: it tests the largest pairs
+/// first, as many at once as there are lanes. Pairs left in the queue at the end are undecided.
 class LargestFirst : public NoFront {
  public:
   /// The sizes belong to the hierarchies that are traversed. The queue, a heap, must be empty.

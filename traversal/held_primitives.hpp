@@ -91,8 +91,8 @@ class HeldPrimitives {
   };
 
   /// Tests all held pairs, then the triangles of two large leaves until the query is satisfied.
-  /// It uses a buffer object of its own, so that the caller's stays in registers in the usual
-  /// case.
+  /// It uses a second object on the same buffer, so that the caller's stays in registers in the
+  /// usual case.
   [[gnu::noinline]] static Portions in_portions(Body<V>& body_a, Body<V>& body_b, Query& query,
                                                 Counter& counter, Workspace& workspace, F& front,
                                                 const Node& a, const Node& b, std::size_t slot,

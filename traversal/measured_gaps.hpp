@@ -12,8 +12,8 @@
 ///
 /// whatever path the bodies took. If it is b's, y is the point of a at its centre: T'^-1 Ty - y =
 /// -M'^-1 (T'y - Ty), and the inverse rotations differ as the rotations do. |M' - M| is at most
-/// what both bodies have rotated by since, and 2. The margin of a verdict on triangles lasts as
-/// long, since no point of one has moved by more relative to the other.
+/// 2, and at most the sum of both bodies' rotations since. The margin of a verdict on triangles
+/// lasts as long, since no point of one has moved by more relative to the other.
 ///
 /// Tried and not kept: one expiry for each entry, from the displacement bounds of whole bodies. The
 /// comparison is cheaper, but margins made 2.3 to 2.8 times the tests of volumes and of triangles
@@ -49,7 +49,7 @@ class MeasuredGapsOf {
 
   std::size_t size() const { return size_; }
   void clear() { measured_.clear(), size_ = 0; }
-  /// Adds one that is not known.
+  /// Adds an unknown gap.
   void add() {
     if (size_ % width == 0) [[unlikely]]
       measured_.emplace_back();

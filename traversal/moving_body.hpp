@@ -17,8 +17,8 @@ class MovingBody {
 
   const Pose& pose() const { return pose_; }
   const HierarchyExtent& extent() const { return extent_; }
-  /// Counts the moves: equal values mean that the body has not moved in between (unless 2^32 - 1
-  /// moves have).
+  /// Counts the moves: equal values mean that the body has not moved in between (unless by about
+  /// 2^32 moves).
   std::uint32_t epoch() const { return epoch_; }
   /// The pose from which relative poses to other bodies are formed. Computed once after each move.
   const OrthonormalPose& orthonormal_pose() {
@@ -32,9 +32,8 @@ class MovingBody {
     follow();
     return present_pose_;
   }
-  /// An upper bound on how far any point of the body has moved from each pose that was requested to
-  /// the next, summed over all of them. It never falls, while RelativeMotionBound does when a body
-  /// moves back.
+  /// An upper bound on the length of any point's path through the poses of the requests so far, in
+  /// units of the world. It never falls, while RelativeMotionBound does when a body moves back.
   double displacement_bound() {
     follow();
     return displacement_bound_;

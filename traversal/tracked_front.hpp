@@ -47,8 +47,8 @@ enum class EntryState {
 ///   finish(witness, satisfied)
 ///                            the run is over, ended by the query or not; `witness` is the slot
 ///                            of the entry to test first in the next run, or Outcome::none
-///   witnessed()              whether the last run left a witness, which is tested first (else a
-///                            query that wants a bound gets it from one descent from the roots)
+///   witnessed()              whether there is a witness, which is tested first (else a query that
+///                            wants a bound gets it from one descent from the roots)
 ///   opens(query, a, b, gap)  whether two nodes are opened although the query culls them
 ///   descent(a, b)            which node of an opened pair is replaced, or both
 ///   primitives(query, pending, workspace)
@@ -56,7 +56,7 @@ enum class EntryState {
 ///                            those of one entry are consecutive
 ///   measures_gaps            whether the front uses `gap`: a lower bound on the distance of the
 ///                            volumes of culled pairs, in units of the meshes; else 0
-///   held_at_least            as many candidates are held, to be tested together
+///   held_at_least            candidates are tested together once more than this many are held
 template <class F, class Traversal>
 concept TrackedFront = requires(F front, Traversal& traversal, typename Traversal::Query& query,
                                 const typename Traversal::Node& node, const NodePair& pair,

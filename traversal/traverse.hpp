@@ -11,9 +11,9 @@
 
 namespace bvlab {
 
-/// Runs the query of two bodies from a front, which is updated and remains a partition even if the
-/// query ends the run early. Returns the numbers of tests, and whether the run was complete. B is
-/// the scalar or batch in which volumes are tested.
+/// Runs the query, a new one, of two bodies that have been moved, from a front, which is updated
+/// and remains a partition even if the query ends the run early. Returns the numbers of tests, and
+/// whether the run was complete. B is the scalar or batch in which volumes are tested.
 template <class B, class V, class Query, class Counter, class Front>
 TraversalStatistics traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
                              Workspace& workspace, Front&& front) {

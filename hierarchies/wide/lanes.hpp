@@ -19,8 +19,8 @@
 
 namespace bvlab {
 
-/// a * b + c, rounded once where the processor can, else twice. Only for culling tests, whose
-/// margins cover both; never for the position of a vertex.
+/// a * b + c, rounded once for batches of floats where x86 has FMA, else twice. Only for results
+/// whose error bound covers both; never for the exact position of a vertex.
 template <Scalar S>
 [[gnu::always_inline]] inline S fused(const S& a, const S& b, const S& c) {
 #if defined(__AVX512F__)
@@ -38,7 +38,7 @@ template <Scalar S>
   return a * b + c;
 }
 
-/// c - a * b, rounded once where the processor can (a fused multiply-add with a negated product).
+/// c - a * b, rounded as `fused` is.
 template <Scalar S>
 [[gnu::always_inline]] inline S less_fused(const S& a, const S& b, const S& c) {
 #if defined(__AVX512F__)
@@ -56,7 +56,7 @@ template <Scalar S>
   return c - a * b;
 }
 
-/// 1 / x, with a relative error up to 2^-14 where the processor has that: only for ordering pairs.
+/// 1 / x; in AVX-512 with a relative error up to 2^-14. Only for the order of pairs.
 template <Scalar S>
 [[gnu::always_inline]] inline S roughly_one_over(const S& x) {
 #if defined(__AVX512F__)

@@ -25,8 +25,8 @@ struct KnownHit {
 };
 
 /// A float below x, also where x exceeds the largest float: half a unit in the last place is lost
-/// to each of two roundings; the last term covers underflow. A number below all floats gives the
-/// least.
+/// to each of two roundings; the last term covers underflow. A number below all floats gives
+/// minus infinity.
 inline float just_below(double x) {
   constexpr double largest = std::numeric_limits<float>::max();
   const auto y = static_cast<float>(std::max(std::min(x, largest), -largest));
@@ -235,7 +235,8 @@ class MarginFront {
   void remove_hits_of_due() {
     std::erase_if(hits_, [&](const KnownHit& hit) { return !(gaps_[hit.slot] > 0); });
   }
-  /// Adds a hit that lasts while the bodies do not move. For queries that one hit may end.
+  /// Adds a hit without a margin: it lasts while the bodies do not move, if the run measured gaps.
+  /// For queries that one hit may end.
   void add_brief_hit(const KnownHit& hit) {
     hit_margins_.add();
     hits_.push_back(hit);
@@ -258,8 +259,8 @@ class MarginFront {
  private:
   static constexpr int most_brief_tests = 32;
   static constexpr std::size_t width = MeasuredGaps::width;
-  // In place of an expiry: an entry may be due, a gap is announced, or no gap is known. The lesser
-  // are kept by min().
+  // In place of the expiry of a group: an entry may be due, a gap is announced, or no gap is known.
+  // min() keeps the least.
   static constexpr double due = -1, to_be_measured = -2, all_due = -3;
 
   [[gnu::always_inline]] void announce(std::size_t slot, float gap, MeasuredGaps::Of what) {

@@ -11,8 +11,8 @@ namespace bvlab {
 
 class MeasuringRule {
  public:
-  /// `step`: about how much nearer two bodies are expected to come from run to run, whose leaves
-  /// are of `leaf_size` in the mean. Where they are fast, the first runs do not measure.
+  /// `step`: about how much nearer two bodies are expected to come from run to run; `leaf_size`:
+  /// the mean size of their leaves. Where the bodies are fast, the first runs do not measure.
   explicit MeasuringRule(double step = 0, double leaf_size = 0)
       : step_(step), runs_without_(step > fast * leaf_size ? patience : 0), stopped_at_(step) {}
 
@@ -65,7 +65,7 @@ class MeasuringRule {
   double step_;             // of this run
   int runs_without_;        // runs to come that do not measure
   double measured_at_ = 0;  // step of the last run that measured
-  double stopped_at_;       // step when measuring stopped, or of the run before: the larger one
+  double stopped_at_;       // the larger step of two: when measuring stopped, and when it last ran
 };
 
 }  // namespace bvlab

@@ -25,7 +25,7 @@ struct Crossing {
 /// The expected answer. It affects the order of steps, but no answer.
 enum class Expect { touching, apart };
 
-/// Where a traversal of wide trees starts, as the memory of its pair of bodies knows.
+/// Where a traversal of wide trees starts, given by the memory of its pair of bodies.
 struct TraversalStart {
   Expect expect = Expect::touching;
   std::optional<NodePair> touched = {};  ///< GapMeasure::touched of the last frame, tested first
@@ -100,7 +100,7 @@ class GapMeasure {
     auto& pair = traversal.pair();
     const std::size_t size = start_.front->size();  // added entries are not retested
     for (std::size_t first = 0; first < size; first += MeasuredGaps::width)
-      for (std::uint64_t rest = due(first, size - first, pair.frame().a_to_b()); rest;
+      for (std::uint64_t rest = due_lanes(first, size - first, pair.frame().a_to_b()); rest;
            rest &= rest - 1) {
         const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(rest));
         const WideFront::Entry entry = (*start_.front)[i];
@@ -117,7 +117,7 @@ class GapMeasure {
   static constexpr std::size_t no_entries() { return WideFront::none; }
 
   /// Records a step: the lanes that are near, and the gap of the others, at its reference sphere.
-  /// Returns those lanes that were not opened before.
+  /// Returns the near lanes that were not opened before.
   template <class Pair, class Step, class Found, class Query>
   [[gnu::always_inline]] std::uint64_t record(const Pair&, const Step& step, const Found& found,
                                               std::uint64_t near, std::size_t entry, Query&) {
@@ -165,12 +165,12 @@ class GapMeasure {
   void record_touching(const NodePair& pair) { touched_ = pair; }
   void record_crossing(const Crossing& found) { crossing_ = found; }
 
-  /// Whether a front was kept.
+  /// Whether the traversal wrote a front or updated one.
   bool keeps_front() const { return start_.front; }
   /// Whether the traversal started from the front.
   bool sweeps() const { return sweeps_; }
   /// How many entries of the front were due.
-  std::size_t due() const { return due_; }
+  std::size_t due_count() const { return due_count_; }
   const std::optional<Crossing>& crossing() const { return crossing_; }
   /// The pair whose triangles touched, or may have.
   const std::optional<NodePair>& touched() const { return touched_; }
@@ -188,14 +188,14 @@ class GapMeasure {
 
   /// Which of the entries from `first` on, at most a register of them, are due, that is, may have
   /// closed their gaps.
-  [[gnu::always_inline]] std::uint64_t due(std::size_t first, std::size_t entries,
-                                           const CornerTransform& corners) {
+  [[gnu::always_inline]] std::uint64_t due_lanes(std::size_t first, std::size_t entries,
+                                                 const CornerTransform& corners) {
     const Gaps remaining = start_.front->gaps().remaining(first, corners, start_.rotation);
     const std::size_t lanes = std::min<std::size_t>(entries, MeasuredGaps::width);
     const auto apart = remaining > Gaps(0.0f);
     stdx::where(apart, least_remaining_) = stdx::min(least_remaining_, remaining);
     const std::uint64_t due = ~bits(apart) & ((std::uint64_t{1} << lanes) - 1);
-    due_ += static_cast<std::size_t>(std::popcount(due));
+    due_count_ += static_cast<std::size_t>(std::popcount(due));
     return due;
   }
 
@@ -204,7 +204,7 @@ class GapMeasure {
   Gaps least_remaining_;
   std::optional<NodePair> touched_;
   std::optional<Crossing> crossing_;
-  std::size_t due_ = 0;
+  std::size_t due_count_ = 0;
   bool sweep_is_due_, sweeps_;
 };
 

@@ -27,8 +27,8 @@ struct KeptOfPair {
   WideFront front;
   FrontPause pause;
   std::optional<Crossing> crossing;
-  int rest = 0;       ///< traversals left in which no crossing is kept
-  int next_rest = 1;  ///< the length of the next such pause
+  int crossing_pause = 0;       ///< traversals left in which no crossing is kept
+  int next_crossing_pause = 1;  ///< the length of the next such pause
   bool was_apart = false, touched_twice = false;
 };
 

@@ -10,7 +10,8 @@
 ///                          ContactSieve, the first test of triangles where all hits are sought:
 ///     begin(a, b), a_to_b()
 ///     roots()                          the pair to start with
-///     retry(touched, nodes, triangles) queues the pair that touched in the last frame first
+///     retry(touched, nodes, triangles) queues the pair that touched in the last frame, to be
+///                                      tested first
 ///     step(pair, counter, sieve, test) calls test(step) with the volumes to test at once; where
 ///                                      all hits are sought `sieve` is a ContactSieve, else it is
 ///                                      not used. Members of a step:
@@ -103,21 +104,20 @@ struct SiblingsKernel {
       [[gnu::always_inline]] S gaps(std::size_t) const {
         return pair_frame.frame_.gaps(side, node[side], posed);
       }
-      [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles,
-                                       std::uint64_t remaining, const std::array<S, 1>& order,
-                                       NextPair) const {
-        to_queue(nodes, triangles, remaining, order[0]);
-      }
-      [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles,
-                                       std::uint64_t remaining, NoOrder order, NextPair) const {
-        to_queue(nodes, triangles, remaining, order);
-      }
+      /// `order` is an array of one register, or NoOrder.
       template <class Order>
-      [[gnu::always_inline]] void to_queue(WorkQueue& nodes, WorkQueue& triangles,
-                                           std::uint64_t remaining, const Order& order) const {
+      [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles,
+                                       std::uint64_t remaining, const Order& order,
+                                       NextPair) const {
         WorkQueue& to = leaves ? triangles : nodes;
-        to.template push_lanes<F>(static_cast<int>(side), remaining, many.first, node[1 - side],
-                                  order);
+        const auto push = [&](const auto& of_lanes) __attribute__((always_inline)) {
+          to.template push_lanes<F>(static_cast<int>(side), remaining, many.first, node[1 - side],
+                                    of_lanes);
+        };
+        if constexpr (std::is_same_v<Order, NoOrder>)
+          push(order);
+        else
+          push(order[0]);
       }
       ReferenceSphere reference_sphere() const {
         return pair_frame.frame_.reference_sphere(1 - side, node[1 - side]);
@@ -170,7 +170,7 @@ struct SiblingsKernel {
                 frame_.posed_node(1 - side, node[1 - side], counter)});
     }
 
-    /// Begins to load what the step of a pair will read.
+    /// Begins to load what the step of a pair will read, or the sieve after it.
     [[gnu::always_inline]] void prefetch(const NodePair& pair) const {
       const Node &a = hierarchies_[0]->node(pair.a), &b = hierarchies_[1]->node(pair.b);
       const auto lines = [](const void* from, std::size_t size) __attribute__((always_inline)) {
@@ -219,20 +219,12 @@ struct SiblingsKernel {
       /// A lower bound on the distance of the triangle's volume to each of the leaf's.
       template <class Counter>
       [[gnu::noinline]] S gaps(Counter& counter) const {
-        const auto& frame = pair_frame_.frame_;
-        const auto posed = frame.posed_child(0, pair_frame_.hierarchies_[0]->leaf_of(pair_.a),
-                                             static_cast<int>(lane_), counter);
-        counter.tested(static_cast<std::uint64_t>(std::popcount(leaf_.lanes)));
-        return frame.gaps(1, pair_.b, posed);
+        return pair_frame_.frame_.gaps(1, pair_.b, posed(counter));
       }
       /// A lower bound on the distance of any pair; not positive where none is known.
       template <class Counter>
       [[gnu::noinline]] float gap(Counter& counter) const {
-        const auto& frame = pair_frame_.frame_;
-        const auto posed = frame.posed_child(0, pair_frame_.hierarchies_[0]->leaf_of(pair_.a),
-                                             static_cast<int>(lane_), counter);
-        counter.tested(static_cast<std::uint64_t>(std::popcount(leaf_.lanes)));
-        const S gaps = frame.separation(1, pair_.b, posed).gap;
+        const S gaps = pair_frame_.frame_.separation(1, pair_.b, posed(counter)).gap;
         return stdx::hmin(select(gaps > S(0.0f), gaps, S(0.0f)));
       }
       /// A sphere around the triangle of a about its first corner.
@@ -259,6 +251,14 @@ struct SiblingsKernel {
       }
 
      private:
+      /// The triangle's volume, to be tested against the leaf's.
+      template <class Counter>
+      [[gnu::always_inline]] auto posed(Counter& counter) const {
+        counter.tested(static_cast<std::uint64_t>(std::popcount(leaf_.lanes)));
+        return pair_frame_.frame_.posed_child(0, pair_frame_.hierarchies_[0]->leaf_of(pair_.a),
+                                              static_cast<int>(lane_), counter);
+      }
+
       const PairFrame& pair_frame_;
       NodePair pair_;
       std::size_t lane_;

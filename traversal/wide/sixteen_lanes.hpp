@@ -29,7 +29,8 @@ namespace detail {
 inline constexpr std::size_t width_of_part = SixteenLanes::size();
 }
 
-/// Number i in lanes 4 i to 4 i + 3. The numbers are 16-byte aligned, here and below.
+/// Number i in lanes 4 i to 4 i + 3. Here and below, four numbers are 16-byte aligned,
+/// sixteen 64-byte aligned.
 [[gnu::always_inline]] inline SixteenLanes each_of_four(const float* four,
                                                         [[maybe_unused]] std::size_t part) {
 #if defined(__AVX512F__) && defined(__AVX512DQ__)

@@ -12,19 +12,19 @@
 /// first where they touched.
 ///
 /// A pair that was traversed and found apart writes a front (WideFront) in its next traversal.
-/// Later traversals retest only the entries whose gaps may have closed. Where that is most of them
-/// the pair keeps no front for sixteen traversals, and for four times as many each time this
-/// recurs, at most 256.
+/// Later traversals retest only the entries whose gaps may have closed. Where that is over three
+/// quarters of them the pair keeps no front for sixteen traversals, and for four times as many each
+/// time this recurs, at most 256.
 ///
 /// Tried and not kept: to measure no gaps where few traversals were spared lately, as in fast
 /// motion. It gains a tenth there, but single pairs take up to half as long again: they are spared
 /// in some phases of a motion and not in others. A mean over more traversals gains nothing.
 ///
-/// Nor to open volumes with a small gap, so that the least gap grows. It costs five times as much,
-/// and the least gap stays that of the nearest triangles.
+/// Also tried: to open volumes with a small gap, so that the least gap grows. It costs five times
+/// as much, and the least gap stays that of the nearest triangles.
 ///
-/// Nor to measure gaps of triangles in other traversals than retests (GapMeasure). A third of the
-/// tests remains, and each gap costs as much as four tests.
+/// Also tried: to measure gaps of triangles in other traversals than retests (GapMeasure). A third
+/// of the tests remains, and each gap costs as much as four tests.
 #pragma once
 
 #include <algorithm>
@@ -63,7 +63,7 @@ class WideMargins {
     answers_[p] = {};
     Kept& kept = kept_[p];
     kept.lasting.forget(), kept.was_apart = kept.touched_twice = false;
-    kept.crossing.reset(), kept.rest = 0, kept.next_rest = 1;
+    kept.crossing.reset(), kept.crossing_pause = 0, kept.next_crossing_pause = 1;
     clear_front(p), kept.pause = {};
   }
 
@@ -113,7 +113,7 @@ class WideMargins {
     sieve.sift([&](std::size_t p) { return answer_valid_by_reference_pose(p, scene.pairs[p]); });
     if constexpr (Query::one_hit_is_enough) cull_by_crossings(sieve, scene, counter, make_query);
   }
-  /// Pairs with a front, or that touched twice in a row, are not tested by directions.
+  /// Pairs with a front, or that touch and were not apart before, are not tested by directions.
   bool skips_directions(std::size_t p) const {
     return kept_[p].front.is_complete() || kept_[p].touched_twice;
   }
@@ -171,8 +171,8 @@ class WideMargins {
     kept.was_apart = !answer.touching;
     if (answer.touching) {
       kept.touched = *found.touched();
-      if (kept.rest > 0)
-        --kept.rest;
+      if (kept.crossing_pause > 0)
+        --kept.crossing_pause;
       else
         kept.crossing = found.crossing();
       clear_front(p);
@@ -182,7 +182,7 @@ class WideMargins {
       WideFront& front = kept.front;
       // Retesting an entry costs as much as a step of a traversal; the saved ones must also pay for
       // writing fronts.
-      const bool worn = found.sweeps() && 4 * found.due() > 3 * front.size();
+      const bool worn = found.sweeps() && 4 * found.due_count() > 3 * front.size();
       if (found.sweeps())
         kept.pause.begin(worn);
       else
@@ -196,7 +196,7 @@ class WideMargins {
   }
 
  private:
-  static constexpr int longest_rest = 64;  // traversals without a crossing
+  static constexpr int longest_crossing_pause = 64;  // traversals without a crossing
 
   using Answer = PairAnswer;
   using Kept = KeptOfPair;
@@ -249,15 +249,15 @@ class WideMargins {
   void still_crossing(std::size_t p, const ObjectPair& pair, double margin) {
     answers_[p] = {unknown, bodies_.epochs(pair), true};
     kept_[p].lasting.forget(), kept_[p].touched_twice = true;
-    kept_[p].next_rest = std::max(1, kept_[p].next_rest / 2);
+    kept_[p].next_crossing_pause = std::max(1, kept_[p].next_crossing_pause / 2);
     if (margin > bodies_.step(pair)) extend_validity(p, pair, margin);
   }
-  /// The triangles no longer cross for certain. In such motion, testing the next crossing first
-  /// does not pay.
+  /// It is no longer certain that the triangles cross. In such motion, testing the next crossing
+  /// first does not pay.
   void lost_crossing(std::size_t p) {
     Kept& kept = kept_[p];
-    kept.rest = kept.next_rest;
-    kept.next_rest = std::min(4 * kept.next_rest, longest_rest);
+    kept.crossing_pause = kept.next_crossing_pause;
+    kept.next_crossing_pause = std::min(4 * kept.next_crossing_pause, longest_crossing_pause);
   }
 
   void clear_front(std::size_t p) { kept_[p].front.clear(), front_sizes_[p] = 0; }
