@@ -239,9 +239,12 @@ class Adaptive : public AdaptivePrices {
       loss_limit_ = cost;
     }
     if (statistics.volumes + statistics.triangles > 0) {
-      next_run_ = statistics.everything ? of_list.run + list_cost_per_entry_ * entries
+      // Not of what margins have opened: it would make a list look as dear as they are.
+      const auto list_entries =
+          static_cast<double>(std::max<std::size_t>(margins_.entries_of_list(), 1));
+      next_run_ = statistics.everything ? of_list.run + list_cost_per_entry_ * list_entries
                                         : price({false, 1, 1}, of_list);
-      loss_limit_ = std::max(loss_limit_, cost);
+      loss_limit_ = std::max(loss_limit_, list_entries * of_margins.volumes);
     }
     balance_ =
         std::max(balance_ + cost + quiet * of_margins.run - (1 + quiet) * next_run_, -loss_limit_);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// One run from a front with margins: tests the entries that are due, measures their gaps anew, and
 /// opens culled pairs with small gaps into pairs with wider ones. Where measuring does not pay
-/// (measuring_rule.hpp), a run only tests. What it tests is due again in the next run.
+/// (measuring_rule.hpp), a run only tests. Entries
+/// tested without measuring are due again in the next run.
 #pragma once
 
 #include <algorithm>
@@ -62,6 +63,9 @@ class MarginSweep : public FrontDefaults {
   /// After a complete run, a lower bound on what is left of every gap; after one that a hit ended,
   /// the margin of that hit. Not positive where it is not known.
   float least() const { return least_; }
+  /// By how many entries pairs that the query culls have lengthened the front when they were
+  /// opened.
+  std::size_t entries_added() const { return entries_added_; }
   /// Whether margins were measured. If not, the front does not have all hits of the run.
   bool measures() const { return measures_; }
 
@@ -101,7 +105,7 @@ class MarginSweep : public FrontDefaults {
   /// triangles farther apart by about half of both sizes. Where gaps last for many runs anyway,
   /// opening does not pay.
   template <class Query, class Node>
-  bool opens(const Query& query, const Node& a, const Node& b, double gap) const {
+  bool opens(const Query& query, const Node& a, const Node& b, double gap) {
     if (!measures_) return false;
     constexpr double triangle_cost = 3, leaf_gain = 0.5, inner_gain = 0.25, long_enough = 4;
     const double spare = gap - query.limit();
@@ -111,7 +115,11 @@ class MarginSweep : public FrontDefaults {
                                      static_cast<double>(a.size + b.size)};
     constexpr std::array gain{inner_gain, leaf_gain}, costs{2.0, 1 + triangle_cost};
     const double wider = gain[both_leaves] * size[both_leaves], cost = costs[both_leaves];
-    return (spare < long_enough * step_) & (cost * std::max(spare, step_) < spare + wider);
+    const bool opens =
+        (spare < long_enough * step_) & (cost * std::max(spare, step_) < spare + wider);
+    const std::uint32_t children = std::max(a.children, b.children);
+    entries_added_ += opens & !both_leaves ? children - 1 : 0;
+    return opens;
   }
 
   /// A pair of leaves is due when the first of its verdicts may change.
@@ -200,7 +208,7 @@ class MarginSweep : public FrontDefaults {
   Outcome briefly(Query& query, std::span<const Candidate> pending) {
     const Outcome outcome = query.primitives(pending);
     if (outcome.satisfied && outcome.witness != Outcome::none) {
-      // Valid while the bodies do not move; once they do, it is tested again.
+      // Valid while the bodies do not move, if this run measures; else it is tested again.
       add_hit<Query>(pending[outcome.witness], 0);
       margin_of_hit_ = 0;
     }
@@ -212,6 +220,7 @@ class MarginSweep : public FrontDefaults {
   MeasuringRule& rule_;
   std::array<const NodeSphere*, 2> spheres_{};
   double step_;
+  std::size_t entries_added_ = 0;
   bool measures_ = true;
   float least_ = std::numeric_limits<float>::infinity();
   float margin_of_hit_ = 0;

@@ -6,9 +6,9 @@
 /// test in about g / (motion per run) runs. So it pays to open pairs that are apart by a small gap:
 /// two children with wide gaps cost less than a parent with a narrow one (MarginSweep::opens).
 ///
-/// How long a gap lasts is bounded from the poses at which it was measured to the present ones, at
-/// a sphere around one of the two nodes (measured_gaps.hpp). Where all gaps last, a run compares
-/// two numbers (lasting_answer.hpp).
+/// A gap shrinks by at most the motion of a sphere around one of its two nodes since it was
+/// measured (measured_gaps.hpp). Where all gaps last, a run compares two numbers
+/// (lasting_answer.hpp).
 ///
 /// Where the bodies move so far that few gaps last until the next run, none are measured
 /// (measuring_rule.hpp).
@@ -63,18 +63,16 @@ class Margins {
       measuring_rule_.ignore_earlier();
     }
     last_query_ = &Query::name;
-    ClearUnlessDone front_is_whole{front_};
     front_.prefetch();
     PresentPoses now(a, b);
     if constexpr (Query::one_hit_is_enough)
       if (const float margin = repeat_hits(query, now); margin > 0) {
         answer_lasts(a, b, margin);
-        front_is_whole.done = true;
         return {};
       }
     MarginSweep sweep(front_, now, measuring_rule_, step_);
     const TraversalStatistics statistics = pair.from_front(sweep);
-    front_is_whole.done = true;
+    added_ += sweep.entries_added();
     account(statistics);
     ended_by_hit_ = !statistics.everything;
     has_all_hits_ = sweep.measures();
@@ -91,12 +89,13 @@ class Margins {
   void start_from(const Front& list, std::size_t count, MovingBody& a, MovingBody& b, double step) {
     front_.clear();
     rebuild(a, b);
+    // So that the next run sees a move by `step`.
     displacement_ -= step;
     epoch_a_ = a.epoch() - 1, epoch_b_ = b.epoch() - 1;
     front_.open(0);
     for (std::size_t slot = 0; slot < count; ++slot) front_.add(list[slot]);
     if (list.witnessed()) front_.set_witness(0);
-    cost_ = static_cast<double>(count);  // the other half of a rebuild's tests
+    cost_ = static_cast<double>(count);  // a rebuild tests about twice as many pairs as it leaves
     last_query_ = nullptr;
   }
 
@@ -124,21 +123,13 @@ class Margins {
   std::uint32_t rebuilds() const { return rebuilds_; }
 
   std::size_t front_size() const { return front_.size(); }
+  /// About how many entries a list would have: without those that opening culled pairs has added.
+  std::size_t entries_of_list() const { return front_.size() - std::min(front_.size(), added_); }
   const MarginFront& front() const { return front_; }
 
  private:
   static constexpr double triangles = 4;  // cost of a pair of triangles and of its margin, in pairs
                                           // of volumes
-
-  /// An exception in a run, of a query or of an allocation, leaves a front that lacks entries: the
-  /// next run then starts from the roots.
-  struct ClearUnlessDone {
-    MarginFront& front;
-    bool done = false;
-    ~ClearUnlessDone() {
-      if (!done) front.clear();
-    }
-  };
 
   /// Follows the bodies. If nothing can have changed, answers the query and returns true.
   template <class Query>
@@ -212,6 +203,7 @@ class Margins {
       epoch_a_ = a.epoch(), epoch_b_ = b.epoch();
     }
     front_.restart();
+    added_ = 0;
     measuring_rule_.ignore_earlier();
     upkeep_ = cost_ = 0;
     runs_ = 0;
@@ -240,6 +232,7 @@ class Margins {
   double gap_ = 0;                           // for which the last answer lasts
   double distance_ = 0;
   double upkeep_ = 0, cost_ = 0, runs_ = 0;  // smoothed cost of a run; totals since the rebuild
+  std::size_t added_ = 0;  // entries that opening culled pairs has added since the rebuild
   std::uint32_t rebuilds_ = 0;
   bool rebuild_due_ = false;
   bool has_all_hits_ = true;  // the last sweep measured: the front has all of its hits
