@@ -171,9 +171,8 @@ TEST(WorldThatComesAndGoes, TouchesWhereBruteForceDoes) {
   }
 }
 
-/// In every other frame an exception ends the update. Few bodies move at a time.
-template <class World>
-void expect_answers_after_exceptions(World world, const char* name) {
+/// Few bodies move at a time.
+Script calm_script() {
   std::mt19937 random(20261126);
   std::uniform_real_distribution<double> unit(-1, 1);
   Script script{std::vector<std::optional<Pose>>(hostile_bodies)};
@@ -185,7 +184,19 @@ void expect_answers_after_exceptions(World world, const char* name) {
     auto& pose = script.back()[random() % hostile_bodies];
     pose->translation += 0.3 * Vec3<double>(unit(random), unit(random), unit(random));
   }
-  const auto& truth = truth_of(script, hostile_meshes()).touching;
+  return script;
+}
+
+const std::pair<Script, std::vector<std::uint8_t>>& calm_scene() {
+  static const Script script = calm_script();
+  static const std::pair scene(script, truth_of(script, hostile_meshes()).touching);
+  return scene;
+}
+
+/// In every other frame an exception ends the update.
+template <class World>
+void expect_answers_after_exceptions(World world, const char* name) {
+  const auto& [script, truth] = calm_scene();
   const auto pairs = all_object_pairs(hostile_bodies);
   NotCounting counter;
   TouchingPairs touching;
