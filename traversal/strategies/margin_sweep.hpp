@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// One run from a front with margins: tests the entries that are due, measures their gaps anew, and
 /// opens culled pairs with small gaps into pairs with wider ones. Where measuring does not pay
-/// (measuring_rule.hpp), a run only tests. Entries
-/// tested without measuring are due again in the next run.
+/// (measuring_rule.hpp), a run only tests. Entries that
+/// are tested without measuring are due again in the next run.
 #pragma once
 
 #include <algorithm>
@@ -37,6 +37,8 @@ class MarginSweep : public FrontDefaults {
   bool sweep(Traversal& traversal) {
     using Query = typename Traversal::Query;
     spheres_ = {traversal.a().node_spheres(), traversal.b().node_spheres()};
+    children_ =
+        std::max({children_, traversal.a().node(0).children, traversal.b().node(0).children});
     // Distances need these bounds anyway.
     constexpr bool always_measures = wants_bound<Query>();
     measures_ = always_measures || rule_.expected();
@@ -63,9 +65,9 @@ class MarginSweep : public FrontDefaults {
   /// After a complete run, a lower bound on what is left of every gap; after one that a hit ended,
   /// the margin of that hit. Not positive where it is not known.
   float least() const { return least_; }
-  /// By how many entries pairs that the query culls have lengthened the front when they were
-  /// opened.
-  std::size_t entries_added() const { return entries_added_; }
+  /// About how many entries opening culled pairs has added: each is replaced by as many as a root
+  /// has children.
+  std::size_t entries_added() const { return opened_ * (children_ - 1); }
   /// Whether margins were measured. If not, the front does not have all hits of the run.
   bool measures() const { return measures_; }
 
@@ -117,8 +119,7 @@ class MarginSweep : public FrontDefaults {
     const double wider = gain[both_leaves] * size[both_leaves], cost = costs[both_leaves];
     const bool opens =
         (spare < long_enough * step_) & (cost * std::max(spare, step_) < spare + wider);
-    const std::uint32_t children = std::max(a.children, b.children);
-    entries_added_ += opens & !both_leaves ? children - 1 : 0;
+    opened_ += std::size_t{opens} & ~both_leaves;
     return opens;
   }
 
@@ -220,7 +221,8 @@ class MarginSweep : public FrontDefaults {
   MeasuringRule& rule_;
   std::array<const NodeSphere*, 2> spheres_{};
   double step_;
-  std::size_t entries_added_ = 0;
+  std::size_t opened_ = 0;  // culled pairs with an inner node
+  std::uint32_t children_ = 2;
   bool measures_ = true;
   float least_ = std::numeric_limits<float>::infinity();
   float margin_of_hit_ = 0;
