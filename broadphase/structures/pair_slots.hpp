@@ -15,6 +15,7 @@ class PairSlots {
   static constexpr std::uint32_t none = 0xffffffffu;
 
   std::size_t size() const { return size_; }
+
   void clear() {
     if (size_) std::fill(cells_.begin(), cells_.end(), Cell{});
     size_ = 0;

@@ -16,7 +16,8 @@ int main() {
   const std::vector<Recommended::Shape> shapes(bodies, {&mesh, &hierarchy});
   World world(shapes);
   // A row of rings that do not touch. What was never moved is not in the scene.
-  for (std::uint32_t i = 0; i < bodies; ++i) world.move(i, pose_from({3.0 * i, 0, 0}, 1, 0, 0, 0).value());
+  for (std::uint32_t i = 0; i < bodies; ++i)
+    world.move(i, pose_from({3.0 * i, 0, 0}, 1, 0, 0, 0).value());
 
   TouchingPairs touching;
   NotCounting counter;

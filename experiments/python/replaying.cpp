@@ -44,8 +44,7 @@ py::object answers_of(ReplayResult& result, const Trace& trace, const std::strin
   const std::vector<py::ssize_t> cells{static_cast<py::ssize_t>(trace.frames),
                                        static_cast<py::ssize_t>(trace.pairs())};
   const AnswerKind kind = kind_of_answers(result, query);
-  if (kind == AnswerKind::yes_or_no)
-    return taken<std::uint8_t>(std::move(result.touching), cells);
+  if (kind == AnswerKind::yes_or_no) return taken<std::uint8_t>(std::move(result.touching), cells);
   if (kind == AnswerKind::number) return taken<double>(std::move(result.distances), cells);
   return taken_rows<std::uint32_t, 5>(std::move(result.contacts));
 }

@@ -15,10 +15,9 @@ namespace bvlab {
 ///   culls(p, q)           a mask over posed volumes p of body a and q of body b; unless the query
 ///                         wants a bound, it depends on the volumes alone
 ///   primitives(pending)   tests one candidate or more; its outcome: is the query satisfied?
-///   culls_disjoint        if present and true: `culls(p, q)` is `disjoint(p, q)`. Wide trees need
-///   it,
-///                         unless the query wants a bound: they cull pairs, and whole bodies, that
-///                         are disjoint, and never call `culls(p, q)`
+///   culls_disjoint        if present and true: `culls(p, q)` is `disjoint(p, q)`. Wide trees cull
+///                         disjoint pairs and bodies, and never call `culls(p, q)`: they answer
+///                         only such queries, and those that want a bound
 ///   buffer_size           once more candidates than this are held, `primitives` is called
 ///   one_hit_is_enough     whether one pair of triangles that share a point can end the query; if
 ///                         not, and it wants no bound, hits must not satisfy it: it finds them all
@@ -58,9 +57,8 @@ constexpr bool wants_bound() {
 template <class Q>
 constexpr bool for_wide_trees() {
   if constexpr (requires { Q::culls_disjoint; })
-    return Q::culls_disjoint || wants_bound<Q>();
-  else
-    return wants_bound<Q>();
+    if (Q::culls_disjoint) return true;
+  return wants_bound<Q>();
 }
 
 /// A query whose answer is yes or no.

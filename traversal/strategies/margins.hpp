@@ -22,6 +22,7 @@
 /// runs.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string_view>
 

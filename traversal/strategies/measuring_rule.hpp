@@ -65,7 +65,7 @@ class MeasuringRule {
   double step_;             // of this run
   int runs_without_;        // runs to come that do not measure
   double measured_at_ = 0;  // step of the last run that measured
-  double stopped_at_;       // the larger step of two: when measuring stopped, and when it last ran
+  double stopped_at_;       // larger step of two: when measuring stopped, and in its last run
 };
 
 }  // namespace bvlab
