@@ -8,6 +8,7 @@
 /// until `restart`; RisingFront, which is derived from it, also shrinks.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -83,5 +84,13 @@ class Front : public FrontDefaults {
  private:
   std::vector<std::uint32_t> holes_;  // empty between runs
 };
+
+/// The most entries that the list of a pair of bodies may have before it is rebuilt, whatever its
+/// cost: 16 for each node of the two hierarchies. Runs that a hit cuts short cost little, so no
+/// rule by cost rebuilds the list, and yet each may lengthen it.
+template <class Pair>
+std::size_t longest_list(const Pair& pair) {
+  return 16 * (pair.a().extent().nodes + pair.b().extent().nodes);
+}
 
 }  // namespace bvlab

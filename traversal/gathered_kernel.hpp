@@ -12,8 +12,8 @@
 #include <cstdint>
 
 #include "traversal/body.hpp"
-#include "traversal/descent.hpp"
 #include "traversal/held_primitives.hpp"
+#include "traversal/node_pair.hpp"
 #include "traversal/pair_batch.hpp"
 #include "traversal/traversal.hpp"
 

@@ -6,7 +6,7 @@
 /// is tighter.
 #pragma once
 
-#include "traversal/relative_motion_bound.hpp"
+#include "traversal/moving_body.hpp"
 
 namespace bvlab {
 
@@ -16,25 +16,34 @@ inline double displacement_at_expiry(double displacement, double gap) {
   return (displacement + gap) * (1 - 8 * unit_roundoff<double>);
 }
 
-/// The second test: the validity of an answer by the bound from reference poses.
+/// The second test: the validity of an answer by the bound from reference poses
+/// (reference_pose.hpp), which falls when the bodies move back.
 class LastingAnswer {
  public:
-  /// The answer lasts until the bodies have come nearer than they are now by `gap`.
+  /// The answer lasts until the bodies have come nearer than they are now by `gap`, less what the
+  /// poses and rounding may be off by.
   void restart(MovingBody& a, MovingBody& b, double gap) {
-    motion_.restart(a, b);
-    gap_ = motion_.left_of(gap);
+    a_ = a.present_pose(), b_ = b.present_pose();
+    const double off = a_.error_bound + b_.error_bound;
+    gap_ = (gap - off) - 4 * unit_roundoff<double> * (gap + off);
   }
   /// No answer lasts.
   void forget() { gap_ = 0; }
   /// A lower bound on what is left of the gap; not positive where the answer may have changed.
-  double remaining(MovingBody& a, MovingBody& b) {
+  double remaining(MovingBody& a, MovingBody& b) const {
+    constexpr double u = unit_roundoff<double>;
     if (!(gap_ > 0)) return 0;
-    motion_.advance(a, b);
-    return (gap_ - motion_.now()) * (1 - 4 * unit_roundoff<double>);
+    const ReferencePose &to_a = a.present_pose(), &to_b = b.present_pose();
+    const Vec3<double> shift = (to_a.centre - a_.centre) - (to_b.centre - b_.centre);
+    const double moved = shift.norm() + rotation_difference(a_, to_a) * a.extent().radius +
+                         rotation_difference(b_, to_b) * b.extent().radius;
+    const double nearer = moved * (1 + 32 * u) +
+                          (a_.error_bound + to_a.error_bound + b_.error_bound + to_b.error_bound);
+    return (gap_ - nearer * (1 + 4 * u)) * (1 - 4 * u);
   }
 
  private:
-  RelativeMotionBound motion_;
+  ReferencePose a_, b_;
   double gap_ = 0;
 };
 

@@ -14,7 +14,6 @@
 #include <cstddef>
 #include <span>
 
-#include "traversal/descent.hpp"
 #include "traversal/node_pair.hpp"
 #include "traversal/queries/candidate.hpp"
 #include "traversal/workspace.hpp"

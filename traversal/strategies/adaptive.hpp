@@ -29,7 +29,6 @@
 #include "traversal/fronts.hpp"
 #include "traversal/strategies/adaptive_prices.hpp"
 #include "traversal/strategies/last_answer.hpp"
-#include "traversal/strategies/longest_list.hpp"
 #include "traversal/strategies/margins.hpp"
 #include "traversal/strategies/observed_step.hpp"
 #include "traversal/strategies/sphere_test.hpp"

@@ -12,7 +12,6 @@
 #include <string_view>
 
 #include "traversal/front.hpp"
-#include "traversal/strategies/longest_list.hpp"
 
 namespace bvlab {
 

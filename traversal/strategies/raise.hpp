@@ -28,7 +28,6 @@
 #include <algorithm>
 #include <string_view>
 
-#include "traversal/strategies/longest_list.hpp"
 #include "traversal/strategies/rising_front.hpp"
 
 namespace bvlab {

@@ -17,29 +17,19 @@
 
 namespace bvlab {
 
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
-inline constexpr bool sixteen_in_one_register = native_width<float> == 16;
-#else
-inline constexpr bool sixteen_in_one_register = false;
-#endif
-
 using SixteenLanes = Batch<float, (native_width<float> < 16 ? native_width<float> : 16)>;
-
-namespace detail {
-inline constexpr std::size_t width_of_part = SixteenLanes::size();
-}
 
 /// Number i in lanes 4 i to 4 i + 3. Here and below, four numbers are 16-byte aligned,
 /// sixteen 64-byte aligned.
 [[gnu::always_inline]] inline SixteenLanes each_of_four(const float* four,
                                                         [[maybe_unused]] std::size_t part) {
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
-  if constexpr (sixteen_in_one_register) {
+  if constexpr (SixteenLanes::size() == 16) {
     const __m512i index = _mm512_set_epi32(3, 3, 3, 3, 2, 2, 2, 2, 1, 1, 1, 1, 0, 0, 0, 0);
     return SixteenLanes(_mm512_permutexvar_ps(index, _mm512_castps128_ps512(_mm_load_ps(four))));
   }
 #endif
-  constexpr std::size_t W = detail::width_of_part;
+  constexpr std::size_t W = SixteenLanes::size();
   if constexpr (W <= 4)
     return SixteenLanes(four[W * part / 4]);
   else
@@ -50,10 +40,10 @@ inline constexpr std::size_t width_of_part = SixteenLanes::size();
 [[gnu::always_inline]] inline SixteenLanes four_repeated(const float* four,
                                                          [[maybe_unused]] std::size_t part) {
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
-  if constexpr (sixteen_in_one_register)
+  if constexpr (SixteenLanes::size() == 16)
     return SixteenLanes(_mm512_broadcast_f32x4(_mm_load_ps(four)));
 #endif
-  constexpr std::size_t W = detail::width_of_part;
+  constexpr std::size_t W = SixteenLanes::size();
   if constexpr (W <= 4)
     return SixteenLanes(four + W * part % 4, stdx::element_aligned);
   else
@@ -61,7 +51,7 @@ inline constexpr std::size_t width_of_part = SixteenLanes::size();
 }
 
 [[gnu::always_inline]] inline SixteenLanes of_sixteen(const float* lanes, std::size_t part) {
-  return SixteenLanes(lanes + detail::width_of_part * part, stdx::vector_aligned);
+  return SixteenLanes(lanes + SixteenLanes::size() * part, stdx::vector_aligned);
 }
 
 [[gnu::always_inline]] inline NodesOfLanes each_of_four(const std::uint32_t* four) {

@@ -240,7 +240,8 @@ class WideMargins {
       } else {
         const Candidate candidate{&a, &b, crossing->a, crossing->b, 0};
         counter.primitives(1);
-        decide(p, make_query(p).primitives(std::span(&candidate, 1)).satisfied, 0);
+        auto query = make_query(static_cast<std::uint32_t>(p), scene.pairs[p]);
+        decide(p, query.primitives(std::span(&candidate, 1)).satisfied, 0);
       }
     });
     test();

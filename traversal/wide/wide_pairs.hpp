@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -47,7 +48,8 @@ class WidePairs {
   const TriangleMesh& mesh(std::size_t i) const { return *meshes_[i]; }
 
   void put(std::uint32_t slot, const ObjectPair& pair) {
-    if (slot >= pairs_.size()) pairs_.resize(slot + 1), memory_.resize(slot + 1);
+    if (slot >= most_pairs) throw std::length_error("wide trees: more than 2^30 pairs of bodies");
+    if (slot >= pairs_.size()) memory_.resize(slot + 1), pairs_.resize(slot + 1);
     pairs_[slot] = pair;
   }
   void drop(std::uint32_t slot) { memory_.forget(slot); }
@@ -89,51 +91,23 @@ class WidePairs {
     memory_.require(bodies_[i], poses_[i]);
   }
 
-  /// Queries the pairs in `slots` as `worker`, which is below the number of threads: calls
-  /// `make_query(slot, pair)` and `take(slot, pair, query)`. A second query may be made for a pair,
-  /// to test triangles that a Memory kept; it is never passed to `take`.
+  /// Queries the pairs in `slots` as worker `number`, which is below the number of threads: decides
+  /// some by early tests, and traverses the rest. Calls `make_query(slot, pair)` and `take(slot,
+  /// pair, query)`. A second query may be made for a pair, to test triangles that a Memory kept; it
+  /// is never passed to `take`.
   template <class Slots, class Counter, class MakeQuery, class Take>
-  void run(const Slots& slots, std::size_t worker, Counter& counter, MakeQuery&& make_query,
+  void run(const Slots& slots, std::size_t number, Counter& counter, MakeQuery&& make_query,
            Take&& take) {
     using Query = std::remove_cvref_t<decltype(make_query(0, pairs_[0]))>;
-    const auto make = [&](std::size_t p) {
-      return make_query(static_cast<std::uint32_t>(p), pairs_[p]);
-    };
-    const auto give = [&](std::size_t p, const Query& query) {
-      take(static_cast<std::uint32_t>(p), pairs_[p], query);
-    };
-    query_pairs<Query>(slots, workers_[worker], counter, make, give);
-  }
-
-  const std::vector<ObjectPair>& pairs() const { return pairs_; }
-  /// Entries of all fronts, or of one pair's. An entry is a step's pair of nodes with the lanes it
-  /// opened, or a triangle against a leaf.
-  std::size_t front_size() const { return memory_.front_size(); }
-  std::size_t front_size(std::uint32_t slot) const { return memory_.front_size(slot); }
-
- private:
-  static constexpr std::size_t at_once = 2;
-
-  /// What a thread needs for itself, in cache lines of its own.
-  struct alignas(128) Worker {
-    std::array<WideWorkspace, at_once> workspaces;
-    PairSieve sieve;
-  };
-
-  void move(std::size_t i) { memory_.move(i, bodies_[i], poses_[i], culling_, *origin_); }
-
-  /// Decides pairs by early tests, and traverses the rest.
-  template <class Query, class Slots, class Counter, class MakeQuery, class Take>
-  void query_pairs(const Slots& slots, Worker& worker, Counter& counter, MakeQuery& make_query,
-                   Take& take) {
     static_assert(for_wide_trees<Query>(),
                   "wide trees cull by `disjoint`: a query says `culls_disjoint`, or wants a bound");
+    Worker& worker = workers_[number];
     PairSieve& sieve = worker.sieve;
     sieve.begin(slots.size());
-    const auto repeat = [&](std::size_t p) {
-      auto query = make_query(p);
+    const auto repeat = [&](std::uint32_t p) {
+      Query query = make_query(p, pairs_[p]);
       memory_.repeat(p, query);
-      take(p, query);
+      take(p, pairs_[p], query);
     };
     for (const std::uint32_t p : slots)
       if (memory_.template answer_valid<Query>(p, pairs_[p]))
@@ -150,11 +124,29 @@ class WidePairs {
           [&](std::size_t p, double gap) { memory_.apart(p, pairs_[p], gap); }));
       for (const std::int32_t p : sieve.decided()) {
         counter.queried(before);
-        repeat(static_cast<std::size_t>(p));
+        repeat(static_cast<std::uint32_t>(p));
       }
     }
     traverse_interleaved<Query>(sieve.undecided(), worker, before, counter, make_query, take);
   }
+
+  const std::vector<ObjectPair>& pairs() const { return pairs_; }
+  /// Entries of all fronts, or of one pair's. An entry is a step's pair of nodes with the lanes it
+  /// opened, or a triangle against a leaf.
+  std::size_t front_size() const { return memory_.front_size(); }
+  std::size_t front_size(std::uint32_t slot) const { return memory_.front_size(slot); }
+
+ private:
+  static constexpr std::size_t at_once = 2;
+  static constexpr std::uint32_t most_pairs = 1u << 30;  // early tests index pairs by 31 bits
+
+  /// What a thread needs for itself, in cache lines of its own.
+  struct alignas(128) Worker {
+    std::array<WideWorkspace, at_once> workspaces;
+    PairSieve sieve;
+  };
+
+  void move(std::size_t i) { memory_.move(i, bodies_[i], poses_[i], culling_, *origin_); }
 
   /// `before`: n_v + n_p before the first test of these pairs.
   template <class Query, class Counter, class MakeQuery, class Take>
@@ -178,7 +170,7 @@ class WidePairs {
       const auto [i, j] = pairs_[p];
       memory_.require(bodies_[i], poses_[i]), memory_.require(bodies_[j], poses_[j]);
       now.pair = p;
-      now.query.emplace(make_query(p));
+      now.query.emplace(make_query(p, pairs_[p]));
       now.traversal.emplace(bodies_[i], bodies_[j], *now.query, counter,
                             worker.workspaces[static_cast<std::size_t>(&now - all.data())],
                             memory_.template start<Query>(p, pairs_[p]));
@@ -196,7 +188,7 @@ class WidePairs {
         }
         counter.queried(before);
         memory_.remember(now.pair, pairs_[now.pair], *now.query, now.traversal->recorder());
-        take(now.pair, *now.query);
+        take(now.pair, pairs_[now.pair], *now.query);
         if (next < near.size()) {
           begin(k++);
         } else {
