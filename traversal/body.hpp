@@ -5,8 +5,7 @@
 /// Several threads may query a body at once (see once.hpp), but it must be moved by one thread,
 /// while no other uses it.
 ///
-/// In the world frame all bodies are posed about a common origin, so that a volume posed for one
-/// pair serves all others. In a body's frame no volume is posed here (see frame.hpp).
+/// In a body's frame no volume is posed here (see frame.hpp).
 #pragma once
 
 #include <cstdint>
@@ -39,8 +38,8 @@ class Body : public MovingBody {
   /// Returns whether pose or origin changed. The first call allocates if make_room has not been
   /// called.
   bool move(const Pose& pose, const Vec3<double>& origin) {
+    if (triangles_.empty()) make_room();  // before the pose is set, since it may throw
     if (!set_pose(pose, origin)) return false;
-    if (triangles_.empty()) make_room();
     if (epoch_ == 0 || epoch_ >= never_done) forget();
     if (frame_ == Frame::world) stamp_ = epoch_;
     return true;
@@ -51,8 +50,8 @@ class Body : public MovingBody {
     if (frame_ == Frame::world) volumes_.resize(hierarchy_->size());
     volumes_posed_.make_room(hierarchy_->sibling_groups(), sharing_);
     if (frame_ == Frame::body) volumes_posed_.all_done(posed_for_good);
-    triangles_.resize(hierarchy_->primitives());
     triangles_posed_.make_room(hierarchy_->primitives(), sharing_);
+    triangles_.resize(hierarchy_->primitives());
   }
 
   /// Sets whether several threads use the body from now on.

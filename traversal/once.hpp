@@ -45,13 +45,17 @@ namespace detail {
 }
 }  // namespace detail
 
-/// Calls work() unless that has been done under this stamp; returns whether it was called.
+/// Calls work() unless that has been done under this stamp; returns whether it was called. If
+/// work() throws, it is not done, and another thread may do it.
 template <class Work>
-[[gnu::noinline]] bool once(std::uint32_t& done, std::uint32_t stamp, Work work) {
+[[gnu::noinline]] bool once(std::uint32_t& done, std::uint32_t stamp, Work work) try {
   if (!detail::take_work(done, stamp)) return false;
   work();
   std::atomic_ref(done).store(stamp, std::memory_order_release);
   return true;
+} catch (...) {
+  std::atomic_ref(done).store(never_done, std::memory_order_release);
+  throw;
 }
 /// The same, without atomic operations for one thread.
 template <class Work>

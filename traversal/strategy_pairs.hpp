@@ -45,7 +45,7 @@ class StrategyPairs {
   const TriangleMesh& mesh(std::size_t i) const { return bodies_.mesh(i); }
 
   void put(std::uint32_t slot, const ObjectPair& pair) {
-    if (slot >= pairs_.size()) pairs_.resize(slot + 1), strategies_.resize(slot + 1, prototype_);
+    if (slot >= pairs_.size()) strategies_.resize(slot + 1, prototype_), pairs_.resize(slot + 1);
     pairs_[slot] = pair;
   }
   void drop(std::uint32_t slot) { strategies_[slot] = prototype_; }

@@ -54,6 +54,10 @@ class WorldOf {
   /// made before the first of them is taken. With more, all of them are; `make_query` is called on
   /// any thread, concurrently, and may take the slot, too: `make_query(pair, slot)`. `take` and
   /// `leave` are called on the caller's thread.
+  ///
+  /// After an exception of a query or of `take`, the pairs that were not answered are queried in
+  /// the next update. `leave` must not throw. Where the lists of pairs themselves cannot be
+  /// allocated, the world must not be used again.
   template <class Counter, class MakeQuery, class Take, class Leave>
   void update(Counter& counter, MakeQuery&& make_query, Take&& take, Leave&& leave) {
     const auto make = [&make_query](std::uint32_t slot, const ObjectPair& pair) {
