@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// One run from a front with margins: tests the entries that are due, measures their gaps anew, and
-/// opens culled pairs with small gaps into pairs with wider ones. Where measuring does not pay
-/// (measuring_rule.hpp), a run only tests. Entries that
-/// are tested without measuring are due again in the next run.
+/// opens culled pairs with small gaps into pairs with wider ones. A run that does not measure
+/// (measuring_rule.hpp) only tests, and the entries it has tested are due again in the next run.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "traversal/node_pair.hpp"
 #include "traversal/queries/query.hpp"
 #include "traversal/strategies/margin_front.hpp"
 #include "traversal/strategies/measuring_rule.hpp"
@@ -102,18 +102,23 @@ class MarginSweep : public FrontDefaults {
 
   /// Whether opening a culled pair saves tests. An entry with a spare gap of g costs one test in
   /// every g / step-th run, or in every run. A pair with an inner node, opened, becomes about two
-  /// such entries (more in wide trees), with gaps wider by about a quarter of the size of the
-  /// opened node. A pair of leaves, whose triangles cost as much as `triangle_cost` volumes, has
-  /// triangles farther apart by about half of both sizes. Where gaps last for many runs anyway,
-  /// opening does not pay.
+  /// such entries (more in wide trees), with gaps wider by about a tenth of the size of the opened
+  /// node. A pair of leaves, whose triangles cost as much as `triangle_cost` volumes, has triangles
+  /// farther apart by about half of both sizes. Where gaps last for many runs anyway, opening does
+  /// not pay.
+  ///
+  /// A tenth: bunnies take as long with .25, but where large triangles meet small ones (published
+  /// planning problems) fronts then grow up to ten times as long, and runs take up to four times
+  /// as long. With .05, slow bodies take longer.
   template <class Query, class Node>
   bool opens(const Query& query, const Node& a, const Node& b, double gap) {
     if (!measures_) return false;
-    constexpr double triangle_cost = 3, leaf_gain = 0.5, inner_gain = 0.25, long_enough = 4;
+    constexpr double triangle_cost = 3, leaf_gain = 0.5, inner_gain = 0.1, long_enough = 4;
     const double spare = gap - query.limit();
     // Chosen by index: a branch would be mispredicted.
     const std::size_t both_leaves = (a.count != 0) & (b.count != 0);
-    const std::array<double, 2> size{static_cast<double>(std::max(a.size, b.size)),
+    const auto opened = into_larger(a, b) == Descent::a ? a.size : b.size;
+    const std::array<double, 2> size{static_cast<double>(opened),
                                      static_cast<double>(a.size + b.size)};
     constexpr std::array gain{inner_gain, leaf_gain}, costs{2.0, 1 + triangle_cost};
     const double wider = gain[both_leaves] * size[both_leaves], cost = costs[both_leaves];
