@@ -32,7 +32,8 @@ inline void add_query_options(CLI::App& command, Variant& variant) {
   command.add_option("--query", variant.query, "see `bvlab list queries`")->capture_default_str();
   command
       .add_option("--relative-error", variant.relative_error,
-                  "largest relative error of a distance; the result is never below the exact one")
+                  "largest relative error of a distance, which is not below the exact one by more than "
+                  "rounding")
       ->check(number())
       ->capture_default_str();
 }

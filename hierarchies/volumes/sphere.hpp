@@ -5,7 +5,7 @@
 /// `enclosing` gives the smallest sphere around points (gartner1999miniball), so there is no
 /// tighter fit; `merge` is the smallest sphere around two spheres (quinlan1994efficient).
 ///
-/// Posing (C_u) takes 15 multiplications and additions, a test (C_v) 9.
+/// Posing (C_u) takes 18 multiplications and additions, a test (C_v) 9.
 #pragma once
 
 #include <algorithm>
