@@ -17,8 +17,8 @@
 /// Every choice depends on counts, never on clocks, so the same frames give the same list.
 ///
 /// A frame that begins to follow takes two to four times as long as one from scratch, and up to
-/// eight times where most boxes overlap many others (record boxes-motions-packed). There are at most
-/// two of these at first, and one more per 256 frames, however boxes move: fewer than one
+/// eight times where most boxes overlap many others (record boxes-motions-packed). There are at
+/// most two of these at first, and one more per 256 frames, however boxes move: fewer than one
 /// frame in a hundred of a long run. All others are meant to cost no more than starting over.
 #pragma once
 

@@ -31,9 +31,10 @@ inline void add_build_options(CLI::App& command, Variant& variant) {
 inline void add_query_options(CLI::App& command, Variant& variant) {
   command.add_option("--query", variant.query, "see `bvlab list queries`")->capture_default_str();
   command
-      .add_option("--relative-error", variant.relative_error,
-                  "largest relative error of a distance, which is not below the exact one by more than "
-                  "rounding")
+      .add_option(
+          "--relative-error", variant.relative_error,
+          "largest relative error of a distance, which is not below the exact one by more than "
+          "rounding")
       ->check(number())
       ->capture_default_str();
 }

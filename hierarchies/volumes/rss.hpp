@@ -4,8 +4,8 @@
 /// edges: the usual choice for distance queries.
 ///
 /// The set is defined by the sides exactly as stored; correctness does not need them orthonormal,
-/// only tightness does. Posing (C_u) takes about 50 multiplications and additions, a test (C_v) about
-/// 150.
+/// only tightness does. Posing (C_u) takes about 50 multiplications and additions, a test (C_v)
+/// about 150.
 #pragma once
 
 #include <algorithm>
