@@ -280,6 +280,37 @@ TYPED_TEST(FrontLaws, OnlyGapsThatLastAreMeasured) {
   EXPECT_GT(runs_that_measured[1], 50);
 }
 
+/// Beside large triangles margins open the small nodes, and only where that widens gaps.
+TYPED_TEST(FrontLaws, LargeTrianglesDoNotLengthenFrontsOfMargins) {
+  using B = typename TestFixture::B;
+  TriangleMesh ground;
+  ground.vertices = {{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}};
+  ground.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const Hierarchy<TypeParam> tree(ground, builds::TopDownPrincipal::topology(ground, 1));
+  Body<TypeParam> below(ground, tree);
+  below.move(Pose{}, Vec3<double>::Zero());
+  Margins margins;
+  SeparationList list;
+  std::size_t of_margins = 0, of_list = 0;
+  NotCounting counter;
+  for (int frame = 0; frame < 200; ++frame) {
+    Pose pose = at(0.01 * frame, 0.01 * frame);
+    pose.translation[2] = 1.5 + 0.3 * std::sin(0.1 * frame);
+    this->a_.move(pose, Vec3<double>::Zero());
+    const auto touching = [&](auto&& strategy) {
+      Touching query;
+      strategy.run(BodyPair<B, TypeParam, Touching, NotCounting>(below, this->a_, query, counter,
+                                                                 this->workspace_));
+      return query.touching();
+    };
+    const bool expected = touching(Recursive());
+    ASSERT_EQ(touching(margins), expected) << "in frame " << frame;
+    ASSERT_EQ(touching(list), expected) << "in frame " << frame;
+    of_margins += margins.front_size(), of_list += list.front_size();
+  }
+  EXPECT_LT(of_margins, 4 * of_list);
+}
+
 /// A query that one hit ends and that says which.
 class FirstHit : public Touching {
  public:

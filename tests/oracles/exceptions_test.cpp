@@ -9,6 +9,7 @@
 #include "hierarchies/wide/obb_sibling_test.hpp"
 #include "hierarchies/wide/slab_box_sibling_test.hpp"
 #include "tests/oracles/wide_scenes.hpp"
+#include "traversal/once.hpp"
 #include "traversal/strategies.hpp"
 #include "traversal/world.hpp"
 
@@ -123,6 +124,16 @@ void expect_wide_pairs_start_anew() {
 TEST(Exceptions, WidePairsStartAnew) {
   expect_wide_pairs_start_anew<SlabBox<float>, 8, SiblingsKernel>();
   expect_wide_pairs_start_anew<Obb<float>, 4, MixedKernel>();
+}
+
+TEST(Once, WorkThatThrowsIsDoneByTheNext) {
+  for (const Sharing sharing : {Sharing::one_thread, Sharing::several_threads}) {
+    std::uint32_t done = never_done;
+    EXPECT_THROW(once(done, 1, sharing, [] { throw std::runtime_error("once"); }),
+                 std::runtime_error);
+    EXPECT_TRUE(once(done, 1, sharing, [] {}));
+    EXPECT_FALSE(once(done, 1, sharing, [] {}));
+  }
 }
 
 }  // namespace
