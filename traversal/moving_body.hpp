@@ -33,7 +33,8 @@ class MovingBody {
     return present_pose_;
   }
   /// An upper bound on the length of any point's path through the poses of the requests so far, in
-  /// units of the world. It never falls, while that of LastingAnswer does when a body moves back.
+  /// units of the world. It never falls, while a bound from reference poses (lasting_answer.hpp)
+  /// does when a body moves back.
   double displacement_bound() {
     follow();
     return displacement_bound_;

@@ -38,6 +38,7 @@ class NearPairs {
         neighbours_(objects),
         moved_(objects, Moved::no),
         present_(objects, 0) {
+    movers_.reserve(objects);  // so that `move` never throws
     std::unordered_map<const TriangleMesh*, std::uint32_t> known;
     for (std::size_t i = 0; i < objects; ++i) {
       const auto [at, fresh] = known.try_emplace(&mesh(i), known.size());

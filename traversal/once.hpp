@@ -67,9 +67,9 @@ bool once(std::uint32_t& done, std::uint32_t stamp, Sharing sharing, Work work) 
   return true;
 }
 
-/// The same for each of many pieces of work. Work done by a single thread has stamps of its own,
-/// which are read as plain integers: an atomic read, or a check of `Sharing`, makes the loops that
-/// use this a tenth slower.
+/// The same for each of many pieces of work, which must not throw. Work done by a single thread has
+/// stamps of its own, which are read as plain integers: an atomic read, or a check of `Sharing`,
+/// makes the loops that use this a tenth slower.
 class OnceEach {
  public:
   void make_room(std::size_t count, Sharing sharing) {

@@ -55,9 +55,9 @@ class WorldOf {
   /// any thread, concurrently, and may take the slot, too: `make_query(pair, slot)`. `take` and
   /// `leave` are called on the caller's thread.
   ///
-  /// After an exception of a query or of `take`, the pairs that were not answered are queried in
-  /// the next update. `leave` must not throw. Where the lists of pairs themselves cannot be
-  /// allocated, the world must not be used again.
+  /// After an exception of a query or of `take`, the next update queries all pairs of this one
+  /// again, those that were taken too. After any other (std::bad_alloc, std::length_error) the
+  /// world must not be used again. `leave` must not throw.
   template <class Counter, class MakeQuery, class Take, class Leave>
   void update(Counter& counter, MakeQuery&& make_query, Take&& take, Leave&& leave) {
     const auto make = [&make_query](std::uint32_t slot, const ObjectPair& pair) {

@@ -33,7 +33,7 @@ inline void add_query_options(CLI::App& command, Variant& variant) {
   command
       .add_option(
           "--relative-error", variant.relative_error,
-          "largest relative error of a distance, which is not below the exact one by more than "
+          "largest relative error of a distance; it is not below the exact one by more than "
           "rounding")
       ->check(number())
       ->capture_default_str();

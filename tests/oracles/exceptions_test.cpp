@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A query or a caller that throws loses no later answer: frames after an exception are answered as
-/// by brute force, whatever is kept from frame to frame.
+/// by brute force, whatever is kept from frame to frame. Work that throws is done by the next who
+/// asks.
 #include <gtest/gtest.h>
 
 #include <stdexcept>

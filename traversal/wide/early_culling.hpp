@@ -26,7 +26,7 @@ class PairSieve {
 
   /// Empties the sieve and reserves `pairs` pairs, plus one register.
   void begin(std::size_t pairs) {
-    if (undecided_.size() < pairs + width)
+    if (decided_.size() < pairs + width)
       undecided_.resize(pairs + width), decided_.resize(pairs + width);
     undecided_count_ = decided_count_ = 0;
   }

@@ -138,7 +138,7 @@ class WidePairs {
 
  private:
   static constexpr std::size_t at_once = 2;
-  static constexpr std::uint32_t most_pairs = 1u << 30;  // early tests index pairs by 31 bits
+  static constexpr std::uint32_t most_pairs = 1u << 30;  // early tests gather at 2 p, an int32
 
   /// What a thread needs for itself, in cache lines of its own.
   struct alignas(128) Worker {
