@@ -294,8 +294,8 @@ TYPED_TEST(FrontLaws, LargeTrianglesDoNotLengthenFrontsOfMargins) {
   std::size_t of_margins = 0, of_list = 0;
   NotCounting counter;
   for (int frame = 0; frame < 200; ++frame) {
-    Pose pose = at(0.01 * frame, 0.01 * frame);
-    pose.translation[2] = 1.5 + 0.3 * std::sin(0.1 * frame);
+    Pose pose = at(0.1 * frame, 0.1 * frame);
+    pose.translation[2] = 1.2 + 0.3 * std::sin(0.1 * frame);
     this->a_.move(pose, Vec3<double>::Zero());
     const auto touching = [&](auto&& strategy) {
       Touching query;
