@@ -18,6 +18,9 @@ template <class B, class V, class Query, class Counter, class Front>
 TraversalStatistics traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
                              Workspace& workspace, Front&& front) {
   using Recorder = FrontRecorder<std::remove_reference_t<Front>>;
+  static_assert(
+      !requires { front.stays(std::size_t(), EntryState::culled, 0.0); },
+      "a front's `stays` is now named `keep`: `stays` would never be called");
   return Traversal<GatheredPair<B, V>, Query, Counter, Recorder>(a, b, query, counter, workspace,
                                                                  front)
       .run();
