@@ -44,7 +44,8 @@ class AllPairsOf {
   /// `make_query(p)` returns the query for pair p (an index into `pairs()`); `take(p, query)`
   /// receives it with its answer: StrategyPairs in the order of pairs, WidePairs in any order. More
   /// queries may be made than are taken: to test roots of all pairs at once, or triangles that a
-  /// pair kept.
+  /// pair kept. After an exception, of a query, of `take` or of an allocation, later frames are
+  /// answered as if it had not occurred.
   ///
   /// With several threads, all queries run before the first `take`, the order is that of pairs, and
   /// `make_query` is called on any thread, concurrently. Answers, contacts and counts equal those

@@ -16,14 +16,10 @@ bool find_first_bound(Traversal& traversal) {
     const auto& b = traversal.b().node(pair.b);
     if (a.count && b.count) break;
     const bool by_b = into_larger(a, b) == Descent::b;
-    const auto child = [&](std::uint32_t k) {
-      return by_b ? NodePair{pair.a, b.first + k} : NodePair{a.first + k, pair.b};
-    };
-    NodePair nearest = child(0);
-    auto least = traversal.gap(nearest);
-    for (std::uint32_t k = 1; k < (by_b ? b.children : a.children); ++k)
-      if (const auto gap = traversal.gap(child(k)); gap < least) least = gap, nearest = child(k);
-    pair = nearest;
+    pair = traversal.nearest(by_b ? b.children : a.children, [&, was = pair](std::size_t k) {
+      const auto child = static_cast<std::uint32_t>(k);
+      return by_b ? NodePair{was.a, b.first + child} : NodePair{a.first + child, was.b};
+    });
   }
   traversal.hold(pair);
   return traversal.flush();

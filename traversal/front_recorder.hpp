@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include "traversal/first_bound.hpp"
@@ -108,11 +109,21 @@ class FrontSweep {
     traversal_.count_tests(count);
     return pair().template test<Traversal::wanted>(step, query(), traversal_.counter()).apart;
   }
-  /// A lower bound on the distance of the two volumes.
-  auto gap(const NodePair& nodes) {
-    require(nodes);
-    traversal_.count_tests(1);
-    return pair().gap(nodes, traversal_.counter());
+  /// Of the pairs nodes(0), nodes(1), ..., the one whose volumes are nearest to each other, by
+  /// lower bounds on their distances: the first if there are several.
+  template <class Nodes>
+  NodePair nearest(std::size_t count, Nodes&& nodes) {
+    NodePair nearest = nodes(0);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t next = 0, some; next < count; next += some) {
+      some = std::min(W, count - next);
+      Step step = gathered(some, [&](std::size_t i) { return nodes(next + i); });
+      traversal_.count_tests(some);
+      pair().template test<Traversal::wanted>(step, query(), traversal_.counter());
+      for (std::size_t i = 0; i < some; ++i)
+        if (step.pairs.gap(i) < least) least = step.pairs.gap(i), nearest = step.pairs[i];
+    }
+    return nearest;
   }
 
   /// `hold` buffers the primitive pairs of two leaves, from the entry in `slot` (Outcome::none: no

@@ -89,15 +89,6 @@ class GatheredPair {
         return {culled_where_stored(step.pairs, stored_volumes(), step.count, query)};
     return {step.pairs.culled(posed_volumes(), step.count, query)};
   }
-  /// A lower bound on the distance of the two volumes, which have been required.
-  template <class Counter>
-  auto gap(const NodePair& pair, Counter& counter) const {
-    count_posed(1, counter);
-    if constexpr (PlacedRelatively<V>)
-      if (placement_) return stored_volumes().gap(pair);
-    return posed_volumes().gap(pair);
-  }
-
   /// Replaces the pairs in `lanes` by pairs of their children; of two leaves, the primitives are
   /// held for a test. Entries are told that they are replaced, or kept as near.
   template <bool kGaps, class Entries, class Recorder, class Leaves, class Query, class Counter>

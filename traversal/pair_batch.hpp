@@ -38,10 +38,6 @@ template <bool kGaps, class P, class Query, class T>
                                                          T* gaps) {
   return culled<kGaps>(p, q, query, gaps);
 }
-template <class P>
-[[gnu::noinline]] auto gap_between(const P& p, const P& q) {
-  return gap(p, q);
-}
 
 /// The same for as many pairs of nodes as `Some` has lanes.
 template <class Some, bool kGaps, class P, class Query, class T>
@@ -58,10 +54,6 @@ template <bool kGaps, class V, class Query, class T>
                                                 Query& query, T* gaps) {
   const Posed<V> in_b = posed(a, placement);
   return culled<kGaps>(in_b, static_cast<const Posed<V>&>(as_stored<V>(b)), query, gaps);
-}
-template <class V>
-[[gnu::noinline]] auto gap_in_b(const V& a, const V& b, const bvlab::PlacementOf<V>& placement) {
-  return gap(posed(a, placement), static_cast<const Posed<V>&>(as_stored<V>(b)));
 }
 template <class Some, bool kGaps, class V, class Query, class T>
 [[gnu::noinline, gnu::flatten]] std::uint64_t culled_of_in_b(
@@ -91,7 +83,6 @@ struct PosedVolumes {
                                               Query& query, T* gaps) const {
     return detail::culled_one<kGaps>(a[node_a], b[node_b], query, gaps);
   }
-  auto gap(const NodePair& pair) const { return detail::gap_between(a[pair.a], b[pair.b]); }
 };
 
 /// The volumes of two bodies as stored: those of a are posed into the frame of b when tested.
@@ -111,7 +102,6 @@ struct StoredVolumes {
                                               Query& query, T* gaps) const {
     return detail::culled_one_in_b<kGaps>(a[node_a], b[node_b], placement, query, gaps);
   }
-  auto gap(const NodePair& pair) const { return detail::gap_in_b(a[pair.a], b[pair.b], placement); }
 };
 
 /// B is the scalar or batch, of W lanes, in which volumes are tested.

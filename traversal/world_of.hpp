@@ -13,6 +13,8 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <mutex>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -20,6 +22,7 @@
 
 #include "traversal/answers_in_order.hpp"
 #include "traversal/near_pairs.hpp"
+#include "traversal/queries/contacts.hpp"
 
 namespace bvlab {
 
@@ -53,7 +56,8 @@ class WorldOf {
   /// A slot belongs to a pair as long as its boxes overlap. With one thread, up to two queries are
   /// made before the first of them is taken. With more, all of them are; `make_query` is called on
   /// any thread, concurrently, and may take the slot, too: `make_query(pair, slot)`. `take` and
-  /// `leave` are called on the caller's thread.
+  /// `leave` are called on the caller's thread. WorldContacts keeps a list of contacts for each
+  /// slot.
   ///
   /// After an exception of a query or of `take`, the next update queries all pairs of this one
   /// again, those that were taken too. After any other (std::bad_alloc, std::length_error) the
@@ -122,6 +126,50 @@ class TouchingPairs {
   std::vector<std::uint32_t> index_;  // the index of each slot's pair
   std::vector<ObjectPair> pairs_;
   std::vector<std::uint32_t> slots_;
+};
+
+/// The contacts of all pairs of a world. Pairs of which no body has moved keep theirs:
+///
+///   world.update(
+///       counter,
+///       [&](const ObjectPair& pair, std::uint32_t slot) { return contacts.query(pair, slot); },
+///       [](std::uint32_t, const ObjectPair&, const Contacts&) {},
+///       [&](std::uint32_t slot) { contacts.drop(slot); });
+///
+/// After an exception the contacts are incomplete until the next update.
+class WorldContacts {
+ public:
+  /// The query for the contacts of the pair in a slot. May be called on any thread; all else only
+  /// between updates, or by `leave`.
+  Contacts query(const ObjectPair& pair, std::uint32_t slot,
+                 TriangleTest test = intersect_batch<Exact>) {
+    OfPair& of_pair = [&]() -> OfPair& {
+      const std::lock_guard lock(mutex_);
+      if (slot >= of_slot_.size()) of_slot_.resize(slot + 1);
+      return of_slot_[slot];
+    }();
+    of_pair.pair = pair;
+    of_pair.contacts.clear();
+    return Contacts(of_pair.contacts, test);
+  }
+  void drop(std::uint32_t slot) {
+    if (slot < of_slot_.size()) of_slot_[slot].contacts.clear();
+  }
+  /// Calls visit(pair, contacts) for each pair that touches, in any order; contacts is a span of
+  /// Contact.
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    for (const OfPair& each : of_slot_)
+      if (!each.contacts.empty()) visit(each.pair, std::span<const Contact>(each.contacts));
+  }
+
+ private:
+  struct OfPair {
+    ObjectPair pair;
+    std::vector<Contact> contacts;
+  };
+  std::mutex mutex_;
+  std::deque<OfPair> of_slot_;  // a deque: queries refer to its elements while it grows
 };
 
 }  // namespace bvlab

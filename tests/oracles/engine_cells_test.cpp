@@ -43,12 +43,14 @@ void expect_same(const ReplayResult& found, const ReplayResult& truth, const std
 
 void expect_consistent_counts(const ReplayResult& found, const Variant& variant,
                               const std::string& where) {
-  if (variant.frame == "body")
+  if (variant.frame == "body") {
     EXPECT_EQ(found.n_u, found.n_v) << where;
-  else
+  } else {
     EXPECT_LE(found.n_u, 2u * variant.fan_out * found.n_v) << where;
-  if (variant.strategy == "separation-list" || variant.strategy == "deferred")
+  }
+  if (variant.strategy == "separation-list" || variant.strategy == "deferred") {
     EXPECT_GT(found.front, 0) << where;
+  }
 }
 
 struct Cells : testing::TestWithParam<std::string> {};

@@ -245,23 +245,18 @@ struct Found {
 template <class World>
 Found contacts_of(World& world, const Script& script) {
   Found found;
-  std::vector<std::vector<Contact>> of_slot(hostile_bodies * hostile_bodies);
-  std::vector<std::optional<ObjectPair>> pair_of(of_slot.size());
-  for (std::size_t frame = 0; frame < script.size(); ++frame) {
+  WorldContacts contacts;
+  for (std::uint32_t frame = 0; frame < script.size(); ++frame) {
     follow(world, script, frame);
     world.update(
         found.counter,
-        [&](const ObjectPair&, std::uint32_t slot) {
-          of_slot[slot].clear();
-          return Contacts(of_slot[slot]);
-        },
-        [&](std::uint32_t slot, const ObjectPair& pair, const Contacts&) { pair_of[slot] = pair; },
-        [&](std::uint32_t slot) { pair_of[slot].reset(), of_slot[slot].clear(); });
+        [&](const ObjectPair& pair, std::uint32_t slot) { return contacts.query(pair, slot); },
+        [](std::uint32_t, const ObjectPair&, const Contacts&) {},
+        [&](std::uint32_t slot) { contacts.drop(slot); });
     found.queried += world.queried();
-    for (std::size_t slot = 0; slot < of_slot.size(); ++slot)
-      for (const auto& [a, b] : of_slot[slot])
-        if (const auto& pair = pair_of[slot])
-          found.contacts.push_back({static_cast<std::uint32_t>(frame), pair->i, pair->j, a, b});
+    contacts.for_each([&](const ObjectPair& pair, std::span<const Contact> triangles) {
+      for (const auto& [a, b] : triangles) found.contacts.push_back({frame, pair.i, pair.j, a, b});
+    });
   }
   std::sort(found.contacts.begin(), found.contacts.end());
   return found;

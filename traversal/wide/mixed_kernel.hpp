@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <type_traits>
 
 #include "hierarchies/wide/block_hierarchy.hpp"
 #include "traversal/wide/block_triangles.hpp"
@@ -79,10 +80,28 @@ struct MixedKernel {
       std::uint64_t used;
 
       std::uint64_t lanes() const { return used; }
+      struct Unused {};
+      struct LastPosed {
+        std::size_t child = 4;
+        Over<V, S> volume;
+      };
+      /// Where a register has fewer than four lanes, several hold the same child of a: it is posed
+      /// once.
+      [[no_unique_address]] mutable std::conditional_t<(S::size() < 4), LastPosed, Unused> last =
+          {};
       [[gnu::always_inline]] Over<V, S> posed(std::size_t part) const {
-        return SiblingTest::in_lanes(
-            volumes([&](std::size_t k) { return each_of_four(row_a.volume[k].data(), part); }),
-            pair_frame.frames_.change[1]);
+        const auto pose = [&]() __attribute__((always_inline)) {
+          return SiblingTest::in_lanes(
+              volumes([&](std::size_t k) { return each_of_four(row_a.volume[k].data(), part); }),
+              pair_frame.frames_.change[1]);
+        };
+        if constexpr (S::size() >= 4) {
+          return pose();
+        } else {
+          const std::size_t child = part * S::size() / 4;
+          if (child != last.child) last = {child, pose()};
+          return last.volume;
+        }
       }
       [[gnu::always_inline]] Over<V, S> others(std::size_t part) const {
         return volumes([&](std::size_t k) { return four_repeated(row_b.volume[k].data(), part); });
