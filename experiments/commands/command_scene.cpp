@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// `bvlab scene NAME`: writes a built-in scene as a trace, and its meshes.
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "experiments/commands/commands.hpp"
@@ -41,15 +43,37 @@ std::vector<NamedMesh> meshes_of(const Arguments& arguments, const std::string& 
   return meshes;
 }
 
-/// Writes 0-bunny.off, 1-torus.off ...: in the order in which replay takes them.
+/// 0-bunny.off, 1-torus.off ...: in the order in which replay takes them.
+std::vector<std::filesystem::path> places_of_meshes(const std::string& directory,
+                                                    const std::vector<std::string>& names) {
+  std::vector<std::filesystem::path> places;
+  if (directory.empty()) return places;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    places.push_back(std::filesystem::path(directory) /
+                     (std::to_string(i) + "-" + names[i] + ".off"));
+  return places;
+}
+
+/// Throws Unusable where a mesh would replace one that is read, or the trace.
+void require_places_of_meshes(const std::string& directory, const std::vector<std::string>& names,
+                              std::span<const NamedFile> read, const NamedFile& trace) {
+  // In a folder that is still to be made there is nothing to replace.
+  std::error_code error;
+  if (!std::filesystem::exists(directory, error)) return;
+  std::vector<NamedFile> written{trace};
+  for (const auto& place : places_of_meshes(directory, names))
+    written.push_back({"--meshes", place});
+  require_places(read, written);
+}
+
 void write_meshes(const std::string& directory, const std::vector<std::string>& names,
                   const std::vector<TriangleMesh>& meshes) {
+  if (directory.empty()) return;
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) throw Unusable(directory, "cannot be made: " + error.message());
-  for (std::size_t i = 0; i < meshes.size(); ++i)
-    write_off(std::filesystem::path(directory) / (std::to_string(i) + "-" + names[i] + ".off"),
-              meshes[i]);
+  const auto places = places_of_meshes(directory, names);
+  for (std::size_t i = 0; i < meshes.size(); ++i) write_off(places[i], meshes[i]);
 }
 
 template <class S>
@@ -68,8 +92,9 @@ void run(const S& scene, const Arguments& arguments) {
     names.push_back(std::move(name));
     meshes.push_back(std::move(mesh));
   }
+  require_places_of_meshes(arguments.meshes, names, read, written[0]);
   const auto trace = scene.generate(extents, touches_any(meshes, scene.objects));
-  if (!arguments.meshes.empty()) write_meshes(arguments.meshes, names, meshes);
+  write_meshes(arguments.meshes, names, meshes);
   write_npy<double>(arguments.out, trace.shape, trace.data);
 }
 
@@ -150,7 +175,8 @@ void run_public(const PublicArguments& arguments) {
     names.push_back(std::move(name));
     meshes.push_back(std::move(mesh));
   }
-  if (!arguments.meshes.empty()) write_meshes(arguments.meshes, names, meshes);
+  require_places_of_meshes(arguments.meshes, names, {}, written[0]);
+  write_meshes(arguments.meshes, names, meshes);
   write_npy<double>(arguments.out, motion.trace.shape, motion.trace.data);
 }
 

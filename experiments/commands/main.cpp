@@ -9,6 +9,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "experiments/commands/commands.hpp"
@@ -55,6 +56,21 @@ std::vector<std::string> words_of(int argc, char** argv) {
   return words;
 }
 
+/// What may be left out, so that an empty value would count as none.
+constexpr std::string_view optional_texts[] = {"--out",    "--json", "--csv",    "--page", "--x3d",
+                                               "--record", "--part", "--meshes", "--from", "kind"};
+
+void refuse_empty_values(CLI::App& app) {
+  const auto not_empty = [](const std::string& value) {
+    return value.empty() ? std::string("a value is needed") : std::string();
+  };
+  for (const std::string_view name : optional_texts)
+    if (CLI::Option* option = app.get_option_no_throw(std::string(name)))
+      option->check(not_empty, "");
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
+    refuse_empty_values(*command);
+}
+
 int parsed(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(words_of(argc, argv));
@@ -90,6 +106,7 @@ int main(int argc, char** argv) {
     add_run(app);
     add_scene(app);
     add_list(app);
+    refuse_empty_values(app);
     const int exit = parsed(app, argc, argv);
     flush_output();
     return exit;

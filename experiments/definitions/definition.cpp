@@ -372,7 +372,9 @@ const std::vector<Parameter>& parameters() {
               "children per node, at most: 2, 4, 8, 16; or native, a register's lanes"},
              {"frame", "world", "where volumes are compared; see `bvlab list frames`"},
              {"kernel", "gathered", "how lanes are filled; see `bvlab list kernels`"},
-             {"configuration", "", "chooses volume, tree, build and all else; see `bvlab list`"},
+             {"configuration", "",
+              "sets volume, strategy, fan_out, frame, kernel, build, leaf_size and fit, which it "
+              "excludes; see `bvlab list`"},
              {"peer", "", "another library in place of ours; see `bvlab list peers`"}})
       all.push_back(each);
     return all;

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/definitions/figure_expression.hpp"
 #include "experiments/files/unusable.hpp"
 
 namespace bvlab {
@@ -116,16 +117,6 @@ class FigureCheck {
   const std::string& file_;
 };
 
-/// Names in an expression; what stands in quotes, and the letters of numbers, are none.
-std::vector<std::string> names_in(const std::string& text) {
-  static const std::regex token(R"("[^"]*"|'[^']*'|[0-9.]+(?:[eE][-+]?[0-9]+)?|([A-Za-z_]\w*))");
-  static const std::set<std::string> words{"and", "or", "not", "in", "True", "False"};
-  std::vector<std::string> names;
-  for (std::sregex_iterator match(text.begin(), text.end(), token), end; match != end; ++match)
-    if ((*match)[1].matched && !words.contains((*match)[1])) names.push_back((*match)[1]);
-  return names;
-}
-
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\n");
   return first == text.npos ? "" : text.substr(first, text.find_last_not_of(" \t\n") - first + 1);
@@ -171,7 +162,7 @@ class ColumnCheck {
           named_.insert(part);
           continue;
         }
-        for (const auto& name : names_in(part)) require(name, key);
+        require_names_in(part, key);
       }
     if (figure_["table"] == "frames")
       named_.insert(columns_.fixed_in_frames.begin(), columns_.fixed_in_frames.end());
@@ -194,6 +185,12 @@ class ColumnCheck {
     fail(key + ": no column '" + name + "'; available: " + names);
   }
 
+  void require_names_in(const std::string& expression, const std::string& key) {
+    for (const auto& name : names_in(expression)) require(name, key);
+    if (const std::string fault = fault_in(expression); !fault.empty())
+      fail(key + ": " + expression + ": " + fault);
+  }
+
   void check_over(const std::string& over) {
     static const std::set<std::string> words{"", "best", "best peer", "best of ours"};
     static const std::regex record(R"(^record\s*=[^]*$)");
@@ -208,8 +205,7 @@ class ColumnCheck {
     static const std::regex simple(R"(^\s*(\w+)\s*(!?=)(?!=)((?:(?!==|!=|[<>])[^])*)$)");
     std::smatch match;
     if (!std::regex_match(text, match, simple)) {
-      for (const auto& name : names_in(text)) require(name, key);
-      return;
+      return require_names_in(text, key);
     }
     require(match[1], key);
     const auto values = columns_.values.find(match[1]);

@@ -18,8 +18,8 @@ namespace py = pybind11;
 std::filesystem::path run(const std::string& text, const std::string& file,
                           const std::string& record, bool counts, int threads,
                           const py::object& progress) {
-  if (threads > 0) check_threads(threads);
-  RunRequest request{text, file, record, "", {}};
+  if (threads != 0) check_threads(threads);
+  RunRequest request{text, file, record, "", {}, {}};
   request.options.threads = threads > 0 ? static_cast<std::size_t>(threads) : cores_allowed();
   if (counts) request.options.measured = Measured::counts;
   // Called on any thread; what Python raises there ends the run, and is raised here.
@@ -27,6 +27,10 @@ std::filesystem::path run(const std::string& text, const std::string& file,
     const py::gil_scoped_acquire held;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (!progress.is_none()) progress(done, all);
+  };
+  request.waiting = [] {
+    const py::gil_scoped_acquire held;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   };
   return released([&] { return run_text(std::move(request), tell); });
 }

@@ -27,7 +27,22 @@ Variant variant_from(const VariantWords& words) {
   variant.build = words.build;
   variant.leaf_size = words.leaf_size;
   variant.fit = words.fit;
-  if (words.configuration) variant = configured(variant, *words.configuration);
+  if (words.configuration) {
+    const Variant standard = default_variant();
+    for (const auto& [name, is_set] :
+         {std::pair("volume", words.volume != standard.volume),
+          std::pair("strategy", words.strategy != standard.strategy),
+          std::pair("fan_out", words.fan_out.has_value()),
+          std::pair("frame", words.frame.has_value()),
+          std::pair("kernel", words.kernel != standard.kernel),
+          std::pair("build", words.build != standard.build),
+          std::pair("leaf_size", words.leaf_size != standard.leaf_size),
+          std::pair("fit", words.fit != standard.fit)})
+      if (is_set)
+        throw Unusable(std::string(name) +
+                       ": is set by the configuration, too; leave one of them out");
+    variant = configured(variant, *words.configuration);
+  }
   check(variant);
   return variant;
 }

@@ -305,7 +305,8 @@ World(meshes)            body i has meshes[i]; a Mesh given twice is built once
 World(meshes, objects=n) n bodies: body i has meshes[i mod len(meshes)]
 
 A body is in the scene from its first `move` on. Answers are those of the last `update`. Volume and
-strategy are chosen by name, as in replay; by default, those recommended for these meshes. Calls from
+strategy are chosen by name, as in replay; if none of these words is given, nor fan_out, frame, kernel,
+build, leaf_size or fit, what is recommended for these meshes is taken. Calls from
 several threads run one after the other.)")
       .def(py::init([](const py::object& meshes, std::size_t objects,
                        const std::optional<std::string>& volume,
@@ -329,7 +330,8 @@ several threads run one after the other.)")
                                 fit,
                                 precision,
                                 0};
-             if (!volume && !strategy && !fan_out && !frame && !kernel && !configuration)
+             if (!volume && !strategy && !fan_out && !frame && !kernel && !configuration &&
+                 build == standard.build && leaf_size == standard.leaf_size && fit == standard.fit)
                words.configuration = "recommended";
              check(variant_from(words));
              check_threads(threads);

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/recorder/record.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
 #include <sys/utsname.h>
-#include <unistd.h>
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -188,49 +184,6 @@ std::string continued(const std::string& held, const std::string& command) {
   return json.dump(2) + "\n";
 }
 
-/// Who else has the folder open, as "process 12 (bvlab run mine.toml)"; "" where nobody can be
-/// seen.
-std::string holder_of(const std::filesystem::path& folder) {
-  std::error_code error;
-  for (const auto& process : std::filesystem::directory_iterator("/proc", error)) {
-    const std::string pid = process.path().filename();
-    if (pid.find_first_not_of("0123456789") != pid.npos || pid == std::to_string(getpid()))
-      continue;
-    for (const auto& file : std::filesystem::directory_iterator(process.path() / "fd", error))
-      if (std::filesystem::read_symlink(file.path(), error) == folder) {
-        std::string words = contents(process.path() / "cmdline");
-        std::replace(words.begin(), words.end(), '\0', ' ');
-        return " by process " + pid + " (" +
-               one_line(words.substr(0, words.find_last_not_of(' ') + 1)) + ")";
-      }
-  }
-  return {};
-}
-
-/// Two runs at work on one record would undo each other's rows: the second waits until the first
-/// has ended, however that ends. Where the file system has no locks there is none.
-void hold_until_exit(const std::filesystem::path& record) {
-  const int folder = open(record.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder < 0 || flock(folder, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-  std::error_code error;
-  std::fprintf(stderr, "%s: waiting for another run to end%s\n", one_line(record.string()).c_str(),
-               holder_of(std::filesystem::canonical(record, error)).c_str());
-  while (flock(folder, LOCK_EX) != 0 && errno == EINTR) {
-  }
-}
-
-/// A record that was begun and refused, as for a mesh that there is not: of no use but to be begun
-/// again.
-bool is_without_rows(const std::filesystem::path& record) {
-  std::size_t files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(record)) {
-    const auto name = entry.path().filename();
-    if (name != "definition.toml" && name != "machine.json" && name != "command.txt") return false;
-    ++files;
-  }
-  return files == 3;
-}
-
 }  // namespace
 
 Table::Table(std::filesystem::path path, Row columns)
@@ -317,13 +270,11 @@ std::filesystem::path fresh_record(const std::filesystem::path& parent) {
       return path;
 }
 
-void open_record(const std::filesystem::path& record, const std::string& definition,
-                 const std::string& command, const Extends& extends) {
+RecordLock open_record(const std::filesystem::path& record, const std::string& definition,
+                       const std::string& command, const Extends& extends,
+                       const std::function<void()>& waiting) {
   refuse_with_changes(record);
-  std::error_code error;
-  std::filesystem::create_directories(record, error);
-  if (error) throw Unusable(record.string(), "cannot be made: " + error.message());
-  hold_until_exit(record);
+  RecordLock lock(record, waiting);
   clear_left_behind(record);
   const auto held = record / "definition.toml";
   if (!std::filesystem::exists(held)) require_place("--record", held);
@@ -349,6 +300,18 @@ void open_record(const std::filesystem::path& record, const std::string& definit
   write("machine.json", machines.empty() ? machine().dump(2) + "\n" : continued(machines, command));
   const bool is_known = ("\n" + commands).find("\n" + command + "\n") != commands.npos;
   if (commands.empty() || (is_other && !is_known)) write("command.txt", commands + command + "\n");
+  return lock;
+}
+
+bool is_without_rows(const std::filesystem::path& record) {
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(record)) {
+    const auto name = entry.path().filename();
+    if (name == unfinished_file) continue;
+    if (name != "definition.toml" && name != "machine.json" && name != "command.txt") return false;
+    ++files;
+  }
+  return files == 3;
 }
 
 std::string program_version() {

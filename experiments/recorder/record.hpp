@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/recorder/record_lock.hpp"
+
 namespace bvlab {
 
 using Row = std::vector<std::string>;
@@ -60,13 +62,17 @@ using Extends = std::function<void(const std::string& held, const std::string& d
 
 /// Writes definition.toml, machine.json and command.txt unless they are there. A record goes on
 /// with a definition that extends its own, which is then replaced; any other is refused with
-/// Unusable (unless nothing but these three is in the record, as after a run that was refused: then
-/// it is begun again). So is a record in the repository's experiments/record while the program was
+/// Unusable (unless the record has no rows, as after a run that was refused: then it is begun
+/// again). So is a record in the repository's experiments/record while the program was
 /// built from a tree with changes, or with code from outside of it. What goes on with a record by
-/// another program or command is added to both files. Waits while another process has it open, and
-/// says which.
-void open_record(const std::filesystem::path& record, const std::string& definition,
-                 const std::string& command, const Extends& extends);
+/// another program or command is added to both files. `waiting` is as for RecordLock.
+[[nodiscard]] RecordLock open_record(const std::filesystem::path& record,
+                                     const std::string& definition, const std::string& command,
+                                     const Extends& extends, const std::function<void()>& waiting);
+
+/// Whether nothing is there but what a run writes before its first row: of no use, but to be begun
+/// again.
+bool is_without_rows(const std::filesystem::path& record);
 
 /// The program that makes records: its version, commit and compiler, in one line.
 std::string program_version();

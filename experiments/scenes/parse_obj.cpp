@@ -61,6 +61,8 @@ TriangleMesh parse_obj(std::string_view bytes, const std::string& name) {
       while (!scanner.at_line_end())
         corners.push_back(vertex_of(scanner, scanner.word(), mesh.vertices.size()));
       face.size = corners.size() - face.first;
+      if (face.size < 3 && scanner.bytes_left() == 0 && !bytes.ends_with('\n'))
+        scanner.fault("truncated: ends within a face");
       faces.push_back(face);
     }
   }

@@ -72,6 +72,8 @@ TriangleMesh parse_off(std::string_view bytes, const std::string& name) {
     }
     append_polygon(mesh, corners);
   }
+  if (scanner.next_line())
+    scanner.fault("beyond the vertices and faces that the header promises");
   return mesh;
 }
 

@@ -54,7 +54,7 @@ TriangleMesh parse_text(std::string_view bytes, const std::string& name) {
   TextScanner scanner(bytes, name);
   TriangleMesh mesh;
   std::vector<std::uint32_t> corners;
-  bool open = false;
+  bool open = false, solid = false;
   while (scanner.next_line()) {
     const std::string keyword = lower_case(scanner.word());
     if (keyword == "facet") {
@@ -71,11 +71,14 @@ TriangleMesh parse_text(std::string_view bytes, const std::string& name) {
       corners.clear();
     } else if (keyword == "endfacet") {
       open = false;
-    } else if (keyword != "solid" && keyword != "outer" && keyword != "endsolid") {
+    } else if (keyword == "solid" || keyword == "endsolid") {
+      solid = keyword == "solid";
+    } else if (keyword != "outer") {
       scanner.fault("unknown word " + TextScanner::shown(keyword));
     }
   }
   if (open) throw Unusable(name, "truncated: ends within a facet");
+  if (solid) throw Unusable(name, "truncated: ends without endsolid");
   return mesh;
 }
 

@@ -653,10 +653,62 @@ void check_series_matches(const Definition& definition, const std::vector<Cell>&
   throw Unusable("series: no cell matches all of it");
 }
 
+bool sets(const Settings& settings, std::string_view name) {
+  return std::any_of(settings.begin(), settings.end(),
+                     [&](const Setting& each) { return each.first == name; });
+}
+bool has_configuration(const Settings& settings, bool otherwise) {
+  for (const auto& [name, value] : settings)
+    if (name == "configuration") return !value.empty();
+  return otherwise;
+}
+
+/// Throws Unusable for a parameter that a configuration sets, too, in every cell in which it is
+/// set: it would be ignored. (At most one axis sets a parameter.)
+void check_configurations(const Definition& definition) {
+  using Value = Definition::Value;
+  const bool by_default = has_configuration(definition.parameters, false);
+  const auto in_value = [&](const Value& value) {
+    return has_configuration(value.settings, by_default);
+  };
+  const auto axis_of = [&](std::string_view name) -> const Definition::Axis* {
+    for (const auto& axis : definition.axes)
+      for (const auto& value : axis.values)
+        if (sets(value.settings, name)) return &axis;
+    return nullptr;
+  };
+  const auto* const choosing = axis_of("configuration");
+  const bool in_all = choosing
+                          ? std::all_of(choosing->values.begin(), choosing->values.end(), in_value)
+                          : by_default;
+  for (const std::string_view name :
+       {"volume", "strategy", "build", "leaf_size", "fit", "fan_out", "frame", "kernel"}) {
+    const auto refuse_if = [&](bool is_ignored) {
+      if (is_ignored)
+        throw Unusable(std::string(name) +
+                       ": is set by the configuration, too; leave one of them out");
+    };
+    const auto* const axis = axis_of(name);
+    bool default_counts = !axis, default_is_ignored = in_all;
+    if (axis)
+      for (const Value& value : axis->values) {
+        const bool is_ignored = axis == choosing ? in_value(value) : in_all;
+        if (sets(value.settings, name)) {
+          refuse_if(is_ignored);
+        } else {
+          default_is_ignored = (!default_counts || default_is_ignored) && is_ignored;
+          default_counts = true;
+        }
+      }
+    refuse_if(sets(definition.parameters, name) && default_counts && default_is_ignored);
+  }
+}
+
 }  // namespace
 
 void check(const Definition& definition) {
   try {
+    check_configurations(definition);
     for (const auto& axis : definition.axes) {
       check_axis_name(axis);
       if (definition.has_series && axis.name == frame_columns[0])

@@ -26,20 +26,31 @@ Part part_from(const std::string& text, std::size_t traces) {
                  std::to_string(traces) + ", as many as there are traces");
 }
 
-/// The folder of the record, with what is known of it before anything is run.
-std::filesystem::path opened(const RunRequest& request, const Extends& extends) {
-  const std::filesystem::path folder = request.record.empty()
-                                           ? fresh_record("experiments/record")
-                                           : std::filesystem::path(request.record);
+/// Calls run(folder) with the folder of the record, in which stands what is known before anything
+/// is run. If it refuses, a new record is removed again.
+template <class Run>
+std::filesystem::path in_record(const RunRequest& request, const Extends& extends, Run&& run) {
+  std::filesystem::path folder = request.record.empty() ? fresh_record("experiments/record")
+                                                        : std::filesystem::path(request.record);
   std::string command = "bvlab run " + request.file + " --record " + folder.string();
   if (!request.part.empty()) command += " --part " + request.part;
   if (request.options.measured == Measured::counts) command += " --counts";
-  open_record(folder, request.text, command, extends);
+  const RecordLock lock = open_record(folder, request.text, command, extends, request.waiting);
+  try {
+    run(folder);
+  } catch (const Unusable&) {
+    std::error_code error;
+    if (lock.made() && is_without_rows(folder)) std::filesystem::remove_all(folder, error);
+    throw;
+  }
   return folder;
 }
 
 [[noreturn]] void refuse_parts(const RunRequest& request) {
   throw Unusable(request.file, "a study has no parts: it is run as a whole");
+}
+[[noreturn]] void refuse_counts(const RunRequest& request) {
+  throw Unusable(request.file, "a study measures what its kind says: --counts is for experiments");
 }
 
 /// Nothing where it is an experiment.
@@ -47,7 +58,8 @@ std::optional<StudyDefinition> checked_study(const RunRequest& request) {
   auto study = study_from(request.text, request.file);
   if (!study) return study;
   check(*study);
-  if (request.options.measured == Measured::counts || !request.part.empty()) refuse_parts(request);
+  if (!request.part.empty()) refuse_parts(request);
+  if (request.options.measured == Measured::counts) refuse_counts(request);
   return study;
 }
 
@@ -61,36 +73,30 @@ Definition checked_definition(const RunRequest& request) {
 
 std::filesystem::path run_text(RunRequest request, const Progress& progress) {
   if (const auto study = checked_study(request)) {
-    const bool is_new = request.record.empty() || !std::filesystem::exists(request.record);
-    const auto folder = opened(request, [&](const std::string& held, const std::string&) {
+    const auto extends = [&](const std::string& held, const std::string&) {
       const auto before = study_from(held, "its definition");
       if (!before) throw Unusable("it is not that of a study");
       check_extends(*before, *study);
-    });
-    try {
+    };
+    return in_record(request, extends, [&](const std::filesystem::path& folder) {
       run_study(*study, folder, progress);
-    } catch (const Unusable&) {
-      // A study knows its columns once it has begun: a figure that is refused leaves no record.
-      if (is_new && !std::filesystem::exists(folder / (study->name + ".csv")))
-        std::filesystem::remove_all(folder);
-      throw;
-    }
-    return folder;
+    });
   }
   const Definition definition = checked_definition(request);
   if (!request.part.empty())
     request.options.part = part_from(request.part, size_of(definition).traces);
-  const auto folder = opened(request, [&](const std::string& held, const std::string&) {
+  const auto extends = [&](const std::string& held, const std::string&) {
     check_extends(parse_definition(held, "its definition"), definition);
+  };
+  return in_record(request, extends, [&](const std::filesystem::path& folder) {
+    run_experiment(definition, folder, request.options, progress);
   });
-  run_experiment(definition, folder, request.options, progress);
-  return folder;
 }
 
 NamedSize size_of(const RunRequest& request) {
   if (checked_study(request)) refuse_parts(request);
   const Definition definition = checked_definition(request);
-  const NamedSize size{size_of(definition), definition.name};
+  NamedSize size{size_of(definition), definition.name};
   part_from(request.part, size.traces);
   return size;
 }

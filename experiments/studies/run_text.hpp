@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "experiments/studies/experiment.hpp"
@@ -15,6 +16,8 @@ struct RunRequest {
   std::string record;  ///< folder; a new one, experiments/record/<date>.<n>, where empty
   std::string part;    ///< "3/8"; the whole where empty
   RunOptions options;  ///< its part is set by `part`
+  /// Called every so often while another run has the record open; may throw.
+  std::function<void()> waiting = {};
 };
 
 /// Begins the record, or goes on with it; gives its folder. Throws Unusable, before anything is

@@ -90,6 +90,52 @@ class Calls(unittest.TestCase):
             bvlab.run({"name": "x", "parameters": {"mesh": "torus", "frames": 2}}, f"{folder}/x", counts=True,
                       progress=stop)
 
+    def test_a_record_is_let_go_at_the_end_of_a_run(self):
+        import tempfile
+        definition = {"name": "x", "parameters": {"mesh": "torus", "polygons": 50, "frames": 2, "objects": 2},
+                      "axis": [{"name": "seed", "values": [1]}]}
+        with tempfile.TemporaryDirectory() as folder:
+            record = f"{folder}/x"
+
+            def again(done, of):
+                bvlab.run(definition, record, counts=True, progress=False)
+            with self.assertRaisesRegex(ValueError, "another run of this program"):
+                bvlab.run(definition, record, counts=True, progress=again)
+            for seeds in ([1], [1, 2], [1, 2]):
+                definition["axis"][0]["values"] = seeds
+                bvlab.run(definition, record, counts=True, progress=False)
+            self.assertEqual(len(bvlab.record(record)), 2)
+            with self.assertRaises(ValueError):
+                bvlab.run({**definition, "parameters": {"mesh": "none.off"}}, f"{folder}/y", counts=True, progress=False)
+            self.assertFalse((Path(folder) / "y").exists())
+            for bad in ("", "a\0b"):
+                with self.assertRaisesRegex(ValueError, "no path"):
+                    bvlab.run(definition, bad, counts=True, progress=False)
+
+    def test_ctrl_c_while_another_program_has_the_record(self):
+        import fcntl
+        import subprocess
+        import sys
+        import tempfile
+        with tempfile.TemporaryDirectory() as folder:
+            held = os.open(folder, os.O_RDONLY)
+            fcntl.flock(held, fcntl.LOCK_EX)
+            code = f"import bvlab; bvlab.run({{'name': 'x', 'parameters': {{'mesh': 'torus', 'frames': 2}}}}, {folder!r})"
+            with subprocess.Popen([sys.executable, "-B", "-c", code], stderr=subprocess.PIPE, text=True) as waiting:
+                self.assertIn("waiting for another run to end", waiting.stderr.readline())
+                waiting.send_signal(signal.SIGINT)
+                self.assertIn("KeyboardInterrupt", waiting.stderr.read())
+            os.close(held)
+
+    def test_what_a_configuration_sets(self):
+        poses = self.long[:2, :2]
+        for given in ({"volume": "obb"}, {"strategy": "raise"}, {"leaf_size": 3}, {"fan_out": 2}, {"frame": "world"}):
+            (name,) = given
+            with self.assertRaisesRegex(ValueError, f"{name}: is set by the configuration"):
+                bvlab.replay(self.mesh, poses, configuration="recommended", **given)
+            with self.assertRaisesRegex(ValueError, f"{name}: is set by the configuration"):
+                bvlab.World([self.mesh] * 2, configuration="recommended", **given)
+
     def test_definitions_that_are_none(self):
         for bad in ({"name": "x", "parameters": {"cube": 1}}, {}, {"name": None}, {"name": "x", 3: 4},
                     {"name": "x", "parameters": {"mesh": object()}}, "none.toml", os.curdir):
@@ -99,7 +145,7 @@ class Calls(unittest.TestCase):
 
     def test_definitions_as_dictionaries(self):
         import tomllib
-        given = {"name": "a \"quoted\" \\ name\n\x7f ü", "repetitions": 3, "x": 0.1, "y": 1e-300, "whole": 1.0, "no": False,
+        given = {"name": "a \"quoted\" \\ name\n\x7f ü \U0001f600", "repetitions": 3, "x": 0.1, "y": 1e-300, "whole": 1.0, "no": False,
                  "parameters": {"list": [1, "two", 3.5], "degrees": np.float64(0.25), "range": [0, 1, 2]},
                  "axis": [{"name": "reading", "value": [{"name": "a", "moving": 1}, {"name": "b"}]},
                           {"name": "seed", "values": [1, 2]}], "a key": {"b.c": 1}}

@@ -2,6 +2,7 @@
 """Records as frames, and the figures that plots/draw draws; whoever calls sees nothing of how."""
 
 import os
+import subprocess
 import sys
 import unittest
 from pathlib import Path
@@ -41,6 +42,15 @@ class Figures(unittest.TestCase):
             self.assertTrue(figure.axes[0].has_data(), name)
         self.assertEqual(list(bvlab.figures(RECORD)), list(drawn))
 
+    def test_without_a_display(self):
+        """A backend that needs a display may be configured; files are drawn without one."""
+        code = f"import bvlab; print(len(bvlab.record({str(RECORD)!r}))); bvlab.record('none')"
+        environment = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        done = subprocess.run([sys.executable, "-B", "-c", code], env={**environment, "MPLBACKEND": "TkAgg"},
+                              capture_output=True, text=True, check=False)
+        self.assertGreater(int(done.stdout), 0, done.stderr)
+        self.assertIn("ValueError: none", done.stderr)
+
     def test_one_figure(self):
         frame = bvlab.record(RECORD)
         setting = next(name for name in frame.attrs["settings"] if frame[name].nunique() > 1)
@@ -49,7 +59,8 @@ class Figures(unittest.TestCase):
 
     def test_refusals(self):
         for call in (lambda: bvlab.record("/nowhere"), lambda: bvlab.figures("/nowhere"), lambda: bvlab.record(os.curdir),
-                     lambda: bvlab.figures(RECORD, x="no such column"), lambda: bvlab.figures(RECORD, colour="red")):
+                     lambda: bvlab.figures(RECORD, x="no such column"), lambda: bvlab.figures(RECORD, colour="red"),
+                     lambda: bvlab.figures("--help")):
             with self.assertRaises(ValueError) as caught:
                 call()
             self.assertNotIn("\n", str(caught.exception))

@@ -42,6 +42,13 @@ TEST(ReadMesh, OffKeepsEveryDigitAndTheOrder) {
             1u);
 }
 
+TEST(ReadMesh, ObjThatIsCutOff) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  EXPECT_EQ(refusal(vertices + "f 3 2", "a.obj"), "a.obj: line 5: truncated: ends within a face");
+  EXPECT_EQ(parse_mesh(vertices + "f 3 2\n", "a.obj").triangles.size(), 1u);
+  EXPECT_EQ(parse_mesh(vertices + "f 3 2 1", "a.obj").triangles.size(), 2u);
+}
+
 TEST(ReadMesh, OffFaultsSayWhere) {
   const auto off = [](const std::string& bytes) { return refusal(bytes, "a.off"); };
   EXPECT_EQ(off(""), "a.off: is empty");
@@ -68,6 +75,8 @@ TEST(ReadMesh, OffFaultsSayWhere) {
             "a.off: line 4: vertex -1 does not exist: there are 1, from 0");
   EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n3 0 0\n"), "a.off: line 4: the number of a vertex is missing");
   EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n2 0 0\n"), "a.off: has no triangles");
+  EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n3 0 0 0\n3 0 0 0\n"),
+            "a.off: line 5: beyond the vertices and faces that the header promises");
   EXPECT_EQ(off("OFF\n0 0 0\n"), "a.off: has no triangles");
 }
 
@@ -159,6 +168,7 @@ TEST(ReadMesh, StlTextAndBinary) {
   EXPECT_EQ(from_text.vertices[3][0], 0.1);
   EXPECT_EQ(refusal(text.substr(0, text.size() - 18), "a.stl"),
             "a.stl: truncated: ends within a facet");
+  EXPECT_EQ(refusal("solid a thing\n" + facet, "a.stl"), "a.stl: truncated: ends without endsolid");
   EXPECT_EQ(refusal("solid\nendsolid\n", "a.stl"), "a.stl: has no triangles");
   EXPECT_EQ(refusal("nothing", "a.stl"), "a.stl: not an STL file");
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import operator
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -41,14 +43,20 @@ def poses(positions: ArrayLike, quaternions: ArrayLike | None = None, *,
 
 def pairs_of(objects: int) -> NDArray[np.uint32]:
     """The pairs of so many objects in the order of all answers: (pairs, 2), (0, 1) (0, 2) ... (1, 2) ..."""
-    return np.stack(np.triu_indices(objects, 1), axis=-1).astype(np.uint32)
+    try:
+        count = operator.index(objects)
+    except TypeError:
+        count = -1
+    if count < 0:
+        raise ValueError(f"objects: a whole number from 0 on is needed, not {objects!r}")
+    return np.stack(np.triu_indices(count, 1), axis=-1).astype(np.uint32)
 
 
 def _array(given: ArrayLike, name: str, shape: tuple[int | str, ...]) -> NDArray[np.float64]:
     """float64, finite, of that shape, in which a name stands for any length."""
     axes = [(str(n), -1 if isinstance(n, str) else n) for n in shape]
     array = np.array(_real_array(given, name, axes))  # what is checked is what is kept
-    wrong = ~np.isfinite(array).reshape(*array.shape[:2], -1).all(axis=-1)
+    wrong = ~np.isfinite(array).all(axis=tuple(range(2, array.ndim)))
     if wrong.any():
         raise ValueError(f"{name}: not a finite number {_place(wrong)}")
     return array

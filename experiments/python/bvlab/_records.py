@@ -48,7 +48,7 @@ def figures(path: str | os.PathLike, **figure: str | list[str]) -> dict[str, mat
         options = [f"--{key.replace('_', '-')}={value}" for key, value in figure.items() if key != "where"]
         where = figure.get("where", [])
         options += [f"--where={each}" for each in ([where] if isinstance(where, str) else where)]
-        arguments = draw.arguments_of([folder, *options])
+        arguments = draw.arguments_of([*options, "--", folder])
         rows = kinds.Rows(arguments.record)
         all_rows = rows.of(declared.Figure(name="", x="", clock=arguments.clock or ""))
         records.wrong_answers(all_rows)
@@ -77,4 +77,7 @@ def _drawing():
                 raise ValueError(str(fault)) from None
         finally:
             if matplotlib.get_backend() != backend:
-                matplotlib.use(backend)
+                try:
+                    matplotlib.use(backend)
+                except ImportError:  # it needs a display, and there is none
+                    matplotlib.rcParams["backend"] = backend

@@ -29,6 +29,8 @@ def run(definition: dict | str | os.PathLike, record: str | os.PathLike | None =
     Gives the record's folder, for bvlab.record and bvlab.figures. Ctrl-C ends it after the part at work.
     ValueError: the line that the program would print.
     """
+    if record is not None and (not os.fspath(record) or "\0" in os.fspath(record)):
+        raise ValueError(f"record: {os.fspath(record)!r} is no path of a folder")
     if isinstance(definition, dict):
         text = toml_of(definition)
         name = str(Path(record) / "definition.toml") if record is not None else "definition.toml"
@@ -115,22 +117,29 @@ def _write(table, path, lines):
 def _key(key):
     if not isinstance(key, str):
         raise ValueError(f"definition: a key must be a string, not {key!r}")
-    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else json.dumps(key)
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else _string(key)
+
+
+def _string(text):
+    text.encode()  # a ValueError for what is no Unicode, such as half a surrogate pair
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _value(value, path):
-    if isinstance(value, (bool, str)) or value is None:
-        if value is None:
-            raise ValueError(f"definition: {'.'.join(map(str, path))}: None is no value; leave it out")
-        return json.dumps(value, ensure_ascii=True).replace("\x7f", "\\u007f")
-    if hasattr(value, "tolist"):  # NumPy's
-        return _value(value.tolist(), path)
+    if value is None:
+        raise ValueError(f"definition: {'.'.join(map(str, path))}: None is no value; leave it out")
+    if isinstance(value, str):
+        return _string(value)
+    if isinstance(value, bool):
+        return json.dumps(value)
+    if hasattr(value, "tolist") and type(plain := value.tolist()) is not type(value):  # NumPy's
+        return _value(plain, path)
     if isinstance(value, int):
         return str(value)
     if isinstance(value, float):
         return repr(value)
     if isinstance(value, os.PathLike):
-        return json.dumps(os.fspath(value))
+        return _string(os.fspath(value))
     if isinstance(value, (list, tuple, range)):
         return f"[{', '.join(_value(each, path) for each in value)}]"
     raise ValueError(f"definition: {'.'.join(map(str, path))}: {type(value).__name__} is no value of TOML")

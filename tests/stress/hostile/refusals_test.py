@@ -305,6 +305,15 @@ class Names(ProgramTest):
         self.refuse("run", mentions="definition")
         self.refuse(*self.replay, "--volume", mentions="--volume")
 
+    def test_of_empty_values(self):
+        for option in ("--out", "--json", "--page", "--x3d"):
+            self.refuse(*self.replay, option, "", mentions=[option, "a value is needed"])
+        self.refuse("predict", "poses.npy", "--mesh", "mesh.off", "--csv", "", mentions="--csv")
+        self.refuse("scene", "random-walk", "--out", "out.npy", "--meshes", "", mentions="--meshes")
+        for option in ("--record", "--part"):
+            self.refuse("run", "none.toml", option, "", mentions=[option, "a value is needed"])
+        self.refuse("list", "", mentions="a value is needed")
+
     def test_on_one_line_whatever_is_quoted(self):
         self.refuse("triangles", "--pairs", "a\nb\r\x1b[31m", mentions="a?b??[31m: No such file")
         self.refuse("list", "a\nb", mentions="a?b")
@@ -471,6 +480,27 @@ class Definitions(ProgramTest):
         self.refuse_definition(axis(way.replace("way", "")), "line 8", "name is empty")
         self.refuse_definition(axis(way.replace("'way'", '"a\\nb"')), "line 8", "control character")
 
+    def test_beside_a_configuration(self):
+        """What a configuration sets is refused where it would be ignored in every cell."""
+        def axis(name, *values):
+            return f"[[axis]]\nname = '{name}'\nvalues = {list(values)}\n"
+
+        def way(*values):
+            return "[[axis]]\nname = 'way'\n" + "".join(f"[[axis.value]]\nname = 'w{k}'\n{each}" for k, each in enumerate(values))
+
+        recommended, chosen = self.START + "configuration = 'recommended'\n", "configuration = 'recommended'\n"
+        strategies = axis("strategy", "recursive", "deferred")
+        for text, name in ((recommended + "volume = 'obb'\n", "volume"), (recommended + strategies, "strategy"),
+                           (self.START + way(chosen + "leaf_size = 2\n"), "leaf_size"),
+                           (self.START + axis("configuration", "recommended", "as-published") + strategies, "strategy"),
+                           (self.START + "volume = 'obb'\n" + way(chosen), "volume"),
+                           (self.START + "leaf_size = 2\n" + way(chosen, "leaf_size = 4\n"), "leaf_size")):
+            self.refuse_definition(text, f"{name}: is set by the configuration, too")
+        for k, text in enumerate((self.START + "leaf_size = 2\n" + way(chosen, ""), self.START + way(chosen, "leaf_size = 4\n"),
+                                  recommended + way("configuration = ''\n", "") + strategies)):
+            self.write("good.toml", text)
+            self.take("run", "good.toml", "--record", f"record{k}")
+
     def test_figures(self):
         for start, line in (("name = 'x'\n", 2), ("name = 'x'\nkind = 'triangles'\n", 3)):
             def refuse(text, *mentions):
@@ -490,6 +520,11 @@ class Definitions(ProgramTest):
             refuse(good + "where = 'a=b'\n", f"line {line + 3}", "list of strings")
             refuse(good + "where = [1]\n", f"line {line + 3}", "list of strings")
             refuse(good + good, f"line {line + 3}", "second", "'a'")
+        for text in ("time_ns /", "* 2", "(time_ns", "time_ns)", "time_ns n_v", "time_ns ? 2", "not", "seed = 1 and",
+                     "time_ns in n_v", "1.2.3", "-not n_v", "True"):
+            self.refuse_definition(self.START + "[[figure]]\nname = 'a'\nx = 'seed'\n" + f"y = '{text}'\n", "line 7", "'a'", "y", text)
+            self.refuse_definition(self.START + "[[figure]]\nname = 'a'\nx = 'seed'\n" + f"where = ['n_v < {text}']\n", "line 7", "'a'")
+        self.refuse_definition(self.START + "[[figure]]\nname = 'a'\nx = 'seed'\ny = 'n_v,,'\n", "line 7", "an expression is missing")
 
     def test_names_and_numbers(self):
         kinds = {"scene": "scenes", "volume": "volumes", "strategy": "strategies",
@@ -541,6 +576,12 @@ class Definitions(ProgramTest):
         self.write("mine.toml", self.START.replace('"box"', '"none.off"'))
         done = self.run_bvlab("run", "mine.toml", "--record", "record")
         self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.write("mine.toml", self.START)
+        self.assertFalse((self.folder / "record").exists())
+        self.write("mine.toml", "repetitions = 2\n" + self.START)
+        self.take("run", "mine.toml", "--record", "record", "--counts")
+        (self.folder / "record/small.csv").unlink()
+        self.write("record/unfinished.json", '{"what": "rows", "done": 0, "all": 1}\n')
         self.write("mine.toml", self.START)
         self.take("run", "mine.toml", "--record", "record")
         self.assertEqual((self.folder / "record/definition.toml").read_text(), self.START)
@@ -607,6 +648,12 @@ class Places(ProgramTest):
         self.refuse(*predict, "--csv", "one", "--json", "one", mentions=["--json one", "--csv"])
         self.refuse(*predict, "--csv", "poses.npy", mentions=["--csv poses.npy", "--trace"])
         self.refuse(*predict, "--json", "/dev/stdout", mentions=["--json /dev/stdout", "the table"])
+        (self.folder / "0-a.off").write_text(TETRAHEDRON)
+        (self.folder / "a.off").write_text(TRIANGLE)
+        mesh = ["scene", "random-walk", "--mesh", "a.off", "--meshes", "."]
+        self.refuse(*mesh, "--mesh", "0-a.off", "--out", "out.npy", mentions=["--meshes", "0-a.off", "--mesh"])
+        self.assertEqual((self.folder / "0-a.off").read_text(), TETRAHEDRON)
+        self.refuse(*mesh, "--out", "0-a.off", mentions=["--meshes", "0-a.off", "--out"])
         (self.folder / "link.npy").symlink_to("poses.npy")
         self.refuse(*self.commands[0], "--out", "link.npy", mentions=["--out link.npy", "--trace"])
         self.take(*self.commands[1], "--out", "/dev/null", "--json", "/dev/null")
