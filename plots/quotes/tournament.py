@@ -88,6 +88,18 @@ def tournament_headline(record):
             "width": Interval(found["one"].ours_ns / found["sixteen"].ours_ns), "fcl": Interval(1 / found["fcl"].ratio)}
 
 
+@quotes("tournament-roots")
+def tournament_roots(record):
+    """One lane from the roots, over OPCODE with the same flags, on more seeds than `tournament` has."""
+    rows = tournament.read(record)
+    claim(rows.program.nunique() == 1 and rows.program.iloc[0] == ONE, "all rows are of the one-lane build")
+    claim((rows[rows.peer == ""].differing == 0).all(), "answers of ours agree")
+    found = {name: tournament.tournament(rows, called(f"{name}, from the roots", ONE), [called("OPCODE", ONE)]) for name in ("wide", "oriented boxes")}
+    slab, oriented = found["wide"], found["oriented boxes"]
+    return {"seeds": rows.seed.nunique(), "cells": len(slab), "slab": Interval(slab.ratio), "oriented": Interval(oriented.ratio),
+            "slab_below": int((slab.high < 1).sum()), "oriented_below": int((oriented.high < 1).sum())}
+
+
 def libraries(rows):
     """The methods of other libraries, those compiled from source with our flags where several programs ran them."""
     rows = rows[rows.peer != ""]
