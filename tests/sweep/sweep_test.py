@@ -152,7 +152,7 @@ class Sweeps(SweepTest):
         for part in ("0/2", "3/2", "1/9", "1", "1/", "1/2x", "-1/2"):
             self.refuse(BVLAB, "run", "small.toml", "--record", "swept", "--part", part, mentions="K/N is needed")
         (self.folder / "study.toml").write_text('name = "s"\nkind = "triangles"\n')
-        self.refuse(BVLAB, "run", "study.toml", "--record", "swept", "--counts", mentions="a study has no parts")
+        self.refuse(BVLAB, "run", "study.toml", "--record", "swept", "--counts", mentions="a study measures what its kind says")
 
     def test_counts_and_times_are_not_mixed(self):
         self.run_whole("--counts")
