@@ -9,6 +9,7 @@
 
 using namespace bvlab;
 
+// Without memory, the program ends. NOLINTNEXTLINE(bugprone-exception-escape)
 int main() {
   const TriangleMesh mesh = ring();
   const auto hierarchy = Recommended::hierarchy(mesh);
