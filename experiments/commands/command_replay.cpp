@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// `bvlab replay`: a motion trace through one variant of the engine.
+#include <algorithm>
 #include <optional>
+#include <string_view>
 
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/require_threads.hpp"
@@ -176,10 +178,11 @@ void add_replay(CLI::App& app) {
   CLI::Option* recommended = command->add_flag_callback(
       "--recommended", [arguments] { arguments->configuration = "recommended"; },
       "the same as --configuration recommended");
-  for (const char* part : {"--volume", "--fan-out", "--frame", "--kernel", "--strategy", "--build",
-                           "--fit", "--leaf-size"}) {
-    configuration->excludes(command->get_option(part));
-    recommended->excludes(command->get_option(part));
+  for (const std::string_view name : set_by_configuration) {
+    std::string option = "--" + std::string(name);
+    std::replace(option.begin(), option.end(), '_', '-');
+    configuration->excludes(command->get_option(option));
+    recommended->excludes(command->get_option(option));
   }
   recommended->excludes(configuration);
   add_query_options(*command, arguments->variant);

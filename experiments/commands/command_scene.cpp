@@ -47,7 +47,6 @@ std::vector<NamedMesh> meshes_of(const Arguments& arguments, const std::string& 
 std::vector<std::filesystem::path> places_of_meshes(const std::string& directory,
                                                     const std::vector<std::string>& names) {
   std::vector<std::filesystem::path> places;
-  if (directory.empty()) return places;
   for (std::size_t i = 0; i < names.size(); ++i)
     places.push_back(std::filesystem::path(directory) /
                      (std::to_string(i) + "-" + names[i] + ".off"));

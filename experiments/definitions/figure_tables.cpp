@@ -204,9 +204,7 @@ class ColumnCheck {
   void check_condition(const std::string& text, const std::string& key) {
     static const std::regex simple(R"(^\s*(\w+)\s*(!?=)(?!=)((?:(?!==|!=|[<>])[^])*)$)");
     std::smatch match;
-    if (!std::regex_match(text, match, simple)) {
-      return require_names_in(text, key);
-    }
+    if (!std::regex_match(text, match, simple)) return require_names_in(text, key);
     require(match[1], key);
     const auto values = columns_.values.find(match[1]);
     const std::string asked = trimmed(match[3]);

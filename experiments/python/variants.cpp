@@ -38,9 +38,7 @@ Variant variant_from(const VariantWords& words) {
           std::pair("build", words.build != standard.build),
           std::pair("leaf_size", words.leaf_size != standard.leaf_size),
           std::pair("fit", words.fit != standard.fit)})
-      if (is_set)
-        throw Unusable(std::string(name) +
-                       ": is set by the configuration, too; leave one of them out");
+      if (is_set) refuse_beside_configuration(name);
     variant = configured(variant, *words.configuration);
   }
   check(variant);

@@ -133,6 +133,11 @@ std::vector<Named> configurations() {
   return all;
 }
 
+void refuse_beside_configuration(std::string_view parameter) {
+  throw Unusable(std::string(parameter) +
+                 ": is set by the configuration, too; leave one of them out");
+}
+
 Variant configured(Variant variant, std::string_view configuration) {
   std::string names;
   for (const auto& each : list) {

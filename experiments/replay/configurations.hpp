@@ -15,6 +15,12 @@ namespace bvlab {
 /// THE list, each with what it is.
 std::vector<Named> configurations();
 
+/// The parameters that a configuration sets.
+inline constexpr std::string_view set_by_configuration[] = {
+    "volume", "strategy", "build", "leaf_size", "fit", "fan_out", "frame", "kernel"};
+/// Throws Unusable for one of them that is set beside a configuration.
+[[noreturn]] void refuse_beside_configuration(std::string_view parameter);
+
 /// The variant with what the configuration says of it under the variant's query; what it does not
 /// say (query, precision, relative error) stays. Throws Unusable where there is none of that name.
 /// `recommended` is then what is best for meshes whose triangles are about as long as wide.

@@ -18,6 +18,7 @@
 #include "experiments/recorder/node.hpp"
 #include "experiments/recorder/record.hpp"
 #include "experiments/replay/coherence.hpp"
+#include "experiments/replay/configurations.hpp"
 #include "experiments/replay/predict.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/replay.hpp"
@@ -681,12 +682,9 @@ void check_configurations(const Definition& definition) {
   const bool in_all = choosing
                           ? std::all_of(choosing->values.begin(), choosing->values.end(), in_value)
                           : by_default;
-  for (const std::string_view name :
-       {"volume", "strategy", "build", "leaf_size", "fit", "fan_out", "frame", "kernel"}) {
+  for (const std::string_view name : set_by_configuration) {
     const auto refuse_if = [&](bool is_ignored) {
-      if (is_ignored)
-        throw Unusable(std::string(name) +
-                       ": is set by the configuration, too; leave one of them out");
+      if (is_ignored) refuse_beside_configuration(name);
     };
     const auto* const axis = axis_of(name);
     bool default_counts = !axis, default_is_ignored = in_all;

@@ -3,34 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstdlib>
-#include <new>
 
 #include "experiments/replay/box_methods.hpp"
 #include "tests/laws/boxes_for_test.hpp"
-
-namespace {
-std::atomic<std::size_t> allocations = 0;
-void* counted(std::size_t bytes, std::size_t alignment) {
-  ++allocations;
-  void* memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-  if (!memory) throw std::bad_alloc();
-  return memory;
-}
-}  // namespace
-void* operator new(std::size_t bytes) {
-  return counted(bytes ? bytes : 1, alignof(std::max_align_t));
-}
-void* operator new(std::size_t bytes, std::align_val_t alignment) {
-  return counted(bytes ? bytes : 1, static_cast<std::size_t>(alignment));
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+#include "tests/replaced_new.hpp"
 
 namespace bvlab {
 namespace {
+
+std::atomic<std::size_t> allocations = 0;
+[[maybe_unused]] const auto hook = before_allocation = [] { ++allocations; };
 
 TEST(Allocations, NoneInSteadyState) {
   BoxMaker<float> random(6);

@@ -5,45 +5,26 @@
 /// whose first move failed can be moved again.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
 #include "hierarchies/volumes/slab_box.hpp"
 #include "hierarchies/wide/obb_sibling_test.hpp"
 #include "hierarchies/wide/slab_box_sibling_test.hpp"
-#include "tests/oracles/wide_scenes.hpp"
+#include "tests/oracles/every_strategy.hpp"
+#include "tests/replaced_new.hpp"
 #include "traversal/body.hpp"
-#include "traversal/strategies.hpp"
 
+namespace bvlab {
 namespace {
 
 int successes = -1;  // allocations before one that fails; negative: none fails
 int failures = 0;
 
-void* allocated(std::size_t size, std::size_t alignment) {
+void fail_after_successes() {
   if (successes >= 0 && successes-- == 0) {
     ++failures;
     throw std::bad_alloc();
   }
-  void* const memory =
-      std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
-  if (!memory) throw std::bad_alloc();
-  return memory;
 }
-
-}  // namespace
-
-void* operator new(std::size_t size) { return allocated(size, __STDCPP_DEFAULT_NEW_ALIGNMENT__); }
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  return allocated(size, static_cast<std::size_t>(alignment));
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
-
-namespace bvlab {
-namespace {
+[[maybe_unused]] const auto hook = before_allocation = fail_after_successes;
 
 /// Calls work() with its first allocation failing, then with its second, and so on, until none
 /// fails.
@@ -133,22 +114,12 @@ void expect_answers_after_failures(Engine& engine, const Scene& scene, const Tru
 }
 
 TEST(AllocationFailures, EveryStrategyStartsAnew) {
-  using V = Obb<float>;
-  std::size_t motion = 0, number = 0;
-  for (const auto& [scene, truth] : motions_with_truth()) {
-    std::vector<Hierarchy<V>> hierarchies;
-    for (const auto& mesh : scene.meshes)
-      hierarchies.emplace_back(mesh, builds::TopDownPrincipal::topology(mesh, 1));
-    std::vector<Shape<V>> shapes;
-    for (std::size_t i = 0; i < scene.frames[0].size(); ++i)
-      shapes.push_back(
-          {&scene.meshes[i % scene.meshes.size()], &hierarchies[i % scene.meshes.size()]});
-    const auto pairs = all_object_pairs(static_cast<std::uint32_t>(shapes.size()));
-    number = motion++;  // every strategy on every fourth motion
-    Strategies::for_each([&]<class Strategy>(std::type_identity<Strategy>) {
-      if (number++ % 4) return;
-      AllPairs<Batch<float, 8>, V, Strategy> engine(shapes, pairs, Strategy{});
-      expect_answers_after_failures(engine, scene, truth, Strategy::name);
+  std::size_t first = 0;
+  for (const auto& motion : motions_with_truth()) {
+    std::size_t number = first++;  // every strategy on every fourth motion
+    for_each_strategy(motion.first, [&](auto& engine, std::string_view name) {
+      if (number++ % 4 == 0)
+        expect_answers_after_failures(engine, motion.first, motion.second, name);
     });
   }
 }

@@ -9,9 +9,8 @@
 #include "hierarchies/volumes/slab_box.hpp"
 #include "hierarchies/wide/obb_sibling_test.hpp"
 #include "hierarchies/wide/slab_box_sibling_test.hpp"
-#include "tests/oracles/wide_scenes.hpp"
+#include "tests/oracles/every_strategy.hpp"
 #include "traversal/once.hpp"
-#include "traversal/strategies.hpp"
 #include "traversal/world.hpp"
 
 namespace bvlab {
@@ -98,21 +97,10 @@ void expect_answers_after_exceptions(Engine& engine, const Scene& scene, const T
 }
 
 TEST(Exceptions, EveryStrategyStartsAnew) {
-  using V = Obb<float>;
-  for (const auto& [scene, truth] : motions_with_truth()) {
-    std::vector<Hierarchy<V>> hierarchies;
-    for (const auto& mesh : scene.meshes)
-      hierarchies.emplace_back(mesh, builds::TopDownPrincipal::topology(mesh, 1));
-    std::vector<Shape<V>> shapes;
-    for (std::size_t i = 0; i < scene.frames[0].size(); ++i)
-      shapes.push_back(
-          {&scene.meshes[i % scene.meshes.size()], &hierarchies[i % scene.meshes.size()]});
-    const auto pairs = all_object_pairs(static_cast<std::uint32_t>(shapes.size()));
-    Strategies::for_each([&]<class Strategy>(std::type_identity<Strategy>) {
-      AllPairs<Batch<float, 8>, V, Strategy> engine(shapes, pairs, Strategy{});
-      expect_answers_after_exceptions(engine, scene, truth, Strategy::name);
+  for (const auto& motion : motions_with_truth())
+    for_each_strategy(motion.first, [&](auto& engine, std::string_view name) {
+      expect_answers_after_exceptions(engine, motion.first, motion.second, name);
     });
-  }
 }
 
 template <class V, int F, class Kernel>

@@ -212,11 +212,7 @@ class PlayedWide {
     for (const auto& mesh : scene.meshes)
       hierarchies_.emplace_back(mesh, builds::BottomUpLocal::topology(mesh, 1), Fit::published,
                                 leaf_size);
-    std::vector<WideShape<V, F, Kernel>> shapes;
-    for (std::size_t i = 0; i < scene.frames[0].size(); ++i) {
-      const std::size_t k = i % scene.meshes.size();
-      shapes.push_back({&scene.meshes[k], &hierarchies_[k]});
-    }
+    const auto shapes = shapes_over(scene.meshes, hierarchies_, scene.frames[0].size());
     engine_ = std::make_unique<AllPairsOf<WidePairs<V, F, Memory, Kernel>>>(
         WidePairs<V, F, Memory, Kernel>(shapes),
         all_object_pairs(static_cast<std::uint32_t>(shapes.size())));
