@@ -186,6 +186,10 @@ class FrontRecorder {
   }
 
   NewEntries<Front> no_entries() const { return {front_}; }
+  template <class Entries>
+  static constexpr std::uint64_t tested(const Entries&) {
+    return ~std::uint64_t{0};
+  }
   template <class Node>
   Descent descent(const Node& a, const Node& b) const {
     return front_.descent(a, b);

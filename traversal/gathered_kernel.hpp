@@ -66,8 +66,8 @@ class GatheredPair {
   using StepFor = Step<wanted != TestFor::overlap>;
 
   /// Takes the next step's pairs from the stack and passes them to `visit`.
-  template <TestFor wanted, class Query, class Counter, class Visit>
-  [[gnu::always_inline]] void next(Query&, Counter&, Visit&& visit) {
+  template <TestFor wanted, class Query, class Counter, class Recorder, class Visit>
+  [[gnu::always_inline]] void next(Query&, Counter&, Recorder&, Visit&& visit) {
     StepFor<wanted> step;
     step.count = std::min(W, open_.size());
     for (std::size_t i = 0; i < step.count; ++i) step.pairs.put(i, open_.pop());

@@ -33,6 +33,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -40,6 +41,16 @@
 #include "traversal/reference_sphere.hpp"
 
 namespace bvlab {
+
+/// A float below x, also where x exceeds the largest float: half a unit in the last place is lost
+/// to each of two roundings; the last term covers underflow. A number below all floats gives
+/// minus infinity.
+inline float just_below(double x) {
+  constexpr double largest = std::numeric_limits<float>::max();
+  const auto y = static_cast<float>(std::max(std::min(x, largest), -largest));
+  return y - std::abs(y) * 0x1p-22f - std::numeric_limits<float>::min();
+}
+inline float just_above(double x) { return -just_below(-x); }
 
 template <int kWidth>
 class MeasuredGapsOf {
@@ -68,6 +79,13 @@ class MeasuredGapsOf {
     to.radius[lane] = reference.radius;
     to.rotation[lane] = rounded_down(rotation);
     to.gap[lane] = gap - 8 * reference.error_bound;
+  }
+  /// Makes a gap smaller, never larger, that was set at the present poses; `error_bound` is that of
+  /// coordinates in the other body's frame.
+  void lower_measured(std::size_t i, float gap, float error_bound) {
+    float& least = measured_[i / width].gap[i % width];
+    const float lowered = gap - 8 * error_bound;
+    if (!(lowered >= least)) least = lowered;
   }
   void forget(std::size_t i) {
     Measured& at = measured_[i / width];

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "hierarchies/geometry/relative_pose.hpp"
@@ -89,6 +90,29 @@ struct ReferenceSphere {
   const std::array<const NodeSphere*, 2> spheres{&a, &b};
   const auto side = static_cast<std::size_t>(!(a.radius < b.radius));
   return reference_sphere_of(*spheres[side], side, transforms);
+}
+
+/// The reference sphere of a triangle of a about its first corner; `corner(i, k)` is coordinate k
+/// of its corner i.
+template <class Corner>
+ReferenceSphere reference_sphere_of_triangle(const Corner& corner, const CornerTransform& a_to_b) {
+  ReferenceSphere reference;
+  auto& centre = reference.centre_in[0];
+  for (std::size_t k = 0; k < 3; ++k) centre[k] = corner(0, k);
+  a_to_b(centre[0], centre[1], centre[2])
+      .copy_to(reference.centre_in[1].data(), stdx::vector_aligned);
+  float squared = 0;
+  for (std::size_t i = 1; i < 3; ++i) {
+    float length = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float side = corner(i, k) - centre[k];
+      length += side * side;
+    }
+    squared = std::max(squared, length);
+  }
+  reference.radius = std::sqrt(squared) * (1 + 16 * unit_roundoff<float>);
+  reference.error_bound = a_to_b.error_bound();
+  return reference;
 }
 
 /// Reference spheres, one per lane.

@@ -7,16 +7,15 @@
 /// wide kernels, which tested children, queue the pairs themselves. A traversal from the two roots
 /// is the recursive algorithm. From a front, the steps of its entries come first.
 ///
-/// The parts. GatheredPair goes with FrontRecorder, WidePair with NoRecord and GapMeasure:
+/// The parts. GatheredPair goes with FrontRecorder, WidePair with FrontRecord:
 ///   the pair      two bodies as a kernel sees them, and the open pairs: what a step tests, and
 ///                 what comes next (GatheredPair, WidePair)
-///   the recorder  what a run keeps of tested pairs (FrontRecorder; of wide trees NoRecord and
-///                 GapMeasure, from which WideMargins keeps answers until the next frame)
+///   the recorder  what a run keeps of tested pairs: nothing, a list, or a front with gaps
 ///   the leaves    the pair's leaf stage (HeldPrimitives; FilteredTriangles or SiftedTriangles)
 ///
 /// Members of a pair. `visit(step)` is the loop's; the lanes of a step are bits of a mask.
 ///   done()                            whether no pair is open
-///   next<wanted>(query, counter, visit)   visits the next step, several, or none
+///   next<wanted>(query, counter, recorder, visit)  visits the next step, several, or none
 ///   test<wanted>(step, query, counter)    what is apart: a LanesApart, or more in a derived class
 ///   pass_on(step, found, lanes, entries, recorder, leaves, query, counter)
 ///                                     queues what a step has found near
@@ -26,6 +25,7 @@
 ///   no_entries()                      what `entries` is for a step whose pairs are not yet entries
 ///   sweep_is_due(), sweep(traversal)  whether entries of a front come first; tests them, and
 ///                                     returns whether the query is satisfied
+///   tested(entries)                   the lanes of a step that are tested, where not all are
 ///   record(pair, step, found, near, entries, query)
 ///                                     records what is apart; `near`: the other lanes. Returns the
 ///                                     lanes to pass on. `entries`: the entries that are tested
@@ -94,7 +94,7 @@ class Traversal {
   /// registers.
   template <class Step, class Entries>
   [[gnu::always_inline]] void visit(Step& step, const Entries& entries) {
-    const std::uint64_t lanes = step.lanes();
+    const std::uint64_t lanes = step.lanes() & recorder_.tested(entries);
     count_tests(static_cast<std::size_t>(std::popcount(lanes)));
     const auto found = pair_.template test<wanted>(step, query_, counter_);
     const std::uint64_t near =
@@ -105,7 +105,7 @@ class Traversal {
   /// Visits what the kernel takes next; returns whether the query is satisfied.
   bool next() {
     pair_.template next<wanted>(
-        query_, counter_, [this](auto&& step) __attribute__((always_inline)) {
+        query_, counter_, recorder_, [this](auto&& step) __attribute__((always_inline)) {
           visit(step, recorder_.no_entries());
         });
     return leaves_.test_due();
@@ -114,6 +114,7 @@ class Traversal {
   void count_tests(std::size_t count) {
     // For run() alone.
     if constexpr (requires(const Leaves& leaves) { leaves.tested(); }) tests_ += count;
+    if constexpr (requires { recorder_.count(count); }) recorder_.count(count);
     counter_.tested(count);
   }
 

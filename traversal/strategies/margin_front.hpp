@@ -24,16 +24,6 @@ struct KnownHit {
   std::uint32_t a, b;
 };
 
-/// A float below x, also where x exceeds the largest float: half a unit in the last place is lost
-/// to each of two roundings; the last term covers underflow. A number below all floats gives
-/// minus infinity.
-inline float just_below(double x) {
-  constexpr double largest = std::numeric_limits<float>::max();
-  const auto y = static_cast<float>(std::max(std::min(x, largest), -largest));
-  return y - std::abs(y) * 0x1p-22f - std::numeric_limits<float>::min();
-}
-inline float just_above(double x) { return -just_below(-x); }
-
 /// Where two bodies are now, as gaps are measured and compared.
 class PresentPoses {
  public:

@@ -45,11 +45,9 @@ class BlockTriangles {
   }
 
   std::uint64_t lanes() const { return four_by_four(a_.children, b_.children); }
-  std::uint32_t of_a(int lane) const {
-    return trees_[0]->triangle(a_.first + static_cast<std::uint32_t>(lane / 4));
-  }
-  std::uint32_t of_b(int lane) const {
-    return trees_[1]->triangle(b_.first + static_cast<std::uint32_t>(lane % 4));
+  NodePair numbers(int lane) const {
+    return {a_.first + static_cast<std::uint32_t>(lane / 4),
+            b_.first + static_cast<std::uint32_t>(lane % 4)};
   }
   [[gnu::always_inline]] std::array<Corners<S>, 2> corners(std::size_t part) const {
     const auto& lanes = trees_[1]->corners(b_.first).corner;

@@ -20,7 +20,7 @@
 
 namespace bvlab {
 
-/// PairFrame is a kernel's; Recorder records what is found (GapMeasure, NoRecord).
+/// PairFrame is a kernel's; Recorder records what is found (FrontRecord).
 template <class PairFrame, class Body, class Query, class Counter, class Recorder>
 class FilteredTriangles {
   using S = typename PairFrame::S;
@@ -42,9 +42,12 @@ class FilteredTriangles {
     while (!queue_.empty()) {
       if constexpr (wants_bound<Query>()) {
         float order;
-        const NodePair next = queue_.take_least(order);
+        const OpenPair next = queue_.take_least(order);
         // Where it is positive, `order` is a lower bound on the distance of the pair.
-        if (!(order > 0 && bits(query_.culls(order))) && measure(next)) return true;
+        if (order > 0 && bits(query_.culls(order)))
+          recorder_.culled(next.from, order, frame_);
+        else if (test(next))
+          return true;
       } else {
         if (test(queue_.take_last())) return true;
       }
@@ -53,9 +56,51 @@ class FilteredTriangles {
   }
   /// Tests the held candidates at the end of a run.
   bool finish() { return pending_ > 0 && flush(); }
+  /// Tests the triangles of a pair that decided an earlier run.
+  bool retest(const NodePair& pair) { return test({pair, no_lane}, WideFront::witness); }
   /// Tests the triangles of a pair that a step has found near. `entry` is the front's entry that is
   /// retested, if any.
-  [[gnu::noinline]] bool test(const NodePair& pair, std::size_t entry = WideFront::none) {
+  bool test(const OpenPair& pair, std::size_t entry = WideFront::none) {
+    if constexpr (wants_bound<Query>())
+      return measure(pair, entry);
+    else
+      return filter(pair, entry);
+  }
+
+ protected:
+  using Lanes = S;
+
+  /// Holds a pair that the filter left open; returns whether the query is satisfied.
+  bool hold(const NodePair& numbers) {
+    put(numbers);
+    return pending_ > std::min(Query::buffer_size, at_most - 1) && flush();
+  }
+  void put(const NodePair& numbers, std::size_t entry = 0) {
+    const auto [a, b] = in_meshes(numbers);
+    world_[0][pending_] = bodies_[0]->triangle(a), world_[1][pending_] = bodies_[1]->triangle(b);
+    candidates_[pending_] = {&world_[0][pending_], &world_[1][pending_], a, b, entry};
+    ++pending_;
+  }
+  /// Triangles by their indices in their meshes.
+  NodePair in_meshes(const NodePair& numbers) const {
+    return {frame_.triangle(0, numbers.a), frame_.triangle(1, numbers.b)};
+  }
+  /// Takes the candidates that are held.
+  std::span<const Candidate> take_held() {
+    return std::span(candidates_).first(std::exchange(pending_, 0));
+  }
+
+  const PairFrame& frame_;
+  Query& query_;
+  Counter& counter_;
+  Recorder& recorder_;
+  WorkQueue& queue_;
+  static constexpr std::size_t at_most = 16;
+  std::size_t pending_ = 0;
+
+ private:
+
+  [[gnu::noinline]] bool filter(const OpenPair& pair, std::size_t entry) {
     const auto triangles = frame_.triangles(pair);
     const std::uint64_t lanes = triangles.lanes();
     counter_.primitives(static_cast<std::uint64_t>(std::popcount(lanes)));
@@ -69,69 +114,53 @@ class FilteredTriangles {
         });
     for (std::uint64_t rest = met &= lanes; rest; rest &= rest - 1) {
       const int lane = std::countr_zero(rest);
-      if (!query_.known(triangles.of_a(lane), triangles.of_b(lane))) continue;
+      const NodePair hit = in_meshes(triangles.numbers(lane));
+      if (!query_.known(hit.a, hit.b)) continue;
       recorder_.record_triangles(pair, true, entry);
-      recorder_.record_crossing({triangles.of_a(lane), triangles.of_b(lane), true});
+      recorder_.record_crossing({hit.a, hit.b, true});
       return true;
     }
     std::uint64_t open = lanes & ~apart & ~met;
     if (recorder_.record_triangles(pair, (open | met) != 0, entry))
       recorder_.set_triangle_gap(triangles, counter_, entry);
-    for (; open; open &= open - 1) {
-      const int lane = std::countr_zero(open);
-      if (hold(triangles.of_a(lane), triangles.of_b(lane))) return true;
-    }
+    for (; open; open &= open - 1)
+      if (hold(triangles.numbers(std::countr_zero(open)))) return true;
     return false;
   }
 
- protected:
-  using Lanes = S;
-
-  /// Holds a pair that the filter left open; returns whether the query is satisfied.
-  bool hold(std::uint32_t a, std::uint32_t b) {
-    world_[0][pending_] = bodies_[0]->triangle(a), world_[1][pending_] = bodies_[1]->triangle(b);
-    candidates_[pending_] = {&world_[0][pending_], &world_[1][pending_], a, b, 0};
-    ++pending_;
-    return pending_ > std::min(Query::buffer_size, at_most - 1) && flush();
+  /// Where a distance is sought: the query tests the pairs whose volumes are near enough.
+  [[gnu::noinline]] bool measure(const OpenPair& pair, std::size_t entry) {
+    const double limit = query_.limit();
+    const bool satisfied = measure_near(pair);
+    const bool measures =
+        recorder_.record_triangles(pair, satisfied || query_.limit() < limit, entry);
+    if (measures && !satisfied)
+      recorder_.set_triangle_gap(frame_.triangles(pair), counter_, entry);
+    return satisfied;
   }
-
-  const PairFrame& frame_;
-  Query& query_;
-  Counter& counter_;
-  Recorder& recorder_;
-  WorkQueue& queue_;
-
- private:
-  static constexpr std::size_t at_most = 16;
-
-  /// As test, where a distance is sought: the query tests the pairs whose volumes are near enough.
-  [[gnu::noinline]] bool measure(const NodePair& pair) {
+  bool measure_near(const NodePair& pair) {
     const auto triangles = frame_.triangles(pair);
     std::uint64_t remaining = triangles.lanes();
     if constexpr (requires { triangles.gaps(counter_); })
       remaining &= ~bits(query_.culls(triangles.gaps(counter_)));
     counter_.primitives(static_cast<std::uint64_t>(std::popcount(remaining)));
-    for (; remaining; remaining &= remaining - 1) {
-      const int lane = std::countr_zero(remaining);
-      if (hold(triangles.of_a(lane), triangles.of_b(lane))) return true;
-    }
+    for (; remaining; remaining &= remaining - 1)
+      if (hold(triangles.numbers(std::countr_zero(remaining)))) return true;
     return finish();
   }
 
   bool flush() {
-    const std::size_t count = std::exchange(pending_, 0);
-    const Outcome outcome = query_.primitives(std::span(candidates_).first(count));
-    if constexpr (Query::one_hit_is_enough)
-      if (outcome.witness < count)
-        recorder_.record_crossing(
-            {candidates_[outcome.witness].a, candidates_[outcome.witness].b, false});
+    const auto held = take_held();
+    const Outcome outcome = query_.primitives(held);
+    if constexpr (DecidedByOneHit<Query>)
+      if (outcome.witness < held.size())
+        recorder_.record_crossing({held[outcome.witness].a, held[outcome.witness].b, false});
     return outcome.satisfied;
   }
 
   std::array<Body*, 2> bodies_;
   std::array<std::array<Triangle, at_most>, 2> world_;
   std::array<Candidate, at_most> candidates_;
-  std::size_t pending_ = 0;
 };
 
 }  // namespace bvlab

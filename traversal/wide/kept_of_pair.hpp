@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "traversal/lasting_answer.hpp"
-#include "traversal/wide/gap_measure.hpp"
+#include "traversal/wide/front_record.hpp"
 
 namespace bvlab {
 
@@ -23,12 +23,13 @@ struct PairAnswer {
 struct KeptOfPair {
   LastingAnswer lasting;
   double distance = 0;  ///< the last answer, where a distance is sought
-  NodePair touched{};   ///< GapMeasure::touched of the last traversal that had one
+  std::optional<NodePair> touched;  ///< FrontRecord::touched of the last traversal that had one
   WideFront front;
-  FrontPause pause;
+  FrontPause pause, verdicts_pause;
   std::optional<Crossing> crossing;
   int crossing_pause = 0;       ///< traversals left in which no crossing is kept
   int next_crossing_pause = 1;  ///< the length of the next such pause
+  bool known = false;           ///< the bodies were traversed, or a direction has separated them
   bool was_apart = false, touched_twice = false;
 };
 

@@ -121,12 +121,15 @@ struct MixedKernel {
         return SiblingTest::template gaps<S>(posed(part), pair_frame.frames_.change[1],
                                              others(part));
       }
-      template <class Order>
+      std::uint64_t leaf_lanes() const {
+        return highest_bits(each_of_four(row_a.name.data()) & four_repeated(row_b.name.data()));
+      }
+      template <class Order, class From>
       [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles,
-                                       std::uint64_t remaining, const Order& order,
-                                       NextPair next) const {
+                                       std::uint64_t remaining, const Order& order, NextPair next,
+                                       From from) const {
         push_nodes(nodes, triangles, remaining, each_of_four(row_a.name.data()),
-                   four_repeated(row_b.name.data()), order, next);
+                   four_repeated(row_b.name.data()), order, next, from);
       }
       ReferenceSphere reference_sphere() const {
         return reference_sphere_of_smaller(pair_frame.trees_[0]->node_sphere(node.a),
@@ -162,13 +165,16 @@ struct MixedKernel {
       [[gnu::always_inline]] S gaps(std::size_t part) const {
         return SiblingTest::template gaps<S>(posed, pair_frame.frames_.change[side], others(part));
       }
-      template <class Order>
+      std::uint64_t leaf_lanes() const {
+        return highest_bits(of_sixteen(block.name.data()) & (NodesOfLanes{} + name));
+      }
+      template <class Order, class From>
       [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles,
-                                       std::uint64_t remaining, const Order& order,
-                                       NextPair next) const {
+                                       std::uint64_t remaining, const Order& order, NextPair next,
+                                       From from) const {
         const NodesOfLanes many = of_sixteen(block.name.data()), same = NodesOfLanes{} + name;
-        push_nodes(nodes, triangles, remaining, side ? same : many, side ? many : same, order,
-                   next);
+        push_nodes(nodes, triangles, remaining, side ? same : many, side ? many : same, order, next,
+                   from);
       }
       ReferenceSphere reference_sphere() const {
         return reference_sphere_of(pair_frame.trees_[1 - side]->node_sphere(single), 1 - side,
@@ -227,6 +233,12 @@ struct MixedKernel {
                                      Counter& counter) const {
       sieve.sift(trees_, a_to_b(), triangles, batch, counter);
     }
+    ReferenceSphere reference_sphere(std::uint32_t number) const {
+      const auto& own = trees_[0]->corners(number).corner;
+      return reference_sphere_of_triangle(
+          [&own, lane = number % 4](std::size_t i, std::size_t k) { return own[i][k][lane]; },
+          a_to_b());
+    }
     std::uint32_t triangle(std::size_t side, std::uint32_t number) const {
       return trees_[side]->triangle(number);
     }
@@ -255,17 +267,17 @@ struct MixedKernel {
     }
 
     /// Pairs of two leaves go to the queue of triangles.
-    template <class Order>
+    template <class Order, class From>
     [[gnu::always_inline]] static void push_nodes(WorkQueue& nodes, WorkQueue& triangles,
                                                   std::uint64_t remaining, const NodesOfLanes& a,
                                                   const NodesOfLanes& b, const Order& order,
-                                                  [[maybe_unused]] NextPair next) {
+                                                  [[maybe_unused]] NextPair next, From from) {
       const std::uint64_t leaves = remaining & highest_bits(a & b);
-      if (leaves) triangles.push_sixteen(leaves, a, b, order);
+      if (leaves) triangles.push_sixteen(leaves, a, b, order, from);
       if constexpr (!std::is_same_v<Order, NoOrder>)
         if (next == NextPair::nearest_child)
-          return nodes.push_sixteen_least_last(remaining & ~leaves, a, b, order);
-      nodes.push_sixteen(remaining & ~leaves, a, b, order);
+          return nodes.push_sixteen_least_last(remaining & ~leaves, a, b, order, from);
+      nodes.push_sixteen(remaining & ~leaves, a, b, order, from);
     }
 
     std::array<const Tree*, 2> trees_;

@@ -3,7 +3,7 @@
 /// the last answer is kept, which decides the order of steps.
 ///
 /// A memory keeps state of pairs of bodies from frame to frame. WidePairs calls
-///   add_body(sphere, reach), resize(pairs)  for the bodies and the number of pairs
+///   add_body(sphere, reach, nodes), resize(pairs)  for the bodies and the number of pairs
 ///   forget(pair)                            when a pair parts
 ///   begin_frame<Query>()                    begins a frame; forgets all if the query differs
 ///   move(i, body, pose, culling, origin)    body i is at `pose`
@@ -16,8 +16,8 @@
 ///   skips_directions(pair)                  see EarlyCulling::cull_by_directions
 ///   apart(pair, bodies, gap)                a direction has separated the pair
 ///   start<Query>(pair, bodies)              where a traversal starts
-///   remember(pair, bodies, query, measure)  keeps what the traversal has found
-/// and uses Measure<S>, the type of what a traversal measures for it.
+///   remember(pair, bodies, query, record)   keeps what the traversal has found
+/// and uses Record<S>, the type of what a traversal records for it.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@
 #include "hierarchies/wide/fitting.hpp"
 #include "traversal/queries/query.hpp"
 #include "traversal/wide/early_culling.hpp"
-#include "traversal/wide/gap_measure.hpp"
+#include "traversal/wide/front_record.hpp"
 
 namespace bvlab {
 
@@ -44,9 +44,9 @@ class NoMemory {
  public:
   static constexpr std::string_view name = "recursive";
   template <class S>
-  using Measure = NoRecord;
+  using Record = FrontRecord<S, Keeps::nothing>;
 
-  void add_body(const MeshSphere& sphere, double) { spheres_.push_back(sphere); }
+  void add_body(const MeshSphere& sphere, double, std::size_t) { spheres_.push_back(sphere); }
   void resize(std::size_t pairs) { touched_.resize(pairs); }
   static void forget(std::size_t) {}
   template <class Query>
@@ -85,8 +85,8 @@ class NoMemory {
     else
       return {};
   }
-  template <class Query>
-  void remember(std::size_t p, const ObjectPair&, const Query& query, const NoRecord&) {
+  template <class Query, class Record>
+  void remember(std::size_t p, const ObjectPair&, const Query& query, const Record&) {
     if constexpr (AnswersYesOrNo<Query>) touched_[p] = query.answer();
   }
 

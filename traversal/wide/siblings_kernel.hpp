@@ -17,13 +17,15 @@
 ///                                      not used. Members of a step:
 ///       lanes()                          the lanes in use, of `parts` registers S
 ///       overlap(part), separation(part), gaps(part)
-///       push(nodes, triangles, lanes, order, next)
+///       push(nodes, triangles, lanes, order, next, from)
+///       leaf_lanes()                     the lanes that `push` queues as triangles
 ///       reference_sphere()               a sphere around one of the nodes, in both frames
 ///     prefetch(pair)                   begins to load what a step will read
 ///     sift(sieve, triangles, ...)      where all hits are sought (contact_sieve.hpp)
 ///     triangle(side, number)           the mesh's index of a triangle that a batch numbers
+///     reference_sphere(number)         a sphere around that triangle of a
 ///     triangles(pair)                  triangles tested at once, of pairs that `push` found:
-///       lanes(), corners(part) of a and of b, of_a(lane), of_b(lane)
+///       lanes(), corners(part) of a and of b, numbers(lane) of both
 ///       gap(counter), reference_sphere() a lower bound on their distance, and its sphere
 ///       gaps(counter)                    the same for each lane, if triangles have volumes
 #pragma once
@@ -104,15 +106,16 @@ struct SiblingsKernel {
       [[gnu::always_inline]] S gaps(std::size_t) const {
         return pair_frame.frame_.gaps(side, node[side], posed);
       }
-      /// `order` is an array of one register, or NoOrder.
-      template <class Order>
+      std::uint64_t leaf_lanes() const { return leaves ? many.lanes : 0; }
+      /// `order` is an array of one register, or NoOrder; `from` as in WorkQueue::push_lanes.
+      template <class Order, class From>
       [[gnu::always_inline]] void push(WorkQueue& nodes, WorkQueue& triangles,
-                                       std::uint64_t remaining, const Order& order,
-                                       NextPair) const {
+                                       std::uint64_t remaining, const Order& order, NextPair,
+                                       From from) const {
         WorkQueue& to = leaves ? triangles : nodes;
         const auto push = [&](const auto& of_lanes) __attribute__((always_inline)) {
           to.template push_lanes<F>(static_cast<int>(side), remaining, many.first, node[1 - side],
-                                    of_lanes);
+                                    of_lanes, from);
         };
         if constexpr (std::is_same_v<Order, NoOrder>)
           push(order);
@@ -141,9 +144,11 @@ struct SiblingsKernel {
         const S gap = SiblingTestOf<V>::template triangle_gaps<S>(b.volume, triangles_of_a);
         return {gap, gap};
       }
+      std::uint64_t leaf_lanes() const { return a.lanes; }
+      template <class From>
       [[gnu::always_inline]] void push(WorkQueue&, WorkQueue& triangles, std::uint64_t remaining,
-                                       NoOrder order, NextPair) const {
-        triangles.template push_lanes<F>(0, remaining, a.first, node.b, order);
+                                       NoOrder order, NextPair, From from) const {
+        triangles.template push_lanes<F>(0, remaining, a.first, node.b, order, from);
       }
       ReferenceSphere reference_sphere() const {
         return pair_frame.frame_.reference_sphere(1, node.b);
@@ -193,10 +198,8 @@ struct SiblingsKernel {
             leaf_(pair_frame.hierarchies_[1]->node(pair.b)) {}
 
       std::uint64_t lanes() const { return leaf_.lanes; }
-      std::uint32_t of_a(int) const { return pair_frame_.hierarchies_[0]->triangle(pair_.a); }
-      std::uint32_t of_b(int lane) const {
-        return pair_frame_.hierarchies_[1]->triangle(leaf_.first +
-                                                     static_cast<std::uint32_t>(lane));
+      NodePair numbers(int lane) const {
+        return {pair_.a, leaf_.first + static_cast<std::uint32_t>(lane)};
       }
       [[gnu::always_inline]] std::array<Corners<S>, 2> corners(std::size_t) const {
         const auto& lanes = pair_frame_.hierarchies_[1]->corners(leaf_.first).corner;
@@ -227,28 +230,7 @@ struct SiblingsKernel {
         const S gaps = pair_frame_.frame_.separation(1, pair_.b, posed(counter)).gap;
         return stdx::hmin(select(gaps > S(0.0f), gaps, S(0.0f)));
       }
-      /// A sphere around the triangle of a about its first corner.
-      ReferenceSphere reference_sphere() const {
-        const auto& own = pair_frame_.hierarchies_[0]->corners(pair_.a).corner;
-        ReferenceSphere reference;
-        for (std::size_t k = 0; k < 3; ++k) reference.centre_in[0][k] = own[0][k][lane_];
-        pair_frame_
-            .a_to_b()(reference.centre_in[0][0], reference.centre_in[0][1],
-                      reference.centre_in[0][2])
-            .copy_to(reference.centre_in[1].data(), stdx::vector_aligned);
-        float squared = 0;
-        for (std::size_t i = 1; i < 3; ++i) {
-          float length = 0;
-          for (std::size_t k = 0; k < 3; ++k) {
-            const float side = own[i][k][lane_] - own[0][k][lane_];
-            length += side * side;
-          }
-          squared = std::max(squared, length);
-        }
-        reference.radius = std::sqrt(squared) * (1 + 16 * unit_roundoff<float>);
-        reference.error_bound = pair_frame_.a_to_b().error_bound();
-        return reference;
-      }
+      ReferenceSphere reference_sphere() const { return pair_frame_.reference_sphere(pair_.a); }
 
      private:
       /// The triangle's volume, to be tested against the leaf's.
@@ -271,6 +253,12 @@ struct SiblingsKernel {
     [[gnu::always_inline]] void sift(ContactSieve& sieve, WorkQueue& triangles, ContactBatch& batch,
                                      Counter& counter) const {
       sieve.sift(hierarchies_, a_to_b(), triangles, batch, counter);
+    }
+    ReferenceSphere reference_sphere(std::uint32_t number) const {
+      const auto& own = hierarchies_[0]->corners(number).corner;
+      return reference_sphere_of_triangle(
+          [&own, lane = number % F](std::size_t i, std::size_t k) { return own[i][k][lane]; },
+          a_to_b());
     }
     /// The mesh's index of a triangle of `side`, by the number that a batch has.
     std::uint32_t triangle(std::size_t side, std::uint32_t number) const {

@@ -4,8 +4,14 @@
 /// (contact_batch.hpp).
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
+#include <limits>
+#include <span>
 
+#include "traversal/primitives/triangle_gap.hpp"
 #include "traversal/wide/contact_batch.hpp"
 #include "traversal/wide/filtered_triangles.hpp"
 
@@ -15,7 +21,9 @@ template <class PairFrame, class Body, class Query, class Counter, class Recorde
 class SiftedTriangles : public FilteredTriangles<PairFrame, Body, Query, Counter, Recorder> {
   using Filtered = FilteredTriangles<PairFrame, Body, Query, Counter, Recorder>;
   using Filtered::frame_, Filtered::query_, Filtered::counter_, Filtered::recorder_,
-      Filtered::queue_, Filtered::hold;
+      Filtered::queue_, Filtered::hold, Filtered::put, Filtered::take_held, Filtered::pending_,
+      Filtered::at_most;
+  using S = typename PairFrame::S;
 
  public:
   template <class Pair, class Workspace>
@@ -32,28 +40,97 @@ class SiftedTriangles : public FilteredTriangles<PairFrame, Body, Query, Counter
   [[gnu::always_inline]] bool test_due() {
     if constexpr (Recorder::measures_gaps)
       for (std::size_t i = 0; i < queue_.size(); ++i)
-        recorder_.record_triangles(queue_[i], false, Recorder::no_entries());
+        recorder_.record_triangles(queue_[i], false, WideFront::none);
     while (!queue_.empty()) {
       frame_.sift(sieve_, queue_, batch_, counter_);
       if (batch_.full() && decide(ContactBatch::Decide::full_registers)) return true;
     }
     return false;
   }
-  bool finish() { return decide(ContactBatch::Decide::all) || Filtered::finish(); }
+  /// Tests the triangles of an entry: with the others in the queue, unless they are all apart by a
+  /// gap that lasts, or their verdicts are to be entries.
+  bool test(const OpenPair& pair, std::size_t entry) {
+    if (recorder_.is_verdict(entry))
+      test_verdict(pair, entry);
+    else if (recorder_.sorts(entry))
+      sort(pair, entry);
+    else if (!recorder_.record_triangles(pair, false, entry) ||
+             !recorder_.set_triangle_gap(frame_.triangles(pair), counter_, entry))
+      queue_.push(pair, 0);
+    return false;
+  }
+  bool finish() {
+    if (held_ == Held::verdicts) find_verdicts();
+    return decide(ContactBatch::Decide::all) || Filtered::finish();
+  }
 
  private:
+  /// Sorts the pairs of triangles of an entry. Those that are apart by a wide gap in float stay in
+  /// it: the least of these gaps is the entry's. The verdict on each of the others becomes an entry
+  /// of its own, with its margin: one that is soon due does not make the others due.
+  [[gnu::noinline]] void sort(const OpenPair& pair, std::size_t entry) {
+    const auto triangles = frame_.triangles(pair);
+    const std::uint64_t lanes = triangles.lanes() & recorder_.tested(entry);
+    counter_.primitives(static_cast<std::uint64_t>(std::popcount(lanes)));
+    std::uint64_t near = 0;
+    float least = std::numeric_limits<float>::infinity();
+    alignas(64) std::array<float, 16> gaps;
+    for_each_part<S, PairFrame::parts>(
+        lanes, [&](std::size_t part) __attribute__((always_inline)) {
+          const auto [x, y] = triangles.corners(part);
+          const S gap = triangle_gap<S>(x, y, S(frame_.a_to_b().error_bound()));
+          gap.copy_to(&gaps[part * S::size()], stdx::element_aligned);
+          near |= bits(!(gap > S(recorder_.least_useful()))) << (part * S::size());
+        });
+    for (std::uint64_t rest = lanes & ~near; rest; rest &= rest - 1)
+      least = std::min(least, gaps[static_cast<std::size_t>(std::countr_zero(rest))]);
+    recorder_.set_margin(least, triangles.reference_sphere(), entry);
+    for (std::uint64_t rest = lanes & near; rest; rest &= rest - 1) {
+      const int lane = std::countr_zero(rest);
+      const NodePair numbers = triangles.numbers(lane);
+      test_verdict(numbers, recorder_.add_verdict(numbers, entry, lane));
+    }
+  }
+  /// Tests two triangles whose verdict is an entry; `numbers` are theirs in the trees.
+  void test_verdict(const NodePair& numbers, std::size_t entry) {
+    if (held_ == Held::open) Filtered::finish();
+    held_ = Held::verdicts;
+    counter_.primitives(1);
+    put(numbers, entry);
+    if (pending_ == at_most) find_verdicts();
+  }
+  /// Finds the verdicts on the held pairs, which are entries, and their margins.
+  [[gnu::noinline]] void find_verdicts() {
+    const auto held = take_held();
+    held_ = Held::open;
+    std::array<Verdict, at_most> verdicts;
+    query_.primitives(held, std::span(verdicts).first(held.size()));
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      const double margin = verdicts[i].margin > 0 ? verdicts[i].margin : 0;  // also where it is NaN
+      recorder_.set_verdict(held[i].slot, verdicts[i].hit, just_below(margin), {held[i].a, held[i].b},
+                            frame_);
+    }
+  }
+
+  bool hold_open(const NodePair& numbers) {
+    if (held_ == Held::verdicts) find_verdicts();
+    return hold(numbers);
+  }
   [[gnu::noinline]] bool decide(ContactBatch::Decide which) {
     return batch_.template decide<typename Filtered::Lanes>(
         which, frame_.a_to_b().error_bound(),
         [&](std::uint32_t number_a, std::uint32_t number_b, bool meeting) {
-          const std::uint32_t a = frame_.triangle(0, number_a), b = frame_.triangle(1, number_b);
-          recorder_.record_touching({number_a, number_b});
-          return meeting ? query_.known(a, b) : hold(a, b);
+          const NodePair numbers{number_a, number_b};
+          recorder_.record_touching(numbers);
+          if (!meeting) return hold_open(numbers);
+          const auto [a, b] = Filtered::in_meshes(numbers);
+          return query_.known(a, b);
         });
   }
 
   typename PairFrame::ContactSieve& sieve_;
   ContactBatch& batch_;
+  enum class Held { open, verdicts } held_ = Held::open;  // pairs that the filter left, or entries
 };
 
 }  // namespace bvlab

@@ -38,7 +38,7 @@
 #include "traversal/queries/query.hpp"
 #include "traversal/wide/crossing_batch.hpp"
 #include "traversal/wide/followed_bodies.hpp"
-#include "traversal/wide/gap_measure.hpp"
+#include "traversal/wide/front_record.hpp"
 #include "traversal/wide/kept_of_pair.hpp"
 #include "traversal/wide/no_memory.hpp"
 
@@ -49,9 +49,9 @@ class WideMargins {
  public:
   static constexpr std::string_view name = "margins";
   template <class S>
-  using Measure = GapMeasure<S>;
+  using Record = FrontRecord<S, Keeps::gaps>;
 
-  void add_body(const MeshSphere& sphere, double reach) {
+  void add_body(const MeshSphere& sphere, double reach, std::size_t) {
     bodies_.add({sphere.centre, sphere.radius, reach, 0});
   }
   void resize(std::size_t pairs) {
@@ -62,9 +62,9 @@ class WideMargins {
   void forget(std::size_t p) {
     answers_[p] = {};
     Kept& kept = kept_[p];
-    kept.lasting.forget(), kept.was_apart = kept.touched_twice = false;
+    kept.lasting.forget(), kept.known = kept.was_apart = kept.touched_twice = false;
     kept.crossing.reset(), kept.crossing_pause = 0, kept.next_crossing_pause = 1;
-    clear_front(p), kept.pause = {};
+    clear_front(p), kept.pause = kept.verdicts_pause = {};
   }
 
   /// The entries of the front of pair p, and of all pairs.
@@ -122,77 +122,73 @@ class WideMargins {
     Kept& kept = kept_[p];
     answers_[p] = {unknown, bodies_.epochs(pair), false};
     kept.crossing.reset(), clear_front(p);
-    kept.was_apart = true, kept.touched_twice = false;
+    kept.known = kept.was_apart = true, kept.touched_twice = false;
     extend_validity(p, pair, gap);
   }
 
   template <class Query>
   TraversalStart start(std::size_t p, const ObjectPair& pair) {
-    if constexpr (wants_bound<Query>()) {
-      return {};
-    } else {
-      Kept& kept = kept_[p];
-      TraversalStart start;
-      start.expect = answers_[p].touching ? Expect::touching : Expect::apart;
-      if (Query::one_hit_is_enough && answers_[p].touching) start.touched = kept.touched;
-      // A front pays where the bodies have been apart before and their fronts did not wear out at
-      // once.
-      if (kept.pause.over() && kept.was_apart) start.front = &kept.front;
-      start.rotation = bodies_.rotation(pair);
-      return start;
-    }
+    Kept& kept = kept_[p];
+    TraversalStart start;
+    start.expect = answers_[p].touching ? Expect::touching : Expect::apart;
+    if (wants_bound<Query>())
+      start.witness = kept.touched;
+    else if (DecidedByOneHit<Query> && answers_[p].touching)
+      start.touched = kept.touched;
+    // A front pays from the second traversal on, unless the last ones wore out at once; where one
+    // hit is enough, while the bodies are apart.
+    if (kept.pause.over() && kept.known && (!wants_bound<Query>() || kept.touched) && (!DecidedByOneHit<Query> || kept.was_apart))
+      start.front = &kept.front;
+    if constexpr (FindsAllHits<Query>)
+      start.verdicts = kept.front.is_complete() && kept.verdicts_pause.over();
+    start.rotation = bodies_.rotation(pair);
+    start.step = static_cast<float>(bodies_.step(pair));
+    return start;
   }
 
   /// Gives a query the last answer.
   template <class Query>
   void repeat(std::size_t p, Query& query) const {
-    if constexpr (requires { query.repeat(0.0); })
+    if constexpr (requires { query.repeat(0.0); }) {
       query.repeat(kept_[p].distance);
-    else if (answers_[p].touching)
-      query.known(kept_[p].touched.a, kept_[p].touched.b);
+    } else if constexpr (FindsAllHits<Query>) {
+      for (const WideFront::Hit& hit : kept_[p].front.hits)
+        query.known(hit.triangles.a, hit.triangles.b);
+    } else if (answers_[p].touching) {
+      query.known(kept_[p].touched->a, kept_[p].touched->b);
+    }
   }
 
-  /// A distance holds while neither body moves.
-  template <class Query>
-  void remember(std::size_t p, const ObjectPair& pair, const Query& query, const NoRecord&) {
-    answers_[p] = {unknown, bodies_.epochs(pair), false};
-    kept_[p].distance = query.distance();
-  }
-  template <class Query, class S>
-  void remember(std::size_t p, const ObjectPair& pair, const Query& query,
-                const GapMeasure<S>& found) {
+  template <class Query, class Record>
+  void remember(std::size_t p, const ObjectPair& pair, const Query& query, const Record& found) {
     Answer& answer = answers_[p];
     Kept& kept = kept_[p];
     answer = {unknown, bodies_.epochs(pair), found.touched().has_value()};
     if constexpr (AnswersYesOrNo<Query>) answer.touching = query.answer();
+    if constexpr (FindsAllHits<Query>)
+      answer.touching = answer.touching || !kept.front.hits.empty();
     kept.lasting.forget();
     kept.crossing.reset();
-    kept.touched_twice = answer.touching && !kept.was_apart;
-    kept.was_apart = !answer.touching;
-    if (answer.touching) {
-      kept.touched = *found.touched();
-      if (kept.crossing_pause > 0)
-        --kept.crossing_pause;
-      else
-        kept.crossing = found.crossing();
-      clear_front(p);
+    kept.known = true;
+    if (found.touched()) kept.touched = found.touched();
+    keep_front(p, found);
+    if constexpr (wants_bound<Query>()) {
+      kept.distance = query.distance();  // it holds while neither body moves
       return;
+    } else {
+      kept.touched_twice = answer.touching && !kept.was_apart;
+      kept.was_apart = !answer.touching;
+      if (DecidedByOneHit<Query> && answer.touching) {
+        if (kept.crossing_pause > 0)
+          --kept.crossing_pause;
+        else
+          kept.crossing = found.crossing();
+        return clear_front(p);
+      }
+      // A smaller gap would hardly last until the next frame; and the front has the hits.
+      const double gap = answer.touching && !kept.front.is_complete() ? 0 : found.gap();
+      if (gap > bodies_.step(pair)) extend_validity(p, pair, gap);
     }
-    if (found.keeps_front()) {
-      WideFront& front = kept.front;
-      // Retesting an entry costs as much as a step of a traversal; the saved ones must also pay for
-      // writing fronts.
-      const bool worn = found.sweeps() && 4 * found.due_count() > 3 * front.size();
-      if (found.sweeps())
-        kept.pause.begin(worn);
-      else
-        front.complete();
-      if (worn || front.overgrown()) front.clear();
-      front_sizes_[p] = static_cast<std::uint32_t>(front.size());
-    }
-    // A smaller gap would hardly last until the next frame.
-    const double gap = found.gap();
-    if (gap > bodies_.step(pair)) extend_validity(p, pair, gap);
   }
 
  private:
@@ -261,6 +257,15 @@ class WideMargins {
     kept.next_crossing_pause = std::min(4 * kept.next_crossing_pause, longest_crossing_pause);
   }
 
+  template <class Record>
+  void keep_front(std::size_t p, const Record& found) {
+    Kept& kept = kept_[p];
+    if (found.sweeps() || found.worn()) kept.pause.begin(found.worn());
+    if (found.keeps_front() && !found.sweeps()) kept.front.complete();
+    if (found.found_verdicts()) kept.verdicts_pause.begin(found.verdicts_worn());
+    if (kept.front.overgrown() || found.verdicts_worn()) kept.front.clear();
+    front_sizes_[p] = static_cast<std::uint32_t>(kept.front.size());
+  }
   void clear_front(std::size_t p) { kept_[p].front.clear(), front_sizes_[p] = 0; }
 
   /// Makes the answer valid until the bodies have come nearer by `gap`.

@@ -17,7 +17,7 @@
 #include "traversal/traversal.hpp"
 #include "traversal/wide/contact_batch.hpp"
 #include "traversal/wide/filtered_triangles.hpp"
-#include "traversal/wide/gap_measure.hpp"
+#include "traversal/wide/front_record.hpp"
 #include "traversal/wide/sifted_triangles.hpp"
 #include "traversal/wide/work_queue.hpp"
 
@@ -28,6 +28,7 @@ struct WideWorkspace {
   WorkQueue nodes;      ///< pairs of nodes
   WorkQueue triangles;  ///< pairs whose triangles are to be tested
   ContactBatch batch;   ///< pairs of triangles that may touch, where all hits are sought
+  std::vector<std::uint64_t> due;  ///< of a front, for each register of entries those that are due
 };
 
 template <BoundingVolume V, int F, class Kernel>
@@ -58,17 +59,25 @@ class WidePair {
   void retry(const NodePair& touched) { frame_.retry(touched, nodes_, triangles_); }
 
   const PairFrame& frame() const { return frame_; }
+  /// The open pairs of nodes, and those whose triangles wait for a test.
+  WorkQueue& nodes() { return nodes_; }
+  WorkQueue& triangles() { return triangles_; }
   /// The first test of triangles where all hits are sought; it keeps a leaf of a, transformed.
   typename PairFrame::ContactSieve& sieve() { return sieve_; }
   bool done() const { return nodes_.empty(); }
 
-  template <TestFor wanted, class Query, class Counter, class Visit>
-  [[gnu::always_inline]] void next(Query& query, Counter& counter, Visit&& visit) {
+  template <TestFor wanted, class Query, class Counter, class Recorder, class Visit>
+  [[gnu::always_inline]] void next(Query& query, Counter& counter, Recorder& recorder,
+                                   Visit&& visit) {
     if constexpr (wanted == TestFor::bound) {
+      if (nodes_.empty()) return;  // a front was retested, and nothing is near
       float order;
-      const NodePair pair = nodes_.take_least(order);
+      const OpenPair pair = nodes_.take_least(order);
       // Where it is positive, `order` is a lower bound on the distance of the pair.
-      if (!(order > 0 && bits(query.culls(order)))) step<Query>(pair, counter, visit);
+      if (order > 0 && bits(query.culls(order)))
+        recorder.culled(pair.from, order, frame_);
+      else
+        step<Query>(pair, counter, visit);
     } else if constexpr (FindsAllHits<Query>) {
       several<Query>(counter, visit);
     } else {
@@ -86,14 +95,14 @@ class WidePair {
   template <class KernelStep>
   struct Step {
     const KernelStep& of;
-    NodePair pair;
+    OpenPair pair;
 
     std::uint64_t lanes() const { return of.lanes(); }
   };
 
   /// Has the kernel make the step of a pair, and visits it.
   template <class Query, class Counter, class Visit>
-  [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Visit&& visit) {
+  [[gnu::always_inline]] void step(const OpenPair& pair, Counter& counter, Visit&& visit) {
     const auto named = [&]<class KernelStep>(const KernelStep& step)
         __attribute__((always_inline)) {
       visit(Step<KernelStep>{step, pair});
@@ -128,13 +137,14 @@ class WidePair {
 
   template <class Step, class Entry, class Recorder, class Leaves, class Query, class Counter>
   [[gnu::always_inline]] void pass_on(const Step& step, const Found& found, std::uint64_t lanes,
-                                      Entry, Recorder&, Leaves&, Query&, Counter&) {
+                                      Entry, Recorder& recorder, Leaves&, Query&, Counter&) {
     constexpr bool ordered = Kernel::nearest_child_first && DecidedByOneHit<Query>;
     if constexpr (FindsAllHits<Query>)
-      step.of.push(nodes_, triangles_, lanes, NoOrder(), NextPair::any);
+      step.of.push(nodes_, triangles_, lanes, NoOrder(), NextPair::any, recorder.lanes());
     else
       step.of.push(nodes_, triangles_, lanes, found.order,
-                   ordered && steps_ <= most_in_order ? NextPair::nearest_child : NextPair::any);
+                   ordered && steps_ <= most_in_order ? NextPair::nearest_child : NextPair::any,
+                   recorder.lanes());
   }
 
  private:
@@ -145,7 +155,7 @@ class WidePair {
 
   template <class Query, class Counter, class Visit>
   [[gnu::always_inline]] void several(Counter& counter, Visit& visit) {
-    std::array<NodePair, at_once> taken;
+    std::array<OpenPair, at_once> taken;
     const std::size_t count = std::min(nodes_.size(), at_once);
     for (std::size_t k = 0; k < count; ++k) taken[k] = nodes_.take_last();
     if constexpr (FindsAllHits<Query>)
@@ -159,7 +169,9 @@ class WidePair {
     using S = typename Found::S;
     if constexpr (wanted == TestFor::bound) {
       found.order[part] = step.gaps(part);
-      return bits(query.culls(found.order[part]));
+      const auto culled = query.culls(found.order[part]);
+      stdx::where(culled, found.least) = stdx::min(found.least, found.order[part]);
+      return bits(culled);
     } else if constexpr (wanted == TestFor::margins) {
       const auto seen = step.separation(part);
       found.order[part] = seen.order;

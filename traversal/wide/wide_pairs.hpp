@@ -34,13 +34,14 @@ class WidePairs {
 
  public:
   /// One body for each shape, which must outlive this.
-  explicit WidePairs(std::span<const WideShape<V, F, Kernel>> shapes) {
+  explicit WidePairs(std::span<const WideShape<V, F, Kernel>> shapes, Memory memory = {})
+      : memory_(std::move(memory)) {
     bodies_.reserve(shapes.size());
     for (const auto& [mesh, hierarchy] : shapes) {
       bodies_.emplace_back(*mesh, *hierarchy);
       meshes_.push_back(mesh);
       culling_.add_body(hierarchy->supports());
-      memory_.add_body(hierarchy->sphere(), hierarchy->reach());
+      memory_.add_body(hierarchy->sphere(), hierarchy->reach(), hierarchy->size());
     }
   }
 
@@ -154,12 +155,11 @@ class WidePairs {
                             std::uint64_t before, Counter& counter, MakeQuery& make_query,
                             Take& take) try {
     using Lanes = typename Kernel::template PairFrame<V, F>::S;
-    using Measure = std::conditional_t<wants_bound<Query>(), NoRecord,
-                                       typename Memory::template Measure<Lanes>>;
+    using Record = typename Memory::template Record<Lanes>;
     struct Running {
       std::uint32_t pair;
       std::optional<Query> query;
-      std::optional<Traversal<WidePair<V, F, Kernel>, Query, Counter, Measure>> traversal;
+      std::optional<Traversal<WidePair<V, F, Kernel>, Query, Counter, Record>> traversal;
     };
     std::array<Running, at_once> all;
     std::array<Running*, at_once> running;

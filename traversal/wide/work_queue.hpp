@@ -5,6 +5,8 @@
 /// is, the likelier the pair ends the search.
 ///
 /// Where order does not matter the last pair is taken, as from a stack.
+///
+/// A pair may be pushed with its origin: the lane of an entry of a front that opened it.
 #pragma once
 
 #include <algorithm>
@@ -83,6 +85,18 @@ enum class NextPair { any, nearest_child };
 /// In place of the orders of pairs that are taken in any order: none is kept.
 struct NoOrder {};
 
+/// Where a pair comes from: lane k of entry e is 16 e + k. A step pushes all its lanes from one
+/// entry, and passes 16 e.
+using LaneOfEntry = std::uint32_t;
+inline constexpr LaneOfEntry no_lane = 0xffffffffu;
+/// In place of it where there is no front: none is kept.
+struct NoLanes {};
+
+/// An open pair and where it comes from; undefined if it was pushed without that.
+struct OpenPair : NodePair {
+  LaneOfEntry from;
+};
+
 /// The nodes of one body in sixteen lanes.
 using NodesOfLanes [[gnu::vector_size(64)]] = std::uint32_t;
 
@@ -96,17 +110,20 @@ class WorkQueue {
   bool empty() const { return size_ == 0; }
   std::size_t size() const { return size_; }
 
-  void push(const NodePair& pair, float order) {
+  void push(const NodePair& pair, float order, LaneOfEntry from = no_lane) {
     reserve();
-    id_[0][size_] = pair.a, id_[1][size_] = pair.b;
+    id_[0][size_] = pair.a, id_[1][size_] = pair.b, id_[2][size_] = from;
     order_[window + size_++] = order;
   }
 
-  /// Pushes `other` with first + k of `side`, for each set bit k of the mask.
-  template <int F, class Order>
+  /// Pushes `other` with first + k of `side`, for each set bit k of the mask. `from` is NoLanes or
+  /// 16 times the number of an entry.
+  template <int F, class Order, class From>
   [[gnu::always_inline]] void push_lanes(int side, std::uint64_t mask, std::uint32_t first,
-                                         std::uint32_t other, const Order& order) {
+                                         std::uint32_t other, const Order& order, From from) {
     reserve();
+    if constexpr (!std::is_same_v<From, NoLanes>)
+      detail::write_numbers<F>(&id_[2][size_], mask, from);
     const std::size_t count =
         detail::write_numbers<F>(&id_[static_cast<std::size_t>(side)][size_], mask, first);
     std::fill_n(&id_[static_cast<std::size_t>(1 - side)][size_], F, other);
@@ -116,9 +133,12 @@ class WorkQueue {
   }
 
   /// The same for a pair in each of sixteen lanes.
+  template <class From>
   [[gnu::always_inline]] void push_sixteen(std::uint64_t mask, const NodesOfLanes& a,
-                                           const NodesOfLanes& b, NoOrder) {
+                                           const NodesOfLanes& b, NoOrder, From from) {
     reserve();
+    if constexpr (!std::is_same_v<From, NoLanes>)
+      detail::write_numbers<16>(&id_[2][size_], mask, from);
 #if defined(__AVX512F__)
     const auto lanes = static_cast<__mmask16>(mask);
     _mm512_storeu_si512(&id_[0][size_], _mm512_maskz_compress_epi32(lanes, (__m512i)a));
@@ -132,11 +152,13 @@ class WorkQueue {
 #endif
   }
   /// The same; `order` is that of all sixteen, in registers.
-  template <class S, std::size_t parts>
+  template <class S, std::size_t parts, class From>
   [[gnu::always_inline]] void push_sixteen(std::uint64_t mask, const NodesOfLanes& a,
                                            const NodesOfLanes& b,
-                                           const std::array<S, parts>& order) {
+                                           const std::array<S, parts>& order, From from) {
     reserve();
+    if constexpr (!std::is_same_v<From, NoLanes>)
+      detail::write_numbers<16>(&id_[2][size_], mask, from);
     float* to = &order_[window + size_];
 #if defined(__AVX512F__)
     if constexpr (parts == 1) {
@@ -156,30 +178,28 @@ class WorkQueue {
   }
 
   /// The same, the least in order last.
-  template <class S, std::size_t parts>
+  template <class S, std::size_t parts, class From>
   [[gnu::always_inline]] void push_sixteen_least_last(std::uint64_t mask, const NodesOfLanes& a,
                                                       const NodesOfLanes& b,
-                                                      const std::array<S, parts>& order) {
+                                                      const std::array<S, parts>& order,
+                                                      From from) {
     if (mask == 0) return;
     const std::uint64_t least = detail::least_of(mask, order);
-    push_sixteen(mask & ~least, a, b, order);
-    push_sixteen(least, a, b, order);
+    push_sixteen(mask & ~least, a, b, order, from);
+    push_sixteen(least, a, b, order, from);
   }
 
-  NodePair operator[](std::size_t i) const { return {id_[0][i], id_[1][i]}; }
-  NodePair last() const { return (*this)[size_ - 1]; }
-  NodePair take_last() {
-    --size_;
-    return {id_[0][size_], id_[1][size_]};
-  }
+  OpenPair operator[](std::size_t i) const { return {{id_[0][i], id_[1][i]}, id_[2][i]}; }
+  OpenPair last() const { return (*this)[size_ - 1]; }
+  OpenPair take_last() { return (*this)[--size_]; }
 
   /// Takes the least in order of the last 32, the last if there are several, and writes its order.
-  [[gnu::always_inline]] NodePair take_least(float& order) {
+  [[gnu::always_inline]] OpenPair take_least(float& order) {
     const std::size_t at = least();
     order = order_[window + at];
-    const NodePair pair{id_[0][at], id_[1][at]};
+    const OpenPair pair = (*this)[at];
     --size_;
-    id_[0][at] = id_[0][size_], id_[1][at] = id_[1][size_];
+    for (auto& id : id_) id[at] = id[size_];
     order_[window + at] = order_[window + size_];
     return pair;
   }
@@ -220,10 +240,11 @@ class WorkQueue {
   [[gnu::noinline]] void grow(std::size_t capacity) {
     order_.resize(window + capacity + 16);
     std::fill_n(order_.begin(), window, std::numeric_limits<float>::infinity());
-    id_[1].resize(capacity), id_[0].resize(capacity);
+    id_[2].resize(capacity), id_[1].resize(capacity), id_[0].resize(capacity);
   }
 
-  std::array<std::vector<std::uint32_t>, 2> id_;
+  // Of a, of b, and where the pair comes from.
+  std::array<std::vector<std::uint32_t>, 3> id_;
   std::vector<float> order_;
   std::size_t size_ = 0;
 };
