@@ -85,7 +85,7 @@ class StrategyPairs {
     for (const std::uint32_t slot : slots) {
       const ObjectPair& pair = pairs_[slot];
       auto query = make_query(slot, pair);
-      const std::uint64_t before = counter.n_v + counter.n_p;
+      const std::uint64_t before = counter.tests();
       if (!are_all_moved_)
         for (const auto k : {pair.i, pair.j})
           once(moved_[k], frame_, sharing_, [&] { bodies_.move(k, poses_[k], *origin_); });

@@ -96,39 +96,14 @@ class WidePairs {
   /// some by early tests, and traverses the rest. Calls `make_query(slot, pair)` and `take(slot,
   /// pair, query)`. A second query may be made for a pair, to test triangles that a Memory kept; it
   /// is never passed to `take`.
+  ///
+  /// A traversal counts in any case, in registers: it is compiled once, and not for each counter.
   template <class Slots, class Counter, class MakeQuery, class Take>
   void run(const Slots& slots, std::size_t number, Counter& counter, MakeQuery&& make_query,
            Take&& take) {
-    using Query = std::remove_cvref_t<decltype(make_query(0, pairs_[0]))>;
-    static_assert(for_wide_trees<Query>(),
-                  "wide trees cull by `disjoint`: a query says `culls_disjoint`, or wants a bound");
-    Worker& worker = workers_[number];
-    PairSieve& sieve = worker.sieve;
-    sieve.begin(slots.size());
-    const auto repeat = [&](std::uint32_t p) {
-      Query query = make_query(p, pairs_[p]);
-      memory_.repeat(p, query);
-      take(p, pairs_[p], query);
-    };
-    for (const std::uint32_t p : slots)
-      if (memory_.template answer_valid<Query>(p, pairs_[p]))
-        repeat(p);
-      else
-        sieve.add(p);
-    const std::uint64_t before = counter.n_v + counter.n_p;
-    // One test of each pair's bodies as a whole: by spheres, or by their motion since the last one.
-    counter.tested(sieve.undecided().size());
-    if constexpr (!wants_bound<Query>()) {
-      memory_.template cull<Query>(sieve, {pairs_, poses_, meshes_, culling_}, counter, make_query);
-      counter.tested(culling_.cull_by_directions(
-          sieve, pairs_, [&](std::size_t p) { return memory_.skips_directions(p); },
-          [&](std::size_t p, double gap) { memory_.apart(p, pairs_[p], gap); }));
-      for (const std::int32_t p : sieve.decided()) {
-        counter.queried(before);
-        repeat(static_cast<std::uint32_t>(p));
-      }
-    }
-    traverse_interleaved<Query>(sieve.undecided(), worker, before, counter, make_query, take);
+    Counting counting;
+    run_counting(slots, number, counting, make_query, take);
+    counter.add(counting);
   }
 
   const std::vector<ObjectPair>& pairs() const { return pairs_; }
@@ -149,17 +124,52 @@ class WidePairs {
 
   void move(std::size_t i) { memory_.move(i, bodies_[i], poses_[i], culling_, *origin_); }
 
-  /// `before`: n_v + n_p before the first test of these pairs.
-  template <class Query, class Counter, class MakeQuery, class Take>
+  template <class Slots, class MakeQuery, class Take>
+  void run_counting(const Slots& slots, std::size_t number, Counting& counter,
+                    MakeQuery& make_query, Take& take) {
+    using Query = std::remove_cvref_t<decltype(make_query(0, pairs_[0]))>;
+    static_assert(for_wide_trees<Query>(),
+                  "wide trees cull by `disjoint`: a query says `culls_disjoint`, or wants a bound");
+    Worker& worker = workers_[number];
+    PairSieve& sieve = worker.sieve;
+    sieve.begin(slots.size());
+    const auto repeat = [&](std::uint32_t p) {
+      Query query = make_query(p, pairs_[p]);
+      memory_.repeat(p, query);
+      take(p, pairs_[p], query);
+    };
+    for (const std::uint32_t p : slots)
+      if (memory_.template answer_valid<Query>(p, pairs_[p]))
+        repeat(p);
+      else
+        sieve.add(p);
+    const std::uint64_t before = counter.tests();
+    // One test of each pair's bodies as a whole: by spheres, or by their motion since the last one.
+    counter.bodies(sieve.undecided().size());
+    if constexpr (!wants_bound<Query>()) {
+      memory_.template cull<Query>(sieve, {pairs_, poses_, meshes_, culling_}, counter, make_query);
+      counter.bodies(culling_.cull_by_directions(
+          sieve, pairs_, [&](std::size_t p) { return memory_.skips_directions(p); },
+          [&](std::size_t p, double gap) { memory_.apart(p, pairs_[p], gap); }));
+      for (const std::int32_t p : sieve.decided()) {
+        counter.queried(before);
+        repeat(static_cast<std::uint32_t>(p));
+      }
+    }
+    traverse_interleaved<Query>(sieve.undecided(), worker, before, counter, make_query, take);
+  }
+
+  /// `before`: tests before the first of these pairs.
+  template <class Query, class MakeQuery, class Take>
   void traverse_interleaved(std::span<const std::int32_t> near, Worker& worker,
-                            std::uint64_t before, Counter& counter, MakeQuery& make_query,
+                            std::uint64_t before, Counting& counter, MakeQuery& make_query,
                             Take& take) try {
     using Lanes = typename Kernel::template PairFrame<V, F>::S;
     using Record = typename Memory::template Record<Lanes>;
     struct Running {
       std::uint32_t pair;
       std::optional<Query> query;
-      std::optional<Traversal<WidePair<V, F, Kernel>, Query, Counter, Record>> traversal;
+      std::optional<Traversal<WidePair<V, F, Kernel>, Query, Counting, Record>> traversal;
     };
     std::array<Running, at_once> all;
     std::array<Running*, at_once> running;
