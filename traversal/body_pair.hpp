@@ -8,7 +8,8 @@
 ///   from_front(front)     a traversal from any TrackedFront, which it keeps up to date
 ///   from_roots<Roots>(s)  the recursive algorithm; Roots is NoFront or NoFrontBoth, s is whether
 ///                         the roots are known to overlap
-/// The last two return the statistics of the traversal. `AnyPair` of the bvlab program has the same
+///   count_bodies()        counts a test of the two bodies as a whole
+/// Traversals return the statistics of the traversal. `AnyPair` of the bvlab program has the same
 /// members without naming a volume.
 #pragma once
 
@@ -30,6 +31,7 @@ class BodyPair {
   MovingBody& b() const { return b_; }
   Query& query() const { return query_; }
 
+  void count_bodies() const { counter_.bodies(1); }
   template <class Roots = NoFront>
   TraversalStatistics from_roots(Start start = Start::roots) const {
     return from_front(Roots(start));

@@ -92,6 +92,7 @@ class AnyPair {
   MovingBody& b() const { return b_; }
   Query& query() const { return query_; }
 
+  void count_bodies() const { counter_.bodies(1); }
   template <class Roots = NoFront>
   TraversalStatistics from_roots(Start start = Start::roots) const {
     return from_front(Roots(start));

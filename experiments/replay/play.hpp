@@ -140,7 +140,7 @@ class PlayedBy final : public Player {
   }
 
   void finish() override {
-    result_.n_u += counter_.n_u, result_.n_v += counter_.n_v, result_.n_p += counter_.n_p;
+    result_.n_b += counter_.n_b, result_.n_u += counter_.n_u, result_.n_v += counter_.n_v, result_.n_p += counter_.n_p;
     result_.considered += counter_.considered;
     result_.hits += answers_.hits();
   }

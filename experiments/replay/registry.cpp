@@ -63,21 +63,20 @@ std::vector<Named> frames() {
 
 std::vector<Named> kernels() {
   const std::string reasons =
-      ", --frame body; other volumes are not compiled for it (wide_volumes.hpp). Lists are not "
-      "offered: an entry of a front is a step, so retesting all entries repeats the recursion's "
-      "steps; margins skip entries. Of distances, margins keep only the answer of bodies at rest";
+      ", --frame body; other volumes are not compiled for it (wide_volumes.hpp). Every strategy of "
+      "the list; recursive-both is recursive, and adaptive is margins, which pause where they do not pay";
   return {{"gathered",
            "a register holds pairs of nodes from anywhere in both trees: every volume, strategy, "
            "query, fan-out and frame"},
           {"siblings", "a register holds the children of one node, against one volume: --volume " +
                            text_of(wide_volumes("siblings")) +
-                           ", --strategy recursive or margins, --fan-out " +
+                           ", --fan-out " +
                            std::to_string(wide_entries()[0]->fan_out("siblings")) +
                            " (the lanes of a register)" + reasons},
           {"mixed",
            "four children against four where nodes are alike in size, else one against sixteen "
            "grandchildren: --volume " +
-               text_of(wide_volumes("mixed")) + ", --strategy recursive or margins, --fan-out 4" +
+               text_of(wide_volumes("mixed")) + ", --fan-out 4" +
                reasons}};
 }
 

@@ -35,7 +35,7 @@ void check_gathered(const Variant& variant) {
                    "; use --frame world");
 }
 
-/// Kernels of sixteen lanes are each compiled for one fan-out, one frame and two strategies.
+/// Kernels of sixteen lanes are each compiled for one fan-out and one frame.
 void check_wide(const Variant& variant) {
   std::string volumes;
   for (const auto& each : wide_volumes(variant.kernel))
@@ -48,8 +48,9 @@ void check_wide(const Variant& variant) {
     throw Unusable("--query " + variant.query + ": not with --kernel " + variant.kernel +
                    ", which culls by whether volumes are disjoint; use --kernel gathered");
   const std::string with = ": not with --kernel " + variant.kernel + "; there ";
-  if (variant.strategy != "recursive" && variant.strategy != "margins")
-    throw Unusable("--strategy " + variant.strategy + with + "are recursive, margins");
+  play_entry(name_of(variant.strategy), variant.query).check(variant.strategy);
+  if (!wide_strategy(name_of(variant.strategy)))
+    throw Unusable("--strategy " + variant.strategy + with + "are those of strategies.hpp");
   if (variant.fan_out != fan_out)
     throw Unusable("--fan-out " + std::to_string(variant.fan_out) + with + "is " +
                    std::to_string(fan_out));

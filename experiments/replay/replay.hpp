@@ -67,7 +67,7 @@ struct ReplayResult {
   double seconds = 0;        ///< posing and querying every frame
   double first_seconds = 0;  ///< the first frame alone
   double build_seconds = 0;
-  std::uint64_t n_u = 0, n_v = 0, n_p = 0;  ///< where counted
+  std::uint64_t n_b = 0, n_u = 0, n_v = 0, n_p = 0;  ///< where counted
   std::uint64_t considered = 0;        ///< pairs, over all frames, for which anything was tested
   double front = 0;                    ///< mean entries per pair and frame
   std::uint64_t hits = 0;              ///< touching pairs, or contacts, over all frames

@@ -60,6 +60,12 @@ Totals times_of(const Trace& trace, const Result& result) {
 
 template <class Result>
 void set_counts(Totals& totals, Count count, const Result& result) {
+  if constexpr (requires { result.n_b; }) {
+    if (count == Count::on)
+      totals.set("n_b", result.n_b);
+    else
+      totals.set("n_b", nullptr);
+  }
   for (const auto& [key, value] :
        {std::pair{"n_u", result.n_u}, {"n_v", result.n_v}, {"n_p", result.n_p}})
     if (count == Count::on)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A volume in wide trees under one query, as the program sees it while it runs. What is compiled
-/// is what is compared: bodies in each other's frames, as many children per node as a register has
-/// lanes, every pair from the roots in every frame.
+/// A volume in wide trees under one query, as the program sees it while it runs: bodies in each
+/// other's frames, as many children per node as the kernel has lanes for, and every strategy.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +12,16 @@
 #include "experiments/replay/world_frames.hpp"
 
 namespace bvlab {
+
+/// Whether it is one of the strategies that these kernels know: those of strategies.hpp. Others run on
+/// the gathered kernel.
+constexpr bool wide_strategy(std::string_view name) {
+  for (const std::string_view known :
+       {"recursive", "recursive-both", "witness", "separation-list", "deferred", "by-cost", "raise",
+        "margins", "adaptive"})
+    if (name == known) return true;
+  return false;
+}
 
 struct WideEntry {
   std::string_view volume, volume_description, query;

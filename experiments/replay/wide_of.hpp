@@ -10,6 +10,7 @@
 #include "experiments/replay/play.hpp"
 #include "experiments/replay/touching_world.hpp"
 #include "experiments/replay/wide_entry.hpp"
+#include "traversal/wide/list_memory.hpp"
 #include "traversal/wide/mixed_kernel.hpp"
 #include "traversal/wide/wide_pairs.hpp"
 
@@ -38,6 +39,13 @@ std::vector<Hierarchy> wide_hierarchies(std::span<const TriangleMesh> meshes,
   return hierarchies;
 }
 
+/// Of "deferred:k", as Deferred(k).
+struct DeferredRule {
+  static constexpr std::string_view name = "deferred";
+  explicit DeferredRule(unsigned defer = 1) : rule(RebuildRule::after_still_runs(defer)) {}
+  RebuildRule rule;
+};
+
 template <class V>
 using KernelsOf = std::conditional_t<MixedKernel::takes<V>, TypeList<SiblingsKernel, MixedKernel>,
                                      TypeList<SiblingsKernel>>;
@@ -49,11 +57,20 @@ void with_kernel(const Variant& variant, const With& with) {
                      [&]<class Kernel>(std::type_identity<Kernel> kernel) { with(kernel); });
 }
 
-/// Calls `with` with the type that is what the variant's strategy remembers.
+/// Calls `with` with what pairs keep under the variant's strategy, whose name and parameter have been
+/// checked. Steps of these kernels open one node or both by the nodes' sizes, so that the two ways
+/// to recur are one. Margins begin and end with the motion of each pair, so they are `adaptive`.
 template <class With>
-auto with_memory(const Variant& variant, const With& with) {
-  if (variant.strategy == WideMargins::name) return with(std::type_identity<WideMargins>());
-  return with(std::type_identity<NoMemory>());
+void with_memory(const Variant& variant, const With& with) {
+  const std::string_view name = name_of(variant.strategy);
+  if (name == "margins" || name == "adaptive") return with(WideMargins());
+  if (name == "witness") return with(WitnessMemory());
+  if (name == "separation-list") return with(ListMemory());
+  if (name == "deferred") return with(ListMemory(made_from<DeferredRule>(variant.strategy).rule));
+  if (name == "by-cost") return with(ListMemory(RebuildRule::by_mean_cost()));
+  if (name == "raise")
+    return with(ListMemory(RebuildRule::by_last_rebuild(), ListMemory::Raise::tried));
+  with(NoMemory());
 }
 
 template <BoundingVolume V, class Query>
@@ -66,9 +83,9 @@ void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const V
         meshes, variant, static_cast<int>(options.threads));
     result.build_seconds = seconds_since(start);
     const auto shapes = shapes_over(meshes, hierarchies, trace.objects);
-    with_memory(variant, [&]<class Memory>(std::type_identity<Memory>) {
+    with_memory(variant, [&]<class Memory>(const Memory& memory) {
       const auto engine = [&](auto) {
-        return AllPairsOf(WidePairs<V, fan_out, Memory, Kernel>(shapes),
+        return AllPairsOf(WidePairs<V, fan_out, Memory, Kernel>(shapes, memory),
                           all_object_pairs(static_cast<std::uint32_t>(trace.objects)),
                           static_cast<int>(options.threads));
       };
@@ -89,10 +106,10 @@ std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, st
           meshes, variant, threads);
       // Shapes point to what the vector holds, wherever that is moved.
       const auto shapes = shapes_over(meshes, hierarchies, objects);
-      with_memory(variant, [&]<class Memory>(std::type_identity<Memory>) {
+      with_memory(variant, [&]<class Memory>(const Memory& memory) {
         using Pairs = WidePairs<V, fan_out, Memory, Kernel>;
         world = std::make_unique<TouchingWorld<Pairs, Query, decltype(hierarchies)>>(
-            std::move(hierarchies), Pairs(shapes), variant, threads);
+            std::move(hierarchies), Pairs(shapes, memory), variant, threads);
       });
     });
   return world;

@@ -79,6 +79,7 @@ class Adaptive : public AdaptivePrices {
   bool spheres_apart(const Pair& pair) {
     const SphereTest::Result seen = spheres_(pair);
     if (seen == SphereTest::Result::not_tested) return false;
+    pair.count_bodies();
     in_batches_ = seen == SphereTest::Result::near;
     if (!in_batches_) step_.skip();
     return !in_batches_;

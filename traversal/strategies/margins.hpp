@@ -77,7 +77,9 @@ class Margins {
     account(statistics);
     ended_by_hit_ = !statistics.everything;
     has_all_hits_ = sweep.measures();
-    answer_lasts(a, b, sweep.least());
+    // A gap matters once it has come down to the query's limit.
+    const bool by_gaps = statistics.everything && !wants_bound<Query>();
+    answer_lasts(a, b, sweep.least() - (by_gaps ? query.limit() : 0));
     if constexpr (requires { query.distance(); }) distance_ = query.distance();
     return statistics;
   }
