@@ -8,11 +8,14 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 
 #include "hierarchies/wide/lanes.hpp"
+#include "traversal/measured_gaps.hpp"
 #include "traversal/primitives/triangle_filter.hpp"
+#include "traversal/primitives/triangle_gap.hpp"
 #include "traversal/queries/candidate.hpp"
 #include "traversal/queries/query.hpp"
 #include "traversal/wide/wide_front.hpp"
@@ -25,6 +28,8 @@ template <class PairFrame, class Body, class Query, class Counter, class Recorde
 class FilteredTriangles {
   using S = typename PairFrame::S;
   static constexpr std::size_t parts = PairFrame::parts, width = S::size();
+  template <class T>
+  static constexpr std::uint64_t all_lanes = (std::uint64_t{2} << (T::size() - 1)) - 1;
 
  public:
   template <class Pair, class Workspace>
@@ -56,8 +61,16 @@ class FilteredTriangles {
   }
   /// Tests the held candidates at the end of a run.
   bool finish() { return pending_ > 0 && flush(); }
-  /// Tests the triangles of a pair that decided an earlier run.
-  bool retest(const NodePair& pair) { return test({pair, no_lane}, WideFront::witness); }
+  /// Tests the triangles that decided an earlier run: FrontRecord::touched.
+  bool retest(const NodePair& pair) {
+    if constexpr (wants_bound<Query>()) {
+      counter_.primitives(1);
+      put(pair);
+      return finish();
+    } else {
+      return test({pair, no_lane}, WideFront::witness);
+    }
+  }
   /// Tests the triangles of a pair that a step has found near. `entry` is the front's entry that is
   /// retested, if any.
   bool test(const OpenPair& pair, std::size_t entry = WideFront::none) {
@@ -79,6 +92,7 @@ class FilteredTriangles {
     const auto [a, b] = in_meshes(numbers);
     world_[0][pending_] = bodies_[0]->triangle(a), world_[1][pending_] = bodies_[1]->triangle(b);
     candidates_[pending_] = {&world_[0][pending_], &world_[1][pending_], a, b, entry};
+    numbers_[pending_] = numbers;
     ++pending_;
   }
   /// Triangles by their indices in their meshes.
@@ -128,39 +142,50 @@ class FilteredTriangles {
     return false;
   }
 
-  /// Where a distance is sought: the query tests the pairs whose volumes are near enough.
+  /// Where a distance is sought: the query tests the pairs that are not certainly too far apart.
   [[gnu::noinline]] bool measure(const OpenPair& pair, std::size_t entry) {
-    const double limit = query_.limit();
-    const bool satisfied = measure_near(pair);
-    const bool measures =
-        recorder_.record_triangles(pair, satisfied || query_.limit() < limit, entry);
-    if (measures && !satisfied)
-      recorder_.set_triangle_gap(frame_.triangles(pair), counter_, entry);
-    return satisfied;
-  }
-  bool measure_near(const NodePair& pair) {
     const auto triangles = frame_.triangles(pair);
-    std::uint64_t remaining = triangles.lanes();
-    if constexpr (requires { triangles.gaps(counter_); })
-      remaining &= ~bits(query_.culls(triangles.gaps(counter_)));
-    counter_.primitives(static_cast<std::uint64_t>(std::popcount(remaining)));
-    for (; remaining; remaining &= remaining - 1)
-      if (hold(triangles.numbers(std::countr_zero(remaining)))) return true;
-    return finish();
+    std::array<S, parts> gaps;
+    std::uint64_t near = 0;
+    for_each_part<S, parts>(
+        triangles.lanes(), [&](std::size_t part) __attribute__((always_inline)) {
+          const auto [x, y] = triangles.corners(part);
+          gaps[part] = triangle_gap<S>(x, y, S(frame_.a_to_b().error_bound()));
+          near |= (~bits(query_.culls(gaps[part])) & all_lanes<S>) << (part * width);
+        });
+    near &= triangles.lanes();
+    counter_.primitives(static_cast<std::uint64_t>(std::popcount(near)));
+    for (std::uint64_t rest = near; rest; rest &= rest - 1)
+      if (hold(triangles.numbers(std::countr_zero(rest)))) return true;
+    if (finish()) return true;
+    recorder_.record_distances(pair, entry, [&] {
+      // What was tested or culled is not nearer than the limit now.
+      const S limit(just_below(query_.limit()));
+      S least(std::numeric_limits<float>::infinity());
+      for_each_part<S, parts>(triangles.lanes(), [&](std::size_t part) {
+        least = stdx::min(least, stdx::max(limit, gaps[part]));
+      });
+      return std::pair(stdx::hmin(least), triangles.reference_sphere());
+    });
+    return false;
   }
 
   bool flush() {
     const auto held = take_held();
     const Outcome outcome = query_.primitives(held);
-    if constexpr (DecidedByOneHit<Query>)
-      if (outcome.witness < held.size())
+    if (outcome.witness < held.size()) {
+      if constexpr (wants_bound<Query>())
+        recorder_.record_touching(numbers_[outcome.witness]);
+      else if constexpr (DecidedByOneHit<Query>)
         recorder_.record_crossing({held[outcome.witness].a, held[outcome.witness].b, false});
+    }
     return outcome.satisfied;
   }
 
   std::array<Body*, 2> bodies_;
   std::array<std::array<Triangle, at_most>, 2> world_;
   std::array<Candidate, at_most> candidates_;
+  std::array<NodePair, at_most> numbers_;  // of their triangles in the trees
 };
 
 }  // namespace bvlab

@@ -169,6 +169,21 @@ class FrontRecord {
     }
     return false;
   }
+  /// Where a distance is sought: records a test of triangles, whose gap and reference sphere are
+  /// `found()`.
+  template <class Found>
+  void record_distances(const OpenPair& pair, std::size_t entry, const Found& found) {
+    if constexpr (measures_gaps) {
+      if (!start_.front) return;
+      if (entry == WideFront::none) {
+        entry = start_.front->add(pair, WideFront::Kind::triangles);
+        start_.front->gaps().add();
+        start_.front->open(pair.from);
+      }
+      const auto [gap, sphere] = found();
+      set_margin(gap, sphere, entry);
+    }
+  }
   /// Measures the gap of triangles; returns whether it lasts until the next frame.
   template <class Triangles, class Counter>
   bool set_triangle_gap(const Triangles& triangles, Counter& counter, std::size_t entry) {

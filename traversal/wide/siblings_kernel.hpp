@@ -27,7 +27,6 @@
 ///     triangles(pair)                  triangles tested at once, of pairs that `push` found:
 ///       lanes(), corners(part) of a and of b, numbers(lane) of both
 ///       gap(counter), reference_sphere() a lower bound on their distance, and its sphere
-///       gaps(counter)                    the same for each lane, if triangles have volumes
 #pragma once
 
 #include <algorithm>
@@ -218,11 +217,6 @@ struct SiblingsKernel {
             of[1][i][j] = S(lanes[i][j].data(), stdx::vector_aligned);
           }
         return of;
-      }
-      /// A lower bound on the distance of the triangle's volume to each of the leaf's.
-      template <class Counter>
-      [[gnu::noinline]] S gaps(Counter& counter) const {
-        return pair_frame_.frame_.gaps(1, pair_.b, posed(counter));
       }
       /// A lower bound on the distance of any pair; not positive where none is known.
       template <class Counter>
