@@ -3,7 +3,8 @@
 /// the last answer is kept, which decides the order of steps.
 ///
 /// A memory keeps state of pairs of bodies from frame to frame. WidePairs calls
-///   add_body(sphere, reach), resize(pairs)  for the bodies and the number of pairs
+///   add_body(sphere, reach, origin)         adds a body; origin of the mesh
+///   resize(pairs)                           sets the number of pairs
 ///   forget(pair)                            when a pair parts
 ///   begin_frame<Query>()                    begins a frame; forgets all if the query differs
 ///   move(i, body, pose, culling, origin)    body i is at `pose`
@@ -46,7 +47,9 @@ class NoMemory {
   template <class S>
   using Measure = NoRecord;
 
-  void add_body(const MeshSphere& sphere, double) { spheres_.push_back(sphere); }
+  void add_body(const MeshSphere& sphere, double, const Vec3<double>&) {
+    spheres_.push_back(sphere);
+  }
   void resize(std::size_t pairs) { touched_.resize(pairs); }
   static void forget(std::size_t) {}
   template <class Query>
@@ -56,8 +59,9 @@ class NoMemory {
   void move(std::size_t i, Body& body, const Pose& pose, EarlyCulling& culling,
             const Vec3<double>& origin) const {
     body.set_pose(pose);
-    culling.set_pose(i, pose.rotation, pose(spheres_[i].centre) - origin, spheres_[i].radius,
-                     body.orthonormal_pose().error_bound);
+    culling.set_pose(i, pose.rotation,
+                     position_about(origin, pose, body.hierarchy().origin(), spheres_[i].centre),
+                     spheres_[i].radius, body.orthonormal_pose().error_bound);
   }
   static void rest(std::size_t) {}
   static constexpr std::size_t front_size(std::size_t = 0) { return 0; }

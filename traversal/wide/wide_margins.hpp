@@ -51,8 +51,8 @@ class WideMargins {
   template <class S>
   using Measure = GapMeasure<S>;
 
-  void add_body(const MeshSphere& sphere, double reach) {
-    bodies_.add({sphere.centre, sphere.radius, reach, 0});
+  void add_body(const MeshSphere& sphere, double reach, const Vec3<double>& origin) {
+    bodies_.add({sphere.centre, sphere.radius, reach, 0, 0, origin});
   }
   void resize(std::size_t pairs) {
     answers_.resize(pairs), kept_.resize(pairs), front_sizes_.resize(pairs);
