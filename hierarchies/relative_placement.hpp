@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Poses the volumes of one body into the world, or into the frame of another, whose volumes are tested as stored. A
-/// relative placement is made once for each pair of bodies, instead of once for each body.
+/// Poses the volumes of one body into the world, or into the frame of another, whose volumes are
+/// tested as stored. A relative placement is made once for each pair of bodies, instead of once for
+/// each body.
 #pragma once
 
 #include <concepts>

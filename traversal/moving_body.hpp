@@ -20,8 +20,9 @@ class MovingBody {
   /// Counts the moves: equal values mean that the body has not moved in between (unless by about
   /// 2^32 moves).
   std::uint32_t epoch() const { return epoch_; }
-  /// Whether, in the world frame, the body is so far from the origin that volumes would grow there by
-  /// more than a 25th of a leaf. Pairs of which a body is far are tested in the frame of the second.
+  /// Whether, in the world frame, the body is so far from the origin that volumes would grow there
+  /// by more than a 25th of a leaf. Pairs of which a body is far are tested in the frame of their
+  /// second body.
   bool is_far() const { return is_far_; }
   /// The pose from which relative poses to other bodies are formed. Computed once after each move.
   const OrthonormalPose& orthonormal_pose() {

@@ -12,8 +12,8 @@
 /// of R's row, the weights times support values are at most 1.74 r reach in all; their roundings
 /// are below 6u of that. The vertex itself, ((R_i0 x + R_i1 y) + R_i2 z) + t_i, is off by less than
 /// 4.1u (1.74 r reach + |t_i|), and adding t_i - o_i by 3u (1.74 r reach + |t_i| + |o_i|). Together
-/// less than the slack of 32u (r reach + |t_i| + |o_i|). Where the mesh has an origin of its own, v,
-/// t and o are local, and the error of LocalPose is added.
+/// less than the slack of 32u (r reach + |t_i| + |o_i|). Where the mesh has an origin of its own,
+/// v, t and o are local, and the error of LocalPose is added.
 #pragma once
 
 #include <algorithm>

@@ -12,7 +12,7 @@
 ///   unit vector or its opposite, products and sums are exact: e_i = u |w_i|, and 0 where t_i = 0.
 ///   So identity poses lose nothing, however far the vertices are.
 /// - R (l - x), at most u |R| reach;
-/// - the rounding of t', u |t'| + 2^-96 (|R||o| + |t| + |A|).
+/// - the rounding of t', which is the second half of the sum, and 2^-96 (|R||o| + |t| + |A|).
 ///
 /// A term proportional to the distance is of the vertices themselves: in the world they are float64
 /// and no nearer to R v + t than that. `error` is at least the sum, with a factor for higher orders
@@ -37,18 +37,19 @@ struct LocalPose {
     constexpr double u = unit_roundoff<double>;
     pose.rotation = given.rotation;
     const double farthest = origin.norm() + reach, size = given.rotation.norm();
-    Vec3<double> rounding;
+    Vec3<double> rounding, lost;
     for (int i = 0; i < 3; ++i) {
       const Vec3<double> row = given.rotation.row(i).transpose();
       DoubleDouble at = given.translation[i];
       for (int j = 0; j < 3; ++j) at = at + DoubleDouble::product(row[j], origin[j]);
-      pose.translation[i] = static_cast<double>(at - DoubleDouble(about[i]));
+      const DoubleDouble to = at - DoubleDouble(about[i]);
+      pose.translation[i] = to.high, lost[i] = to.low;
       const double length = row.norm();
       const bool exact = row.cwiseAbs().maxCoeff() == 1 && row.cwiseAbs().sum() == 1;
       const double last = u * (std::abs(static_cast<double>(at)) + length * reach);
-      rounding[i] = exact ? (given.translation[i] == 0 ? 0 : last) : 3 * u * length * farthest + last;
+      rounding[i] = !exact ? 3 * u * length * farthest + last : given.translation[i] == 0 ? 0 : last;
     }
-    error = (rounding.norm() + u * (size * reach + pose.translation.norm()) +
+    error = (rounding.norm() + u * size * reach + lost.norm() +
              0x1p-96 * (size * origin.norm() + given.translation.norm() + about.norm())) *
             (1 + 0x1p-40);
     if (std::isfinite(error)) return;
