@@ -221,7 +221,7 @@ void expect_clusters() {
   EXPECT_EQ(play(Frame::world, 4, near_world), none);
   EXPECT_EQ(play(Frame::world, 0x1p21, far_world), none);
   EXPECT_EQ(play(Frame::body, 0x1p21, far_body), none);
-  EXPECT_EQ(far_body.n_p, 0u);
+  EXPECT_EQ(far_world.n_p, far_body.n_p);
   EXPECT_EQ(far_world.n_p, near_world.n_p);
   EXPECT_LE(far_world.n_v, near_world.n_v);
   EXPECT_LE(far_world.n_u, near_world.n_u + far_world.n_v);
