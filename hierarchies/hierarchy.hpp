@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A tree of bounding volumes over one mesh, binary or with up to sixteen children per node, stored
 /// flat: siblings are adjacent, indices are 32 bits, and volumes are in an array of their own,
-/// since posing reads nothing else.
+/// since posing reads nothing else. They are about an origin of the mesh's own (LocalMesh).
 ///
 /// The fan-out belongs to the topology, not to the type: code compiled for a volume runs on trees
 /// of every fan-out.
@@ -17,11 +17,13 @@
 #include "hierarchies/bounding_volume.hpp"
 #include "hierarchies/build/topology.hpp"
 #include "hierarchies/fitting.hpp"
+#include "hierarchies/geometry/local_mesh.hpp"
 #include "hierarchies/geometry/small_matrices.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 #include "hierarchies/hierarchy_extent.hpp"
 #include "hierarchies/node_sphere.hpp"
+#include "hierarchies/relative_placement.hpp"
 #include "hierarchies/wide/collapse.hpp"
 
 namespace bvlab {
@@ -53,17 +55,18 @@ class Hierarchy {
         spheres_(topology.nodes.size()) {
     take_nodes(topology);
     number_siblings();
+    const LocalMesh local = about_own_origin(mesh);
     std::vector<Fitting<V>> fitting(threads.count());
     // The first nodes enclose the most triangles.
     threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
-      enclose(i, begin_[i], end_[i], mesh, fit, fitting[worker]);
+      enclose(i, begin_[i], end_[i], local.mesh(), fit, fitting[worker]);
     });
     for (std::size_t i = nodes_.size(); i-- > 0;) {
       if (const Node& node = nodes_[i]; node.count == 0) take_smaller(i, around_children(node));
       nodes_[i].size = size_of(volumes_[i]);
     }
     look_up();
-    surround(mesh);
+    surround(local);
     begin_.clear(), end_.clear();
   }
 
@@ -72,10 +75,11 @@ class Hierarchy {
   /// mesh has changed its shape, the looser the volumes. Bodies over the hierarchy, and strategies
   /// that have run on them, must be constructed anew.
   void refit(const TriangleMesh& mesh) {
+    const LocalMesh local = about_own_origin(mesh);
     Fitting<V> fitting;
     for (std::size_t i = nodes_.size(); i-- > 0;) {
       if (const Node& node = nodes_[i]; node.count > 0) {
-        enclose(i, node.first, node.first + node.count, mesh, Fit::published, fitting);
+        enclose(i, node.first, node.first + node.count, local.mesh(), Fit::published, fitting);
       } else {
         volumes_[i] = around_children(node);
         spheres_[i] =
@@ -84,7 +88,7 @@ class Hierarchy {
       nodes_[i].size = size_of(volumes_[i]);
     }
     look_up();
-    surround(mesh);
+    surround(local);
   }
 
   std::size_t size() const { return nodes_.size(); }
@@ -174,7 +178,13 @@ class Hierarchy {
     return around;
   }
 
-  void surround(const TriangleMesh& mesh) {
+  /// Placements that take no error bound know nothing of origins.
+  static LocalMesh about_own_origin(const TriangleMesh& mesh) {
+    return PlacedRelatively<V> ? LocalMesh(mesh) : LocalMesh::as_given(mesh);
+  }
+
+  void surround(const LocalMesh& local) {
+    const TriangleMesh& mesh = local.mesh();
     double reach = 0, radius = 0;
     for (const auto& v : volumes_) reach = std::max(reach, static_cast<double>(reach_of(v)));
     for (const auto& v : mesh.vertices) reach = std::max(reach, stable_norm(v));
@@ -190,7 +200,8 @@ class Hierarchy {
     radius *= 1 + 16 * unit_roundoff<double>;
     const auto leaves = std::count_if(nodes_.begin(), nodes_.end(),
                                       [](const Node& node) { return node.count > 0; });
-    extent_ = {centre, radius, reach, nodes_.size(), static_cast<std::size_t>(leaves)};
+    extent_ = {centre, radius, reach, nodes_.size(), static_cast<std::size_t>(leaves),
+               local.origin()};
   }
 
   /// The range of primitives below each node. Children come after their parent in the topology.

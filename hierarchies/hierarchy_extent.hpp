@@ -16,6 +16,8 @@ struct HierarchyExtent {
   double reach = 0;        ///< no vertex or volume is farther from the origin of the frame
   std::size_t nodes = 0;   ///< of the tree
   std::size_t leaves = 0;  ///< those that have no children
+  /// Of the mesh (LocalMesh), in its frame: centre, reach and all volumes are relative to it.
+  Vec3<double> origin = Vec3<double>::Zero();
 
   /// The size of a leaf, for leaves about as wide as long.
   double leaf_size() const { return 2 * radius / std::sqrt(static_cast<double>(leaves)); }

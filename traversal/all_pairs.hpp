@@ -24,6 +24,7 @@ inline std::vector<ObjectPair> all_object_pairs(std::uint32_t objects) {
 
 /// Pairs is StrategyPairs, WidePairs, or a class with the same members: those that WorldOf uses,
 /// and
+///   mesh_origin(i)                 of the mesh of body i (LocalMesh)
 ///   make_room(threads)             allocates for all bodies, so that no frame has to
 ///   begin_all(poses, origin, threads, counter, make_query)
 ///                                  begins a frame in which every body may have moved: moves all
@@ -57,7 +58,7 @@ class AllPairsOf {
     const auto make = [&make_query](std::uint32_t slot, const ObjectPair&) {
       return make_query(std::size_t{slot});
     };
-    if (!has_origin_) origin_ = centre_of(poses), has_origin_ = true;
+    if (!has_origin_) origin_ = centre_of(poses, engine_), has_origin_ = true;
     engine_.begin_all(poses, origin_, threads_, counter, make);
     const auto all = std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(pairs().size()));
     answers_.run_pairs(

@@ -19,16 +19,26 @@ namespace bvlab {
 template <BoundingVolume V>
 using Shape = ShapeOver<Hierarchy<V>>;
 
-/// The centre of the box around all translations. Float volumes are posed relative to it, so that
+/// The centre of the box around the origins of all bodies' meshes, as they are posed;
+/// bodies.mesh_origin(i) says what they are. Float volumes are posed relative to it, so that
 /// their precision does not depend on where in the world the bodies are.
-inline Vec3<double> centre_of(std::span<const Pose> poses) {
+template <class AllBodies>
+Vec3<double> centre_of(std::span<const Pose> poses, const AllBodies& bodies) {
   if (poses.empty()) return Vec3<double>::Zero();
-  Vec3<double> low = poses[0].translation, high = low;
-  for (const auto& pose : poses) {
-    low = low.cwiseMin(pose.translation);
-    high = high.cwiseMax(pose.translation);
+  Vec3<double> low = poses[0](bodies.mesh_origin(0)), high = low;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const Vec3<double> at = poses[i](bodies.mesh_origin(i));
+    low = low.cwiseMin(at), high = high.cwiseMax(at);
   }
   return low / 2 + high / 2;
+}
+
+/// The same for meshes about 0.
+inline Vec3<double> centre_of(std::span<const Pose> poses) {
+  struct AboutZero {
+    static Vec3<double> mesh_origin(std::size_t) { return Vec3<double>::Zero(); }
+  };
+  return centre_of(poses, AboutZero());
 }
 
 /// B is the scalar or batch in which volumes are tested.
@@ -50,6 +60,8 @@ class Bodies {
   std::size_t size() const { return bodies_.size(); }
   Frame frame() const { return frame_; }
   const TriangleMesh& mesh(std::size_t i) const { return bodies_[i].mesh(); }
+  /// See LocalMesh.
+  const Vec3<double>& mesh_origin(std::size_t i) const { return bodies_[i].extent().origin; }
   Body<V>& operator[](std::size_t i) { return bodies_[i]; }
 
   /// Allocates for all bodies, so that nothing is allocated while a run is timed. Otherwise a body
@@ -92,10 +104,12 @@ class Bodies {
     }
     wanted_.assign(bodies_.size(), 0);
     for (const auto p : fresh) wanted_[pairs[p].i] = wanted_[pairs[p].j] = 1;
+    bool any_far = false;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (!wanted_[i]) continue;
       bodies_[i].require(0, counter);
       roots_[i] = bodies_[i].volumes()[0];
+      any_far = any_far || bodies_[i].is_far();
     }
     for (std::size_t first = 0; first < fresh.size(); first += W) {
       std::array<std::uint32_t, W> a, b;
@@ -108,6 +122,10 @@ class Bodies {
       for (std::size_t k = 0; k < W && first + k < fresh.size(); ++k)
         apart[fresh[first + k]] = culled >> k & 1;
     }
+    if (!any_far) return;
+    for (const auto p : fresh)
+      if (bodies_[pairs[p].i].is_far() || bodies_[pairs[p].j].is_far())
+        counter.posed(1), apart[p] = roots_are_apart(pairs[p], query);
   }
 
  private:

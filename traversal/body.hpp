@@ -5,7 +5,7 @@
 /// Several threads may query a body at once (see once.hpp), but it must be moved by one thread,
 /// while no other uses it.
 ///
-/// In a body's frame no volume is posed here (see frame.hpp).
+/// In a body's frame no volume is posed here (see frame.hpp), nor far from the origin (is_far).
 #pragma once
 
 #include <cstdint>
@@ -32,6 +32,9 @@ class Body : public MovingBody {
         group_(hierarchy),
         frame_(PlacedRelatively<V> ? frame : Frame::world) {
     if (frame_ == Frame::body) stamp_ = posed_for_good;
+    // A volume in the world is larger by ten roundings of its distance from the origin, and more.
+    const HierarchyExtent& extent = hierarchy.extent();
+    far_ = extent.leaf_size() / (256 * unit_roundoff<typename V::scalar>) - extent.reach;
   }
 
   /// Sets the pose. `origin` must be the same for all bodies that are tested against each other.
@@ -41,7 +44,10 @@ class Body : public MovingBody {
     if (triangles_.empty()) make_room();  // before the pose is set, since it may throw
     if (!set_pose(pose, origin)) return false;
     if (epoch_ == 0 || epoch_ >= never_done) forget();
-    if (frame_ == Frame::world) stamp_ = epoch_;
+    if (frame_ == Frame::body) return true;
+    stamp_ = epoch_;
+    if constexpr (PlacedRelatively<V>)
+      is_far_ = !((pose_(extent().origin) - origin_).template lpNorm<1>() <= far_);
     return true;
   }
 
@@ -83,6 +89,7 @@ class Body : public MovingBody {
   /// How many volumes have been posed since the body moved. O(nodes).
   std::size_t posed_volumes() {
     if (volumes_.empty()) return 0;
+    if (is_far_) return volumes_posed_.done(0, stamp_);
     std::size_t count = 0;
     for (std::uint32_t siblings = 0; siblings < hierarchy_->sibling_groups(); ++siblings)
       if (volumes_posed_.done(siblings, stamp_)) count += in_group(siblings);
@@ -100,13 +107,14 @@ class Body : public MovingBody {
 
  private:
   /// Out of line: it is compiled once for all loops, and its callers stay small. Returns whether
-  /// this thread posed them.
+  /// this thread posed them. Of a body that is far, only the root is ever read.
   [[gnu::noinline]] bool pose_siblings(std::uint32_t siblings) {
     return volumes_posed_(siblings, stamp_, sharing_, [this, siblings] {
+      if (is_far_ && siblings > 0) return;
       once(prepared_, epoch_, sharing_, [this] { prepare(); });
       const auto& [parent, first, count, least] = hierarchy_->above_group(siblings);
       for (std::uint32_t node = first; node < first + count; ++node) put(node);
-    });
+    }) && !(is_far_ && siblings > 0);
   }
   std::uint32_t in_group(std::uint32_t siblings) const {
     return hierarchy_->above_group(siblings).count;
@@ -124,7 +132,7 @@ class Body : public MovingBody {
     ::new (&volumes_[node]) Posed<V>(posed(hierarchy_->volume(node), placement_));
   }
 
-  void prepare() { placement_ = PlacementOf<V>(pose_, origin_, hierarchy_->extent().reach); }
+  void prepare() { placement_ = world_placement<V>(pose_, origin_, hierarchy_->extent()); }
 
   void forget() {
     volumes_posed_.forget(), triangles_posed_.forget();
@@ -145,6 +153,7 @@ class Body : public MovingBody {
   OnceEach volumes_posed_;  // one for each group of siblings
   std::uint32_t stamp_ = 0;
   Frame frame_;
+  double far_;  // the distance from the origin beyond which the body is far
   std::vector<Triangle> triangles_;
   OnceEach triangles_posed_;
 };

@@ -165,7 +165,8 @@ class Budgeted {
     const double stretch = std::max(stretch_of(a.pose()), stretch_of(b.pose()));
     const double grain = 16 * unit_roundoff<double> *
                          (a.pose().translation.norm() + a.extent().reach +
-                          b.pose().translation.norm() + b.extent().reach);
+                          b.pose().translation.norm() + b.extent().reach +
+                          (a.extent().origin.norm() + b.extent().origin.norm()));
     return static_cast<double>(queue_.front().size) * stretch + grain;
   }
   /// |R x| <= |x| sqrt(1 + |R'R - I|), the defect computed with an error below 16 u.

@@ -12,7 +12,9 @@ namespace bvlab {
 /// volumes are tested, that of the first body is posed into the frame of the second, whose volumes
 /// are used as stored. So the gathered kernel has N_u = N_v in a body's frame; wide kernels pose
 /// one volume for all tests of a step. In the world frame N_u <= 2 F N_v, with F the fan-out, since
-/// siblings are posed together; it is far less where volumes serve many pairs.
+/// siblings are posed together; it is far less where volumes serve many pairs. Pairs of which a
+/// body is too far from the scene's origin for float (MovingBody::is_far) are tested as in a body's
+/// frame.
 enum class Frame : std::uint8_t { world, body };
 
 constexpr std::string_view name_of(Frame frame) { return frame == Frame::world ? "world" : "body"; }

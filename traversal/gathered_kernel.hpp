@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The kernel that gathers: a step tests up to W pairs of nodes from anywhere in both trees, a lane
 /// each, and replaces those that overlap by pairs of their children. It runs on any volume
-/// and fan-out. In the world frame a volume is posed when it is first needed; else that of a is
+/// and fan-out. In the world frame a volume is posed when it is first needed; else, and where a
+/// body is too far from the origin for float (Body::is_far), that of a is
 /// posed into the frame of b in each test.
 ///
 /// See traversal.hpp for the members of a pair. A step keeps its pairs and their gaps in memory,
@@ -19,12 +20,12 @@
 
 namespace bvlab {
 
-/// The placement of a in the frame of b, if volumes are tested there; null in the world frame. It
-/// lies in the workspace and is valid until the next call.
+/// The placement of a in the frame of b, if volumes are tested there; null in the world frame,
+/// unless a body is far. It lies in the workspace and is valid until the next call.
 template <class V>
 const PlacementOf<V>* placement_in_b(Body<V>& a, Body<V>& b, Workspace& workspace) {
   if constexpr (PlacedRelatively<V>)
-    if (a.frame() == Frame::body) {
+    if (a.frame() == Frame::body || a.is_far() || b.is_far()) {
       auto& placement = workspace.template scratch<PlacementOf<V>>();
       placement = relative_placement<V>(RelativePose(a.orthonormal_pose(), b.orthonormal_pose()),
                                         a.hierarchy().extent().reach);

@@ -20,10 +20,14 @@ class MovingBody {
   /// Counts the moves: equal values mean that the body has not moved in between (unless by about
   /// 2^32 moves).
   std::uint32_t epoch() const { return epoch_; }
+  /// Whether, in the world frame, the body is so far from the origin that volumes would grow there
+  /// by more than a 25th of a leaf. Pairs of which a body is far are tested in the frame of their
+  /// second body.
+  bool is_far() const { return is_far_; }
   /// The pose from which relative poses to other bodies are formed. Computed once after each move.
   const OrthonormalPose& orthonormal_pose() {
     once(orthonormal_done_, epoch_, sharing_,
-         [this] { orthonormal_pose_ = OrthonormalPose(pose_, extent_.reach); });
+         [this] { orthonormal_pose_ = OrthonormalPose(pose_, extent_.reach, extent_.origin); });
     return orthonormal_pose_;
   }
   /// The present pose, to serve as the reference pose of bounds on later motion. Computed on
@@ -58,6 +62,7 @@ class MovingBody {
   Pose pose_;
   Vec3<double> origin_ = Vec3<double>::Zero();
   std::uint32_t epoch_ = 0;
+  bool is_far_ = false;
   Sharing sharing_ = Sharing::one_thread;        // whether several threads use the body
   std::uint32_t orthonormal_done_ = never_done;  // the epoch of `orthonormal_pose_`
 

@@ -147,7 +147,7 @@ class NearPairs {
   void choose_origin() {
     Eigen::AlignedBox3d all;
     for (const auto i : movers_)
-      if (present_[i]) all.extend(poses_[i].translation);
+      if (present_[i]) all.extend(mesh_boxes_[box_of_[i]].mesh_origin(poses_[i]));
     if (all.isEmpty()) return;
     origin_ = all.min() / 2 + all.max() / 2;
     has_origin_ = true;

@@ -22,7 +22,8 @@
 /// so that bodies carried along together do not approach.
 ///
 /// Rounding. A posed vertex, fl(Rv + t), and a posed centre, fl(Rc + t), are each off by less than
-/// 8u (reach + |t|) (see placement.hpp). `error_bound` is twice the sum of both, and is counted at
+/// 8u (reach + |t|) (see placement.hpp), where the mesh has an origin of its own by the error of
+/// LocalPose, too. `error_bound` is twice the sum of both, and is counted at
 /// both poses. The sums of squares and their roots are off by less than 16 roundings in relative
 /// terms, those of the whole by 16 more: a factor of 1 + 32u covers all.
 ///
@@ -36,7 +37,7 @@
 #include <cmath>
 #include <limits>
 
-#include "hierarchies/geometry/pose.hpp"
+#include "hierarchies/geometry/local_pose.hpp"
 #include "hierarchies/geometry/small_matrices.hpp"
 #include "hierarchies/hierarchy_extent.hpp"
 
@@ -50,12 +51,21 @@ struct ReferencePose {
   double error_bound = 0;                      ///< of everything above, in units of the mesh
 
   ReferencePose() = default;
-  ReferencePose(const Pose& pose, const HierarchyExtent& extent)
-      : rotation(pose.rotation), centre(pose(extent.centre)) {
-    constexpr double u = unit_roundoff<double>;
-    defect = defect_of(rotation) + 16 * u;
-    error_bound =
-        32 * u * (extent.reach + pose.translation.norm()) + std::numeric_limits<double>::min();
+  ReferencePose(const Pose& pose, const HierarchyExtent& extent) : rotation(pose.rotation) {
+    defect = defect_of(rotation) + 16 * unit_roundoff<double>;
+    if (LocalMesh::has_own_origin(extent.origin)) [[unlikely]] {
+      const LocalPose local(pose, extent.origin, extent.reach);
+      put_centre(local.pose, extent), error_bound += 2 * local.error;
+    } else {
+      put_centre(pose, extent);
+    }
+  }
+
+ private:
+  void put_centre(const Pose& pose, const HierarchyExtent& extent) {
+    centre = pose(extent.centre);
+    error_bound = 32 * unit_roundoff<double> * (extent.reach + pose.translation.norm()) +
+                  std::numeric_limits<double>::min();
   }
 };
 

@@ -12,7 +12,8 @@
 /// of R's row, the weights times support values are at most 1.74 r reach in all; their roundings
 /// are below 6u of that. The vertex itself, ((R_i0 x + R_i1 y) + R_i2 z) + t_i, is off by less than
 /// 4.1u (1.74 r reach + |t_i|), and adding t_i - o_i by 3u (1.74 r reach + |t_i| + |o_i|). Together
-/// less than the slack of 32u (r reach + |t_i| + |o_i|).
+/// less than the slack of 32u (r reach + |t_i| + |o_i|). Where the mesh has an origin of its own,
+/// v, t and o are local, and the error of LocalPose is added.
 #pragma once
 
 #include <algorithm>
@@ -21,18 +22,29 @@
 #include <limits>
 
 #include "broadphase/box.hpp"
-#include "hierarchies/geometry/pose.hpp"
+#include "hierarchies/geometry/local_pose.hpp"
 #include "hierarchies/geometry/small_matrices.hpp"
-#include "hierarchies/geometry/triangle_mesh.hpp"
 
 namespace bvlab {
 
 class RotatedMeshBox {
  public:
-  /// Vertices that no triangle uses are included.
-  explicit RotatedMeshBox(const TriangleMesh& mesh) {
+  explicit RotatedMeshBox(const TriangleMesh& mesh) : RotatedMeshBox(LocalMesh(mesh)) {}
+
+  /// Where the origin of the mesh (LocalMesh) is in a pose.
+  Vec3<double> mesh_origin(const Pose& pose) const { return pose(origin_); }
+
+  /// The box in a pose, relative to `origin`. Bounds beyond the range of float are clipped to it.
+  Box<float> operator()(const Pose& pose, const Vec3<double>& origin) const {
+    if (!LocalMesh::has_own_origin(origin_)) return box(pose, origin, 0);
+    const LocalPose local(pose, origin_, reach_, origin);
+    return box(local.pose, Vec3<double>::Zero(), local.error);
+  }
+
+ private:
+  explicit RotatedMeshBox(const LocalMesh& local) : origin_(local.origin()) {
     support_.fill(-std::numeric_limits<double>::infinity());
-    for (const auto& v : mesh.vertices) {
+    for (const auto& v : local.mesh().vertices) {
       // Covers the two roundings of a sum of three.
       const double room = 4 * unit_roundoff<double> * v.lpNorm<1>();
       for (int x = -1; x <= 1; ++x)
@@ -46,13 +58,12 @@ class RotatedMeshBox {
     reach_ *= 1 + 8 * unit_roundoff<double>;
   }
 
-  /// The box in a pose, relative to `origin`. Bounds beyond the range of float are clipped to it.
-  Box<float> operator()(const Pose& pose, const Vec3<double>& origin) const {
+  Box<float> box(const Pose& pose, const Vec3<double>& origin, double error) const {
     constexpr float most = std::numeric_limits<float>::max();
     Box<float> box;
     for (int i = 0; i < 3; ++i) {
       const auto [lo, hi] = along({pose.rotation(i, 0), pose.rotation(i, 1), pose.rotation(i, 2)},
-                                  pose.translation[i], origin[i]);
+                                  pose.translation[i], origin[i], error);
       const float below = -beyond(-lo), above = beyond(hi);
       // Written so that NaN gives the box of everything.
       const bool sound = below >= -most && above <= most && below <= above;
@@ -62,7 +73,6 @@ class RotatedMeshBox {
     return box;
   }
 
- private:
   struct Interval {
     double lo, hi;
   };
@@ -77,7 +87,8 @@ class RotatedMeshBox {
 
   static constexpr int at(int x, int y, int z) { return (x + 1) * 9 + (y + 1) * 3 + (z + 1); }
 
-  Interval along(const std::array<double, 3>& n, double translation, double origin) const {
+  Interval along(const std::array<double, 3>& n, double translation, double origin,
+                 double error) const {
     constexpr int weight[3] = {9, 3, 1};
     const double size[3] = {std::abs(n[0]), std::abs(n[1]), std::abs(n[2])};
     // Without branches: which component is largest cannot be predicted.
@@ -100,12 +111,13 @@ class RotatedMeshBox {
     const double offset = translation - origin;
     const double slack =
         32 * unit_roundoff<double> * (large * reach_ + std::abs(translation) + std::abs(origin)) +
-        std::numeric_limits<double>::min();
+        std::numeric_limits<double>::min() + error;
     return {offset - reached(-1) - slack, offset + reached(1) + slack};
   }
 
   std::array<double, 27> support_;
   double reach_ = 0;
+  Vec3<double> origin_;  // of the mesh
 };
 
 }  // namespace bvlab

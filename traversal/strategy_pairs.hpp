@@ -43,6 +43,7 @@ class StrategyPairs {
 
   std::size_t size() const { return bodies_.size(); }
   const TriangleMesh& mesh(std::size_t i) const { return bodies_.mesh(i); }
+  const Vec3<double>& mesh_origin(std::size_t i) const { return bodies_.mesh_origin(i); }
 
   void put(std::uint32_t slot, const ObjectPair& pair) {
     if (slot >= pairs_.size()) strategies_.resize(slot + 1, prototype_), pairs_.resize(slot + 1);

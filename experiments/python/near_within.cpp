@@ -33,10 +33,13 @@ NearWithin::NearWithin(std::span<const TriangleMesh> meshes, std::size_t objects
 std::vector<ObjectPair> NearWithin::pairs(std::span<const Pose> poses,
                                           std::span<const std::uint8_t> present, double distance) {
   boxes_.clear(), of_boxes_.clear();
+  Vec3<double> origin = Vec3<double>::Zero();
   for (std::size_t i = 0; i < objects_; ++i) {
     if (!present[i]) continue;
-    // Relative to the world's origin: what boxes lose by being float makes them larger.
-    const Box<float> box = of_meshes_[i % of_meshes_.size()](poses[i], Vec3<double>::Zero());
+    const RotatedMeshBox& of_mesh = of_meshes_[i % of_meshes_.size()];
+    // Relative to the first body: what boxes lose by being float makes them larger.
+    if (boxes_.empty()) origin = of_mesh.mesh_origin(poses[i]);
+    const Box<float> box = of_mesh(poses[i], origin);
     // Half of the largest number and more are too large for floats.
     boxes_.push_back(larger(box, std::min(distance, std::numeric_limits<double>::max()) / 2));
     of_boxes_.push_back(static_cast<std::uint32_t>(i));

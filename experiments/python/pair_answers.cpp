@@ -25,7 +25,7 @@ class AskedBodies {
 
   void ask(const ObjectPair& pair, std::span<const Pose> poses, Query& query) {
     // Volumes are posed relative to where bodies are: see centre_of.
-    if (!origin_) origin_ = centre_of(poses);
+    if (!origin_) origin_ = centre_of(poses, bodies_);
     for (const auto k : {pair.i, pair.j}) {
       if (poses_[k] == poses[k]) continue;
       bodies_.move(k, poses[k], *origin_);

@@ -103,7 +103,8 @@ class AnyPair {
     const TraversalStatistics statistics = loop(bodies_, pair_, query_, front);
     counter_.tested(statistics.volumes);
     if constexpr (Counter::counts)
-      if (bodies_.frame() == Frame::body) counter_.posed(statistics.volumes);
+      if (bodies_.frame() == Frame::body || a_.is_far() || b_.is_far())
+        counter_.posed(statistics.volumes);
     counter_.primitives(statistics.triangles);
     return statistics;
   }
@@ -138,6 +139,7 @@ class AnyBodies {
 
   std::size_t size() const { return bodies_.size(); }
   const TriangleMesh& mesh(std::size_t i) const { return loops_->mesh(i); }
+  const Vec3<double>& mesh_origin(std::size_t i) const { return bodies_[i]->extent().origin; }
   void make_room() { loops_->make_room(); }
   void set_sharing(Sharing sharing) { loops_->set_sharing(sharing); }
   void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) {
@@ -151,7 +153,11 @@ class AnyBodies {
   }
   void cull_roots(std::span<const ObjectPair> pairs, std::span<const std::uint32_t> fresh,
                   Query& query, Counter& counter, std::uint8_t* apart) {
-    if (loops_->frame() == Frame::body) counter.posed(fresh.size());
+    if constexpr (Counter::counts)
+      for (const auto p : fresh)
+        if (loops_->frame() == Frame::body || bodies_[pairs[p].i]->is_far() ||
+            bodies_[pairs[p].j]->is_far())
+          counter.posed(1);
     loops_->cull_roots(pairs, fresh, query, apart);
   }
   /// Counts what has been posed since this was called last.

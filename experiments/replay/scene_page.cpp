@@ -90,6 +90,7 @@ class Page {
       : meshes_(meshes.first(std::min(meshes.size(), trace.objects))),
         trace_(trace),
         variant_(variant) {
+    for (const auto& mesh : meshes_) origins_.push_back(LocalMesh(mesh).origin());
     const std::size_t bytes = trace.frames * trace.objects * 7 * sizeof(float);
     stride_ = std::max<std::size_t>({1, (bytes + room_for_poses - 1) / room_for_poses,
                                      (trace.frames + most_frames - 1) / most_frames});
@@ -97,6 +98,11 @@ class Page {
     if (stride_ > 1)
       left_out_.add("Of " + std::to_string(trace.frames) + " frames one in " +
                     std::to_string(stride_) + " is shown.");
+  }
+
+  /// Of the mesh of a body (LocalMesh): all that is drawn is relative to it, as volumes are.
+  const Vec3<double>& mesh_origin(std::size_t body) const {
+    return origins_[body % origins_.size()];
   }
 
   Totals data(const SceneNames& names) {
@@ -124,13 +130,17 @@ class Page {
   std::vector<float> poses() const {
     std::vector<float> values;
     if (trace_.frames == 0) return values;
-    std::vector<Pose> first(trace_.objects);
-    trace_.poses(0, first);
-    const Vec3<double> middle = centre_of(first);
+    std::vector<Pose> poses(trace_.objects);
+    trace_.poses(0, poses);
+    const Vec3<double> middle = centre_of(poses, *this);
     for (std::size_t frame = 0; frame < trace_.frames; frame += stride_) {
+      trace_.poses(frame, poses);
       const double* v = trace_.values.data() + frame * trace_.objects * 7;
-      for (std::size_t i = 0; i < trace_.objects * 7; ++i)
-        values.push_back(static_cast<float>(i % 7 < 3 ? v[i] - middle[i % 7] : v[i]));
+      for (std::size_t i = 0; i < trace_.objects; ++i, v += 7) {
+        const Vec3<double> at =
+            position_about(middle, poses[i], mesh_origin(i), Vec3<double>::Zero());
+        for (int k = 0; k < 7; ++k) values.push_back(static_cast<float>(k < 3 ? at[k] : v[k]));
+      }
     }
     return values;
   }
@@ -146,7 +156,7 @@ class Page {
                     std::to_string(thinned) + " is drawn.");
     Totals all;
     for (std::size_t m = 0; m < meshes_.size(); ++m) {
-      Totals mesh = drawn_mesh(meshes_[m], thinned);
+      Totals mesh = drawn_mesh(LocalMesh(meshes_[m]).mesh(), thinned);
       mesh.set("name", names.meshes[m]).set("triangle_count", meshes_[m].triangles.size());
       add_volumes(mesh, volume, *hierarchies, m, names.meshes[m]);
       all.set(std::to_string(m).c_str(), mesh);
@@ -277,6 +287,7 @@ class Page {
   }
 
   std::span<const TriangleMesh> meshes_;
+  std::vector<Vec3<double>> origins_;  // of meshes
   const Trace& trace_;
   const Variant& variant_;
   std::size_t stride_ = 1, frames_ = 0;

@@ -50,7 +50,7 @@ BudgetedResult play_budgeted(std::span<const TriangleMesh> meshes, const Trace& 
     start = Clock::now();
     for (std::size_t frame = 0; frame < trace.frames; ++frame) {
       const auto poses = poses_in_turn.at(frame);
-      if (frame == 0) origin = centre_of(poses);
+      if (frame == 0) origin = centre_of(poses, bodies);
       bodies.move(poses, origin);
       for (const auto& [i, j] : pairs)
         note(result, ask(bodies[i], sizes[i % meshes.size()], bodies[j], sizes[j % meshes.size()],
@@ -78,9 +78,10 @@ std::vector<double> gaps_of(const TriangleMesh& mesh, const Topology& topology, 
   std::vector<double> gaps;
   for (const auto& [node, at] : questions) {
     // Both stand where they are, with the margins that a pose brings along.
-    const double reach = std::max(hierarchy.extent().reach, 2 * at.norm());
+    const Vec3<double> local = at - hierarchy.extent().origin;
+    const double reach = std::max(hierarchy.extent().reach, 2 * local.norm());
     const bvlab::PlacementOf<V> here(Pose{}, Vec3<double>::Zero(), reach);
-    const Vec3<double> point[] = {at};
+    const Vec3<double> point[] = {local};
     gaps.push_back(gap(posed(hierarchy.volume(node), here),
                        posed(V::enclosing(std::span<const Vec3<double>>(point)), here)));
   }

@@ -205,7 +205,7 @@ void add_policy(const std::string& policy, const Scene& scene, std::vector<Cell>
                      return at_roots(scene.trace, [&](std::size_t, const Pose& pose,
                                                       const Vec3<double>& origin) {
                        return posed(hierarchy->volume(0),
-                                    PlacementOf<V>(pose, origin, hierarchy->extent().reach));
+                                    world_placement<V>(pose, origin, hierarchy->extent()));
                      });
                    },
                    {}});

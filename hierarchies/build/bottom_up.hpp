@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "hierarchies/build/topology.hpp"
+#include "hierarchies/geometry/local_mesh.hpp"
 #include "hierarchies/geometry/morton.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
@@ -189,7 +190,7 @@ class Clustering {
 }  // namespace detail
 
 inline Topology BottomUp::operator()(const TriangleMesh& mesh, Threads& threads) const {
-  return detail::Clustering(mesh, *this).build(threads);
+  return detail::Clustering(LocalMesh(mesh).mesh(), *this).build(threads);
 }
 inline Topology BottomUp::operator()(const TriangleMesh& mesh) const {
   Threads alone;

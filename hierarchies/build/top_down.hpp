@@ -18,6 +18,7 @@
 #include "hierarchies/build/cheapest_cut.hpp"
 #include "hierarchies/build/topology.hpp"
 #include "hierarchies/geometry/large_vector.hpp"
+#include "hierarchies/geometry/local_mesh.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
@@ -263,9 +264,10 @@ class Splitter {
 }  // namespace detail
 
 inline Topology TopDown::operator()(const TriangleMesh& mesh, Threads& threads) const {
+  const LocalMesh local(mesh);
   return at == SplitAt::surface_area
-             ? detail::Splitter<detail::BoxOf>(mesh, *this).build(threads)
-             : detail::Splitter<detail::CentroidOf>(mesh, *this).build(threads);
+             ? detail::Splitter<detail::BoxOf>(local.mesh(), *this).build(threads)
+             : detail::Splitter<detail::CentroidOf>(local.mesh(), *this).build(threads);
 }
 inline Topology TopDown::operator()(const TriangleMesh& mesh) const {
   Threads alone;

@@ -21,6 +21,9 @@
 /// - rounding Q, c's products, t - o and the sums is gamma_5 per component, less than
 ///   10e (|c| + |t - o|) over three components.
 ///
+/// For a mesh about an origin of its own, v, t and o are local (LocalPose), and what the world's
+/// vertices are off by is added to `slack` (placement_with_error).
+///
 /// Likewise |R d - directed(d)| <= (|R - Q| + 8e) |d| = tilt |d| for a direction: there are four
 /// roundings in a component, none larger than e |Q_i| |d|, and 4 sqrt(3) < 7.
 ///

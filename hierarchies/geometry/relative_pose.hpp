@@ -20,13 +20,15 @@
 /// errors, so that b may be taken to be exactly where its mesh is given, and a within `error_bound`
 /// of where rotation and translation put it. All of it is below 64u of the lengths: float volumes
 /// round much more, unless bodies are far from the origin of the world; but there float64 poses are
-/// as inexact.
+/// as inexact. Of a mesh about an origin of its own, v and t are local, and 8u (r + |t|) is the
+/// error of LocalPose.
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "hierarchies/geometry/local_pose.hpp"
 #include "hierarchies/geometry/pose.hpp"
 #include "hierarchies/geometry/small_matrices.hpp"
 
@@ -42,10 +44,17 @@ struct OrthonormalPose {
   double error_bound = 0;  ///< 8u (r + |t|) + |R - Q| r; infinite where R is off by more than 0.01
 
   OrthonormalPose() = default;
-  OrthonormalPose(const Pose& pose, double reach_of_mesh)
+  /// Of a mesh about `origin`, of which the translation, then, is that.
+  OrthonormalPose(const Pose& pose, double reach_of_mesh,
+                  const Vec3<double>& origin = Vec3<double>::Zero())
       : translation(pose.translation), reach(reach_of_mesh) {
     constexpr double u = unit_roundoff<double>;
-    error_bound = 8 * u * (reach + translation.lpNorm<1>());
+    if (LocalMesh::has_own_origin(origin)) [[unlikely]] {
+      const LocalPose local(pose, origin, reach);
+      translation = local.pose.translation, error_bound = local.error;
+    } else {
+      error_bound = 8 * u * (reach + translation.lpNorm<1>());
+    }
     if (squared_defect_of(pose.rotation) <= sound)
       keep(pose.rotation);
     else

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "hierarchies/geometry/large_vector.hpp"
+#include "hierarchies/geometry/local_mesh.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/wide/fitting.hpp"
 #include "hierarchies/wide/support_map.hpp"
@@ -61,7 +62,15 @@ class BlockHierarchy {
   /// The same on several threads. The result does not depend on their number.
   BlockHierarchy(const TriangleMesh& mesh, const Topology& binary, Fit fit, std::uint32_t leaf_size,
                  Threads& threads)
-      : sphere_(mesh), supports_(mesh, sphere_.centre, threads) {
+      : BlockHierarchy(LocalMesh(mesh), binary, fit, leaf_size, threads) {}
+
+ private:
+  BlockHierarchy(const LocalMesh& local, const Topology& binary, Fit fit, std::uint32_t leaf_size,
+                 Threads& threads)
+      : origin_(local.origin()),
+        sphere_(local.mesh()),
+        supports_(local.mesh(), sphere_.centre, threads) {
+    const TriangleMesh& mesh = local.mesh();
     const WideTopology topology =
         collapsed(mesh, binary, fan_out, std::min<std::uint32_t>(leaf_size, fan_out));
     nodes_.resize(topology.nodes.size()), node_spheres_.resize(topology.nodes.size());
@@ -81,6 +90,7 @@ class BlockHierarchy {
     reach_ = reach_of_all<scalar>(mesh, reach);
   }
 
+ public:
   std::size_t size() const { return nodes_.size(); }
   const Node& node(std::uint32_t i) const { return nodes_[i]; }
   const NodeSphere& node_sphere(std::uint32_t i) const { return node_spheres_[i]; }
@@ -96,7 +106,9 @@ class BlockHierarchy {
   /// The mesh's index of the triangle in lane `k - first` of a leaf.
   std::uint32_t triangle(std::uint32_t k) const { return triangles_[k]; }
   std::uint32_t root() const { return nodes_[0].leaf ? leaf_flag : 0; }
-  /// An upper bound on the distance of vertices and volumes from the mesh's own origin.
+  /// The origin of the mesh (LocalMesh), in its frame: all else is relative to it.
+  const Vec3<double>& origin() const { return origin_; }
+  /// An upper bound on the distance of vertices and volumes from the origin.
   double reach() const { return reach_; }
 
   const MeshSphere& sphere() const { return sphere_; }
@@ -160,6 +172,7 @@ class BlockHierarchy {
   LargeVector<TriangleLanes<scalar, 4>> corners_;
   LargeVector<std::uint32_t> triangles_;
   double reach_ = 0;
+  Vec3<double> origin_;
   MeshSphere sphere_;
   SupportMap supports_;
 };

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "hierarchies/geometry/large_vector.hpp"
+#include "hierarchies/geometry/local_mesh.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/wide/fitting.hpp"
 #include "hierarchies/wide/lanes.hpp"
@@ -63,7 +64,14 @@ class WideHierarchy {
                 Threads&& threads = Threads())
       : WideHierarchy(mesh, topology, fit, threads) {}
   WideHierarchy(const TriangleMesh& mesh, const WideTopology& topology, Fit fit, Threads& threads)
-      : sphere_(mesh), supports_(mesh, sphere_.centre, threads) {
+      : WideHierarchy(LocalMesh(mesh), topology, fit, threads) {}
+
+ private:
+  WideHierarchy(const LocalMesh& local, const WideTopology& topology, Fit fit, Threads& threads)
+      : origin_(local.origin()),
+        sphere_(local.mesh()),
+        supports_(local.mesh(), sphere_.centre, threads) {
+    const TriangleMesh& mesh = local.mesh();
     nodes_.resize(topology.nodes.size());
     node_spheres_.resize(topology.nodes.size());
     siblings_.resize(topology.nodes.size());
@@ -87,6 +95,7 @@ class WideHierarchy {
     reach_ = reach_of_all<scalar>(mesh, reach);
   }
 
+ public:
   std::size_t size() const { return nodes_.size(); }
   const Node& node(std::uint32_t i) const { return nodes_[i]; }
   const NodeSphere& node_sphere(std::uint32_t i) const { return node_spheres_[i]; }
@@ -97,7 +106,9 @@ class WideHierarchy {
   std::uint32_t leaf_of(std::uint32_t k) const { return leaves_[k / F]; }
   /// The mesh's index of the triangle in lane `k - first` of a leaf.
   std::uint32_t triangle(std::uint32_t k) const { return triangles_[k]; }
-  /// An upper bound on the distance of vertices and volumes from the mesh's own origin.
+  /// The origin of the mesh (LocalMesh), in its frame: all else is relative to it.
+  const Vec3<double>& origin() const { return origin_; }
+  /// An upper bound on the distance of vertices and volumes from the origin.
   double reach() const { return reach_; }
 
   const MeshSphere& sphere() const { return sphere_; }
@@ -146,6 +157,7 @@ class WideHierarchy {
   LargeVector<std::uint32_t> triangles_;
   std::vector<std::uint32_t> leaves_;  // the node of each leaf, in the order of corners_
   double reach_ = 0;
+  Vec3<double> origin_;
   MeshSphere sphere_;
   SupportMap supports_;
 };

@@ -40,6 +40,11 @@ std::vector<Vec3<long double>> points_of(const Triangle& corners) {
   return points;
 }
 
+Triangle about(const Vec3<double>& origin, Triangle triangle) {
+  for (auto& corner : triangle) corner -= origin;
+  return triangle;
+}
+
 /// Checks the subtree and gives the triangles below it.
 template <class V>
 std::vector<std::uint32_t> check(const Hierarchy<V>& h, std::uint32_t node,
@@ -60,7 +65,7 @@ std::vector<std::uint32_t> check(const Hierarchy<V>& h, std::uint32_t node,
   }
   const PlacementOf<V> here;
   for (const auto triangle : below)
-    for (const auto& point : points_of(mesh.corners(triangle)))
+    for (const auto& point : points_of(about(h.extent().origin, mesh.corners(triangle))))
       EXPECT_TRUE(contains(posed(h.volume(node), here), point));
   return below;
 }

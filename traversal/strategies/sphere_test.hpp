@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Tests spheres about the origins of two bodies' frames by the translations alone: no volume is
-/// posed. After spheres that overlap, the test is skipped for eight runs.
+/// Tests spheres about the origins of two meshes (LocalMesh) by the translations alone: no volume
+/// is posed. After spheres that overlap, the test is skipped for eight runs.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ class SphereTest {
     const OrthonormalPose &at_a = pair.a().orthonormal_pose(), &at_b = pair.b().orthonormal_pose();
     const Vec3<double>&a = at_a.translation, &b = at_b.translation;
     const double radii = radii_ + (at_a.error_bound + at_b.error_bound) +
-                         (a.lpNorm<1>() + b.lpNorm<1>()) * 0x1p-40 + pair.query().limit();
+                         (a - b).lpNorm<1>() * 0x1p-40 + pair.query().limit();
     const double squared = (a - b).squaredNorm();
     if (squared > radii * radii && squared > tiny) return Result::apart;
     until_test_ = rest;
@@ -42,7 +42,7 @@ class SphereTest {
   static constexpr int rest = 8;            // runs
   static constexpr double tiny = 0x1p-900;  // smaller squares are inexact by underflow
 
-  /// The radius of a sphere about the frame's origin that encloses the mesh, if not all volumes.
+  /// The radius of a sphere about the mesh's origin that encloses the mesh, if not all volumes.
   static double radius(const HierarchyExtent& extent) {
     return std::min(extent.reach, stable_norm(extent.centre) + extent.radius);
   }

@@ -59,9 +59,9 @@ class ListMemory : public WitnessMemory {
                       Raise raise = Raise::never)
       : rule_(rule), raise_(raise) {}
 
-  void add_body(const MeshSphere& sphere, double reach, std::size_t nodes) {
-    NoMemory::add_body(sphere, reach, nodes);
-    nodes_.push_back(nodes);
+  void add_body(const HierarchyExtent& extent) {
+    NoMemory::add_body(extent);
+    nodes_.push_back(extent.nodes);
   }
   void resize(std::size_t pairs) { WitnessMemory::resize(pairs), lists_.resize(pairs, {{}, rule_}); }
   void forget(std::size_t p) { WitnessMemory::forget(p), lists_[p] = {{}, rule_}; }

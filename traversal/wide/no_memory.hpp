@@ -3,7 +3,7 @@
 /// the last answer is kept, which decides the order of steps.
 ///
 /// A memory keeps state of pairs of bodies from frame to frame. WidePairs calls
-///   add_body(sphere, reach, nodes), resize(pairs)  for the bodies and the number of pairs
+///   add_body(extent), resize(pairs)         for the bodies and the number of pairs
 ///   forget(pair)                            when a pair parts
 ///   begin_frame<Query>()                    begins a frame; forgets all if the query differs
 ///   move(i, body, pose, culling, origin)    body i is at `pose`
@@ -46,7 +46,7 @@ class NoMemory {
   template <class S>
   using Record = FrontRecord<S, Keeps::nothing>;
 
-  void add_body(const MeshSphere& sphere, double, std::size_t) { spheres_.push_back(sphere); }
+  void add_body(const HierarchyExtent& extent) { spheres_.push_back(extent); }
   void resize(std::size_t pairs) { touched_.resize(pairs); }
   static void forget(std::size_t) {}
   template <class Query>
@@ -56,8 +56,9 @@ class NoMemory {
   void move(std::size_t i, Body& body, const Pose& pose, EarlyCulling& culling,
             const Vec3<double>& origin) const {
     body.set_pose(pose);
-    culling.set_pose(i, pose.rotation, pose(spheres_[i].centre) - origin, spheres_[i].radius,
-                     body.orthonormal_pose().error_bound);
+    culling.set_pose(i, pose.rotation,
+                     position_about(origin, pose, body.hierarchy().origin(), spheres_[i].centre),
+                     spheres_[i].radius, body.orthonormal_pose().error_bound);
   }
   static void rest(std::size_t) {}
   static constexpr std::size_t front_size(std::size_t = 0) { return 0; }
@@ -91,7 +92,7 @@ class NoMemory {
   }
 
  private:
-  std::vector<MeshSphere> spheres_;
+  std::vector<HierarchyExtent> spheres_;  // of the bodies
   std::vector<std::uint8_t> touched_;  // in the last frame; affects only the order of steps
 };
 

@@ -33,7 +33,7 @@ class WideBody {
   bool set_pose(const Pose& pose) {
     if (posed_ && pose == pose_) return false;
     pose_ = pose, posed_ = true;
-    orthonormal_pose_ = OrthonormalPose(pose, hierarchy_->reach());
+    orthonormal_pose_ = OrthonormalPose(pose, hierarchy_->reach(), hierarchy_->origin());
     return true;
   }
 

@@ -51,8 +51,8 @@ class WideMargins {
   template <class S>
   using Record = FrontRecord<S, Keeps::gaps>;
 
-  void add_body(const MeshSphere& sphere, double reach, std::size_t) {
-    bodies_.add({sphere.centre, sphere.radius, reach, 0});
+  void add_body(const HierarchyExtent& extent) {
+    bodies_.add(extent);
   }
   void resize(std::size_t pairs) {
     answers_.resize(pairs), kept_.resize(pairs), front_sizes_.resize(pairs);

@@ -41,12 +41,16 @@ class WidePairs {
       bodies_.emplace_back(*mesh, *hierarchy);
       meshes_.push_back(mesh);
       culling_.add_body(hierarchy->supports());
-      memory_.add_body(hierarchy->sphere(), hierarchy->reach(), hierarchy->size());
+      const auto& sphere = hierarchy->sphere();
+      memory_.add_body({sphere.centre, sphere.radius, hierarchy->reach(), hierarchy->size(), 0,
+                        hierarchy->origin()});
     }
   }
 
   std::size_t size() const { return bodies_.size(); }
   const TriangleMesh& mesh(std::size_t i) const { return *meshes_[i]; }
+  /// See LocalMesh.
+  const Vec3<double>& mesh_origin(std::size_t i) const { return bodies_[i].hierarchy().origin(); }
 
   void put(std::uint32_t slot, const ObjectPair& pair) {
     if (slot >= most_pairs) throw std::length_error("wide trees: more than 2^30 pairs of bodies");
