@@ -134,6 +134,7 @@ void expect_wide_pairs_start_anew() {
 TEST(AllocationFailures, WidePairsStartAnew) {
   expect_wide_pairs_start_anew<SlabBox<float>, 8, WideMargins, SiblingsKernel>();
   expect_wide_pairs_start_anew<Obb<float>, 4, WideMargins, MixedKernel>();
+  expect_wide_pairs_start_anew<Obb<float>, 4, RaisedLists, MixedKernel>();
   expect_wide_pairs_start_anew<Obb<float>, 4, NoMemory, MixedKernel>();
 }
 

@@ -18,6 +18,10 @@ Variant binary(const std::string& query) {
   return variant;
 }
 
+constexpr const char* all_strategies[] = {"recursive", "recursive-both", "witness",
+                                          "separation-list", "deferred", "deferred:3", "by-cost",
+                                          "raise", "margins", "adaptive"};
+
 Variant wide(const std::string& query, const char* kernel = "siblings") {
   Variant variant = binary(query);
   set_kernel(variant, kernel);
@@ -72,7 +76,7 @@ TEST(WideReplays, ABodyComesBackFromBeyondTheFloats) {
     const auto truth = replay(meshes, trace, binary("touching"), {});
     EXPECT_GT(truth.hits, 20u);
     for (const std::string volume : {"slab-box", "obb"})
-      for (const char* strategy : {"recursive", "margins"})
+      for (const char* strategy : all_strategies)
         for (const char* kernel : {"siblings", "mixed"}) {
           if (kernel == std::string("mixed") && volume != "obb") continue;
           Variant variant = wide("touching", kernel);
@@ -101,7 +105,7 @@ void expect_same_at_rest(const std::vector<TriangleMesh>& meshes, const Pose& fi
   const auto truth = replay(meshes, trace, binary(query), {});
   for (const char* kernel : {"siblings", "mixed"})
     for (const std::string volume : {"slab-box", "obb"})
-      for (const char* strategy : {"recursive", "margins"}) {
+      for (const char* strategy : all_strategies) {
         if (kernel == std::string("mixed") && volume != "obb") continue;
         Variant variant = wide(query, kernel);
         variant.volume = volume, variant.strategy = strategy;
@@ -235,7 +239,8 @@ TEST(WideReplays, RefuseWhatThereIsNot) {
     EXPECT_THROW(check(variant), Unusable);
   };
   refused([](Variant& v) { v.volume = "sphere"; });
-  refused([](Variant& v) { v.strategy = "deferred"; });
+  refused([](Variant& v) { v.strategy = "deferred:many"; });
+  refused([](Variant& v) { v.strategy = "patient"; });
   refused([](Variant& v) { v.fan_out = 2; });
   refused([](Variant& v) { v.frame = "world"; });
   refused([](Variant& v) { v.kernel = "tall"; });

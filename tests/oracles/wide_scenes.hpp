@@ -16,6 +16,7 @@
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
 #include "traversal/wide/kernels.hpp"
+#include "traversal/wide/list_memory.hpp"
 #include "traversal/wide/wide_pairs.hpp"
 
 namespace bvlab {
@@ -294,6 +295,11 @@ void expect_truth() {
     played.expect_distances(truth);
   });
 }
+
+/// Lists whose entries rise.
+struct RaisedLists : ListMemory {
+  RaisedLists() : ListMemory(RebuildRule::by_last_rebuild(), Raise::tried) {}
+};
 
 /// One engine for all queries, one after the other, so that each begins with another's memory.
 template <class V, int F, class Memory, class Kernel = SiblingsKernel>

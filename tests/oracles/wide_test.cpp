@@ -43,6 +43,11 @@ TEST(Wide, RememberingIsBruteForce) {
   expect_truth_in_motion<SlabBox<float>, 8, NoMemory>();
 }
 
+TEST(Wide, ListsAreBruteForce) {
+  expect_truth_in_motion<SlabBox<float>, 16, ListMemory>();
+  expect_truth_in_motion<SlabBox<float>, 16, RaisedLists>();
+}
+
 double exact_support(const TriangleMesh& mesh, const Vec3<double>& centre, const Vec3<double>& d) {
   double most = -std::numeric_limits<double>::infinity();
   for (const auto& triangle : mesh.triangles)
