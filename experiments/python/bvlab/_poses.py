@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._bvlab import _real_array
 
 ORDERS = {"wxyz": [0, 1, 2, 3], "xyzw": [3, 0, 1, 2]}
-TOLERANCE = 1e-3  # by which a matrix may miss being a rotation, unless a call says otherwise
+TOLERANCE = 5e-4  # by which a matrix may miss being a rotation, unless a call says otherwise
 ROUNDING = 8 * np.finfo(float).eps  # what is nearer to a rotation than this is taken as it stands
 
 
@@ -22,9 +22,9 @@ def poses(positions: ArrayLike, quaternions: ArrayLike | None = None, *,
     poses(positions, quaternions, order="wxyz")   (frames, objects, 3) and (frames, objects, 4) real; the order of a
                                                   quaternion's numbers must be said, "wxyz" or "xyzw", since one
                                                   passes for the other. They need not be of unit length.
-    poses(matrices, tolerance=1e-3)               (frames, objects, 4, 4) real: [R t; 0 0 0 1]. The pose has the
+    poses(matrices, tolerance=5e-4)               (frames, objects, 4, 4) real: [R t; 0 0 0 1]. The pose has the
                                                   rotation that is nearest to R (of the polar decomposition). R may
-                                                  change a length by at most `tolerance` of it, 1e-3 unless given:
+                                                  change a length by at most `tolerance` of it, 5e-4 unless given:
                                                   enough for numbers of four decimals, or products in float32.
 
     ValueError: another shape or type, NaN, infinity, a quaternion of length 0, a matrix that is no rotation: it says
@@ -94,7 +94,8 @@ def _from_matrices(matrices: NDArray[np.float64], tolerance: float) -> NDArray[n
     wrong = np.zeros(inexact.shape, bool)
     wrong[inexact] = (np.abs(stretch - 1) > tolerance).any(axis=-1) | (np.linalg.det(nearest) < 0)
     if wrong.any():
-        raise ValueError(f"matrices: no rotation {_place(wrong)}: {_fault(rotation[wrong][0], tolerance)}")
+        raise ValueError(f"matrices: no rotation {_place(wrong)}: {_fault(rotation[wrong][0], tolerance)} "
+                         f"(lengths may change by {tolerance:g} of themselves: tolerance)")
     rotation[inexact] = nearest
     wrong = (matrices[..., 3, :] != [0, 0, 0, 1]).any(axis=-1)
     if wrong.any():
@@ -105,12 +106,12 @@ def _from_matrices(matrices: NDArray[np.float64], tolerance: float) -> NDArray[n
 def _fault(matrix: NDArray[np.float64], tolerance: float) -> str:
     """What of a matrix is no rotation, with its size: "scaled by 2", "sheared: two of its axes are 84.3 degrees apart"."""
     left, stretch, right = np.linalg.svd(matrix)
+    if stretch[0] == 0 or stretch[2] / stretch[0] < np.finfo(float).eps:
+        return "flat: its determinant is 0"
     faults = []
     if np.linalg.det(left @ right) < 0:
         faults.append(f"mirrored: its determinant is {np.linalg.det(matrix):.6g}")
-    if stretch[0] == 0 or stretch[2] / stretch[0] < np.finfo(float).eps:
-        faults.append("flat: its determinant is 0")
-    elif stretch[0] / stretch[2] - 1 <= 2 * tolerance:
+    if stretch[0] / stretch[2] - 1 <= 2 * tolerance:
         if (np.abs(stretch - 1) > tolerance).any():
             faults.append(f"scaled by {stretch[1]:.6g}")
     else:
@@ -123,7 +124,7 @@ def _fault(matrix: NDArray[np.float64], tolerance: float) -> str:
         else:
             faults.append(f"sheared: two of its axes are {angles[0]:.4g} degrees apart, and lengths change by factors of "
                           f"{stretch[2]:.6g} to {stretch[0]:.6g}")
-    return f"{' and '.join(faults)} (lengths may change by {tolerance:g} of themselves: tolerance)"
+    return " and ".join(faults)
 
 
 def _axes_of(matrix: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
