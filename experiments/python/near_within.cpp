@@ -26,17 +26,23 @@ Box<float> larger(Box<float> box, double reach) {
 }  // namespace
 
 NearWithin::NearWithin(std::span<const TriangleMesh> meshes, std::size_t objects)
-    : objects_(objects), method_(make_method<float>("auto", {.coherence = Coherence::off})) {
-  for (const TriangleMesh& mesh : meshes) of_meshes_.emplace_back(mesh);
+    : method_(make_method<float>("auto", {.coherence = Coherence::off})) {
+  for (std::size_t i = 0; i < objects; ++i) add(meshes[i % meshes.size()]);
+}
+
+void NearWithin::add(const TriangleMesh& mesh) {
+  const auto [at, fresh] = known_.try_emplace(&mesh, of_meshes_.size());
+  if (fresh) of_meshes_.emplace_back(mesh);
+  mesh_of_.push_back(at->second);
 }
 
 std::vector<ObjectPair> NearWithin::pairs(std::span<const Pose> poses,
                                           std::span<const std::uint8_t> present, double distance) {
   boxes_.clear(), of_boxes_.clear();
-  for (std::size_t i = 0; i < objects_; ++i) {
+  for (std::size_t i = 0; i < mesh_of_.size(); ++i) {
     if (!present[i]) continue;
     // Relative to the world's origin: what boxes lose by being float makes them larger.
-    const Box<float> box = of_meshes_[i % of_meshes_.size()](poses[i], Vec3<double>::Zero());
+    const Box<float> box = of_meshes_[mesh_of_[i]](poses[i], Vec3<double>::Zero());
     // Half of the largest number and more are too large for floats.
     boxes_.push_back(larger(box, std::min(distance, std::numeric_limits<double>::max()) / 2));
     of_boxes_.push_back(static_cast<std::uint32_t>(i));

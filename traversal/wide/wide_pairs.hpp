@@ -36,12 +36,15 @@ class WidePairs {
   /// One body for each shape, which must outlive this.
   explicit WidePairs(std::span<const WideShape<V, F, Kernel>> shapes) {
     bodies_.reserve(shapes.size());
-    for (const auto& [mesh, hierarchy] : shapes) {
-      bodies_.emplace_back(*mesh, *hierarchy);
-      meshes_.push_back(mesh);
-      culling_.add_body(hierarchy->supports());
-      memory_.add_body(hierarchy->sphere(), hierarchy->reach());
-    }
+    for (const auto& shape : shapes) add(shape);
+  }
+
+  void add(const WideShape<V, F, Kernel>& shape) {
+    const auto& [mesh, hierarchy] = shape;
+    bodies_.emplace_back(*mesh, *hierarchy);
+    meshes_.push_back(mesh);
+    culling_.add_body(hierarchy->supports());
+    memory_.add_body(hierarchy->sphere(), hierarchy->reach());
   }
 
   std::size_t size() const { return bodies_.size(); }
