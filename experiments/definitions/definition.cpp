@@ -205,10 +205,13 @@ class Reader {
     return static_cast<unsigned>(*value);
   }
 
-  /// Of meshes also a list, which is written with commas between.
+  /// Of meshes also a list, which is written with commas between; `none` is the peer without a name.
   std::string setting(const toml::node& node, const std::string& key) const {
     const auto* list = key == "mesh" ? node.as_array() : nullptr;
-    if (!list) return scalar(node, key);
+    if (!list) {
+      const std::string value = scalar(node, key);
+      return key == "peer" && value == "none" ? "" : value;
+    }
     std::string all;
     for (auto&& each : *list) {
       const std::string mesh = string(each, "a mesh in a list");
@@ -390,7 +393,7 @@ const std::vector<Parameter>& parameters() {
              {"configuration", "",
               "sets volume, strategy, fan_out, frame, kernel, build, leaf_size and fit, which it "
               "excludes; see `bvlab list`"},
-             {"peer", "", "another library in place of ours; see `bvlab list peers`"}})
+             {"peer", "", "another library in place of ours, or none; see `bvlab list peers`"}})
       all.push_back(each);
     return all;
   }();
