@@ -80,7 +80,11 @@ class Calls(unittest.TestCase):
                 for frame in range(30):
                     world.move(i, self.long[frame, i])
                     world.update()
-                    world.touching(), world.contacts(), world.distances(0.1)
+                    for ask in (world.touching, world.contacts, lambda: world.distances(0.1)):
+                        try:
+                            ask()
+                        except RuntimeError as fault:  # another thread has moved a body meanwhile
+                            self.assertIn("call update() first", str(fault))
             except Exception as fault:  # noqa: BLE001
                 faults.append(fault)
         threads = [threading.Thread(target=work, args=[i]) for i in range(6)]
