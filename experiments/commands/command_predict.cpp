@@ -77,7 +77,9 @@ Totals totals_of(const Arguments& arguments, const Trace& trace, const Coherence
     totals.set("fastest", nullptr);
   std::string list;
   for (const auto& name : names) list += (list.empty() ? "" : ", ") + std::string(name);
-  totals.set("candidates", list).set("windows", rows.back().windows).set("verdict", verdict(rows, trace));
+  totals.set("candidates", list)
+      .set("windows", rows.back().windows)
+      .set("verdict", verdict(rows, trace));
   Totals strategies;
   for (const Predicted& row : rows) {
     Totals each;

@@ -205,7 +205,8 @@ class Reader {
     return static_cast<unsigned>(*value);
   }
 
-  /// Of meshes also a list, which is written with commas between; `none` is the peer without a name.
+  /// Of meshes also a list, which is written with commas between; `none` is the peer without a
+  /// name.
   std::string setting(const toml::node& node, const std::string& key) const {
     const auto* list = key == "mesh" ? node.as_array() : nullptr;
     if (!list) {

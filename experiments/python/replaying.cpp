@@ -293,9 +293,18 @@ bvlab.methods() has the names. ValueError: NaN, infinity, lo > hi, another shape
          const std::optional<std::string>& frame, const std::string& build, std::uint32_t leaf_size,
          const std::string& fit, double relative_error, std::optional<std::size_t> stride,
          std::optional<std::size_t> window) {
-        const VariantWords words{volume, {},    query,     fan_out, frame,
-                                 {},     {},    build,     leaf_size, fit,
-                                 default_variant().precision, relative_error};
+        const VariantWords words{volume,
+                                 {},
+                                 query,
+                                 fan_out,
+                                 frame,
+                                 {},
+                                 {},
+                                 build,
+                                 leaf_size,
+                                 fit,
+                                 default_variant().precision,
+                                 relative_error};
         return predicted(meshes, poses, words, stride, window);
       },
       "meshes"_a, "poses"_a, py::kw_only(), "volume"_a = d.volume, "query"_a = d.query,

@@ -390,11 +390,10 @@ several threads run one after the other.)")
              return std::make_shared<PyWorld>(meshes, objects, words, threads);
            }),
            "meshes"_a = py::tuple(), py::kw_only(), "objects"_a = py::none(),
-           "volume"_a = py::none(),
-           "strategy"_a = py::none(), "fan_out"_a = py::none(), "frame"_a = py::none(),
-           "kernel"_a = py::none(), "configuration"_a = py::none(), "build"_a = py::none(),
-           "leaf_size"_a = py::none(), "fit"_a = py::none(), "precision"_a = d.precision,
-           "threads"_a = 1)
+           "volume"_a = py::none(), "strategy"_a = py::none(), "fan_out"_a = py::none(),
+           "frame"_a = py::none(), "kernel"_a = py::none(), "configuration"_a = py::none(),
+           "build"_a = py::none(), "leaf_size"_a = py::none(), "fit"_a = py::none(),
+           "precision"_a = d.precision, "threads"_a = 1)
       .def(
           "move", &PyWorld::move, "object"_a, "pose"_a,
           R"(Sets the pose of a body, or of several, from the next update on: move(i, pose), move(indices, poses).
