@@ -68,7 +68,8 @@ def _drawing():
         from bvlab_plots import style  # noqa: F401  sets them
         from bvlab_plots.refused import Refused
         if not _looks:
-            _looks.update({key: value for key, value in matplotlib.rcParams.items() if settings.get(key) != value})
+            _looks.update({key: value for key, value in matplotlib.rcParams.items()
+                           if settings.get(key) != value and key != "backend"})
         try:
             yield
         except Refused as fault:
