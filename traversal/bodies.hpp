@@ -57,6 +57,12 @@ class Bodies {
     for (const auto& shape : shapes) bodies_.emplace_back(*shape.mesh, *shape.hierarchy, frame);
   }
 
+  /// Adds a body. Bodies may go elsewhere in memory.
+  void add(const Shape<V>& shape) {
+    bodies_.emplace_back(*shape.mesh, *shape.hierarchy, frame_).set_sharing(sharing_);
+    roots_.emplace_back();
+  }
+
   std::size_t size() const { return bodies_.size(); }
   Frame frame() const { return frame_; }
   const TriangleMesh& mesh(std::size_t i) const { return bodies_[i].mesh(); }
@@ -72,6 +78,7 @@ class Bodies {
 
   /// See Body::set_sharing.
   void set_sharing(Sharing sharing) {
+    sharing_ = sharing;
     for (auto& body : bodies_) body.set_sharing(sharing);
   }
 
@@ -149,6 +156,7 @@ class Bodies {
   std::vector<Posed<V>> roots_;       // of all bodies, side by side
   std::vector<std::uint8_t> wanted_;  // for each body, whether its root is tested
   Frame frame_;
+  Sharing sharing_ = Sharing::one_thread;
 };
 
 }  // namespace bvlab

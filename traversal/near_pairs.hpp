@@ -32,20 +32,23 @@ class NearPairs {
   template <class Mesh>
   NearPairs(std::size_t objects, int threads, Mesh&& mesh)
       : threads_(threads),
-        method_(MethodSettings{.changes = Changes::reported, .threads = threads}),
-        poses_(objects),
-        boxes_(objects),
-        neighbours_(objects),
-        moved_(objects, Moved::no),
-        present_(objects, 0) {
-    movers_.reserve(objects);  // so that `move` never throws
-    std::unordered_map<const TriangleMesh*, std::uint32_t> known;
-    for (std::size_t i = 0; i < objects; ++i) {
-      const auto [at, fresh] = known.try_emplace(&mesh(i), known.size());
-      if (fresh) mesh_boxes_.emplace_back(mesh(i));
-      box_of_.push_back(at->second);
-      boxes_[i] = outside(i);
-    }
+        method_(MethodSettings{.changes = Changes::reported, .threads = threads}) {
+    poses_.reserve(objects), boxes_.reserve(objects), neighbours_.reserve(objects);
+    moved_.reserve(objects), present_.reserve(objects), movers_.reserve(objects);
+    for (std::size_t i = 0; i < objects; ++i) add(mesh(i));
+  }
+
+  /// Adds a body, which is not in the scene before its first move. Returns its index.
+  std::uint32_t add(const TriangleMesh& mesh) {
+    const std::size_t i = box_of_.size();
+    const auto [at, fresh] = known_.try_emplace(&mesh, mesh_boxes_.size());
+    if (fresh) mesh_boxes_.emplace_back(mesh);
+    box_of_.push_back(at->second);
+    poses_.emplace_back(), boxes_.push_back(outside(i)), neighbours_.emplace_back();
+    moved_.push_back(Moved::no), present_.push_back(0);
+    // So that `move` never throws.
+    if (movers_.capacity() <= i) movers_.reserve(2 * (i + 1));
+    return static_cast<std::uint32_t>(i);
   }
 
   void move(std::uint32_t object, const Pose& pose) {
@@ -241,6 +244,7 @@ class NearPairs {
   Threads threads_;
   Method method_;
   std::vector<RotatedMeshBox> mesh_boxes_;  // one for each mesh
+  std::unordered_map<const TriangleMesh*, std::uint32_t> known_;  // where each mesh's box is
   std::vector<std::uint32_t> box_of_;       // for each body, the index of its box there
   std::vector<Pose> poses_;
   std::vector<Box<float>> boxes_;

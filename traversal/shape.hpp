@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <ranges>
 #include <span>
 #include <vector>
 
@@ -20,11 +21,10 @@ struct ShapeOver {
 
 /// The shapes of bodies of which body i has mesh i modulo the number of meshes. Meshes and
 /// hierarchies must outlive them.
-template <class HierarchyType>
-std::vector<ShapeOver<HierarchyType>> shapes_over(std::span<const TriangleMesh> meshes,
-                                                  const std::vector<HierarchyType>& hierarchies,
-                                                  std::size_t bodies) {
-  std::vector<ShapeOver<HierarchyType>> shapes;
+template <std::ranges::random_access_range Hierarchies>
+auto shapes_over(std::span<const TriangleMesh> meshes, const Hierarchies& hierarchies,
+                 std::size_t bodies) {
+  std::vector<ShapeOver<std::ranges::range_value_t<Hierarchies>>> shapes;
   shapes.reserve(bodies);
   for (std::size_t i = 0; i < bodies; ++i)
     shapes.push_back({&meshes[i % meshes.size()], &hierarchies[i % meshes.size()]});

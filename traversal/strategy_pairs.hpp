@@ -45,6 +45,13 @@ class StrategyPairs {
   const TriangleMesh& mesh(std::size_t i) const { return bodies_.mesh(i); }
   const Vec3<double>& mesh_origin(std::size_t i) const { return bodies_.mesh_origin(i); }
 
+  /// Adds a body, of what BodySet::add takes.
+  template <class... OfBody>
+  void add(const OfBody&... of_body) {
+    bodies_.add(of_body...);
+    moved_.push_back(never_done);
+  }
+
   void put(std::uint32_t slot, const ObjectPair& pair) {
     if (slot >= pairs_.size()) strategies_.resize(slot + 1, prototype_), pairs_.resize(slot + 1);
     pairs_[slot] = pair;

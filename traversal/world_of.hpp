@@ -28,6 +28,7 @@ namespace bvlab {
 
 /// Pairs is StrategyPairs, WidePairs, or a class with the same members:
 ///   size(), mesh(i)                     of bodies
+///   add(shape)                          adds a body; its type is that of Pairs
 ///   put(slot, pair), drop(slot)         begins to query a pair in later frames, or ends it
 ///   pairs()                             the pairs, by slot
 ///   begin<Query>(movers, poses, origin, threads)  begins a frame: who has moved; poses of all
@@ -43,10 +44,27 @@ class WorldOf {
         near_(pairs_.size(), threads,
               [this](std::size_t i) -> const TriangleMesh& { return pairs_.mesh(i); }) {}
 
+  /// Adds a body at a pose and returns its index, one more than the last; `shape` is what Pairs
+  /// has for a body, and what it refers to must outlive the world. O(1), amortised.
+  template <class Shape>
+  std::uint32_t add(const Shape& shape, const Pose& pose) {
+    const std::uint32_t object = add(shape);
+    move(object, pose);
+    return object;
+  }
+  /// The same, for a body that enters the scene when it is moved.
+  template <class Shape>
+  std::uint32_t add(const Shape& shape) {
+    pairs_.add(shape);
+    return near_.add(pairs_.mesh(pairs_.size() - 1));
+  }
+  /// The number of bodies, those that were removed included.
+  std::size_t size() const { return pairs_.size(); }
+
   /// Sets a body's pose. A body that was never moved is not in the scene.
   void move(std::uint32_t object, const Pose& pose) { near_.move(object, pose); }
-  /// Takes a body out of the scene until it is moved again.
-  void take_out(std::uint32_t object) { near_.take_out(object); }
+  /// Removes a body from the scene, until it is moved again. No other body gets its index.
+  void remove(std::uint32_t object) { near_.take_out(object); }
 
   /// Queries every pair whose boxes overlap and of which a body has moved since the last update.
   /// `make_query(pair)` returns the query, `take(slot, pair, query)` receives it with its answer,

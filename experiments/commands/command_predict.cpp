@@ -14,6 +14,7 @@
 #include "experiments/files/whole_file.hpp"
 #include "experiments/replay/coherence.hpp"
 #include "experiments/replay/predict.hpp"
+#include "experiments/replay/registry.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 
 namespace bvlab {
@@ -41,8 +42,8 @@ std::string lines(const Rows& rows, const char* format) {
 }
 
 /// "deferred", or why nobody is named.
-std::string verdict(const Rows& rows) {
-  if (rows.back().windows == 0) return "unknown: there are no frames";
+std::string verdict(const Rows& rows, const Trace& trace) {
+  if (const auto why = nothing_to_tell(trace); !why.empty()) return "unknown: " + std::string(why);
   if (!can_tell(rows))
     return "unknown: " + std::to_string(rows.back().windows) + " of the " +
            std::to_string(least_windows) +
@@ -76,7 +77,9 @@ Totals totals_of(const Arguments& arguments, const Trace& trace, const Coherence
     totals.set("fastest", nullptr);
   std::string list;
   for (const auto& name : names) list += (list.empty() ? "" : ", ") + std::string(name);
-  totals.set("candidates", list).set("windows", rows.back().windows).set("verdict", verdict(rows));
+  totals.set("candidates", list)
+      .set("windows", rows.back().windows)
+      .set("verdict", verdict(rows, trace));
   Totals strategies;
   for (const Predicted& row : rows) {
     Totals each;
@@ -90,6 +93,7 @@ Totals totals_of(const Arguments& arguments, const Trace& trace, const Coherence
 
 void run(const Arguments& arguments) {
   check(arguments.variant);
+  require_fit(arguments.variant);
   std::vector<NamedFile> read{{"--trace", arguments.trace}};
   for (const auto& mesh : arguments.meshes) read.push_back({"--mesh", mesh});
   const NamedFile written[] = {
@@ -118,7 +122,7 @@ void run(const Arguments& arguments) {
   }
   std::printf("%-16s %14s %14s %12s  %s\n%s", "strategy", "n_v", "n_p", "seconds", "interval",
               lines(rows, "%-16s %14.0f %14.0f %12.6f  %.6f to %.6f\n").c_str());
-  std::printf("fastest: %s\n", verdict(rows).c_str());
+  std::printf("fastest: %s\n", verdict(rows, trace).c_str());
 }
 
 }  // namespace

@@ -83,10 +83,7 @@ void check(const Arguments& arguments) {
                                  (arguments.configuration || arguments.variant.kernel != "gathered"
                                       ? chosen(arguments)
                                       : "--fan-out " + std::to_string(arguments.variant.fan_out)));
-  if (arguments.variant.fit == "tight" && !arguments.configuration)
-    for (const auto* volume : volume_entries())
-      if (volume->name == arguments.variant.volume && !volume->has_tight_fit)
-        throw Unusable("--fit tight", arguments.variant.volume + " has only one fit: published");
+  if (!arguments.configuration) require_fit(arguments.variant);
   if (!arguments.budget) return;
   for (const auto& [option, file] : {std::pair("--page", arguments.page), {"--x3d", arguments.x3d}})
     if (!file.empty()) throw Unusable(option, "shows whole answers; not with --budget");

@@ -205,6 +205,25 @@ class Reader {
     return static_cast<unsigned>(*value);
   }
 
+  /// Of meshes also a list, which is written with commas between; `none` is the peer without a
+  /// name.
+  std::string setting(const toml::node& node, const std::string& key) const {
+    const auto* list = key == "mesh" ? node.as_array() : nullptr;
+    if (!list) {
+      const std::string value = scalar(node, key);
+      return key == "peer" && value == "none" ? "" : value;
+    }
+    std::string all;
+    for (auto&& each : *list) {
+      const std::string mesh = string(each, "a mesh in a list");
+      if (mesh.find_first_not_of(' ') == mesh.npos || mesh.find(',') != mesh.npos)
+        fail(each.source(), "mesh: '" + mesh + "' in a list must be one mesh, without commas");
+      all += (all.empty() ? "" : ",") + mesh;
+    }
+    if (all.empty()) fail(node.source(), "mesh: the list is empty");
+    return all;
+  }
+
   std::string scalar(const toml::node& node, const std::string& key) const {
     if (const auto value = node.value_exact<std::string>()) return *value;
     if (const auto value = node.value_exact<std::int64_t>()) return std::to_string(*value);
@@ -255,7 +274,7 @@ class Reader {
         continue;
       }
       known(name, key.source());
-      result.emplace_back(name, scalar(value, name));
+      result.emplace_back(name, setting(value, name));
     }
     return result;
   }
@@ -314,7 +333,7 @@ class Reader {
     std::set<std::string> labels;
     for (auto&& each : *list) {
       if (values) {
-        const std::string value = scalar(each, axis.name);
+        const std::string value = setting(each, axis.name);
         axis.values.push_back({value, {{axis.name, value}}});
       } else {
         const auto& one = table(each, "a value");
@@ -353,8 +372,8 @@ const std::vector<Parameter>& parameters() {
     std::vector<Parameter> all{
         {"scene", std::string(Scenes::at<0>::name), "how bodies move; see `bvlab list scenes`"},
         {"mesh", "bunny",
-         "meshes: NAME[:POLYGONS[:SCALE]] or files, separated by commas; object i has mesh i mod "
-         "their number"},
+         "meshes: NAME[:POLYGONS[:SCALE]] or files, a list or separated by commas; object i has "
+         "mesh i mod their number"},
         {"polygons", "500", "triangles of each mesh given by name; of a file's, what it has"}};
     Scenes::for_each(
         [&]<class S>(std::type_identity<S>) { S{}.visit_options(AddingParameter{all}); });
@@ -375,7 +394,7 @@ const std::vector<Parameter>& parameters() {
              {"configuration", "",
               "sets volume, strategy, fan_out, frame, kernel, build, leaf_size and fit, which it "
               "excludes; see `bvlab list`"},
-             {"peer", "", "another library in place of ours; see `bvlab list peers`"}})
+             {"peer", "", "another library in place of ours, or none; see `bvlab list peers`"}})
       all.push_back(each);
     return all;
   }();

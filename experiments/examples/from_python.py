@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""From Python: two boxes, a motion, and which strategy needs the fewest volume tests for the same answers."""
+"""From Python: two boxes, a motion, and which strategy needs the fewest volume tests for the same answers; and a world."""
 
 import numpy as np
 
@@ -24,3 +24,14 @@ for strategy in ("recursive", "deferred", "margins"):
     tests[strategy] = result.totals["n_v"]  # its digits follow the processor's registers
     print(f"{strategy}: touching from frame {int(np.argmax(result.answers[:, 0]))}")
 print("fewest volume tests first:", *sorted(tests, key=tests.get))
+
+# A world begins empty here: bodies come one by one, and leave.
+world = bvlab.World()
+for x in (0, 0.5, 1.25):
+    world.add(mesh, [x, 0, 0, 1, 0, 0, 0])
+    if len(world) > 1:
+        world.update()
+        print(f"a world of {len(world)}: {world.touching().tolist()}")
+world.remove(0)
+world.update()
+print(f"without body 0: {world.touching().tolist()}")

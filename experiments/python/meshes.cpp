@@ -58,15 +58,6 @@ Mesh mesh_from(const py::handle& vertices, const py::handle& faces) {
   return Mesh(std::make_shared<const TriangleMesh>(std::move(mesh)));
 }
 
-/// A Mesh, or anything with `vertices` and `faces`.
-Mesh mesh_of(const py::handle& given) {
-  if (py::isinstance<Mesh>(given)) return given.cast<Mesh>();
-  if (py::hasattr(given, "vertices") && py::hasattr(given, "faces"))
-    return mesh_from(given.attr("vertices"), given.attr("faces"));
-  throw Unusable("mesh", "a bvlab.Mesh, or something with .vertices and .faces, is needed, not " +
-                             std::string(py::str(py::type::of(given).attr("__name__"))));
-}
-
 std::shared_ptr<Mesh> made(const py::object& vertices, const py::object& faces) {
   return std::make_shared<Mesh>(faces.is_none() ? mesh_of(vertices) : mesh_from(vertices, faces));
 }
@@ -122,7 +113,15 @@ py::array_t<T> view(const std::vector<Row>& rows, const py::object& owner) {
 
 }  // namespace
 
-Meshes::Meshes(const py::handle& given) {
+Mesh mesh_of(const py::handle& given) {
+  if (py::isinstance<Mesh>(given)) return given.cast<Mesh>();
+  if (py::hasattr(given, "vertices") && py::hasattr(given, "faces"))
+    return mesh_from(given.attr("vertices"), given.attr("faces"));
+  throw Unusable("mesh", "a bvlab.Mesh, or something with .vertices and .faces, is needed, not " +
+                             std::string(py::str(py::type::of(given).attr("__name__"))));
+}
+
+Meshes::Meshes(const py::handle& given, std::size_t at_least) {
   std::vector<Mesh> all;
   const bool one = py::isinstance<Mesh>(given) || py::hasattr(given, "vertices");
   if (one) {
@@ -139,8 +138,9 @@ Meshes::Meshes(const py::handle& given) {
       all.push_back(fresh ? mesh_of(each) : all[at->second]);
     }
   }
-  if (all.empty()) throw Unusable("meshes", "at least one is needed");
+  if (all.size() < at_least) throw Unusable("meshes", "at least one is needed");
   given_ = all.size();
+  if (all.empty()) return;
   const auto repeats = [&](std::size_t period) {
     for (std::size_t i = period; i < all.size(); ++i)
       if (all[i].triangles != all[i - period].triangles) return false;
@@ -154,7 +154,14 @@ Meshes::Meshes(const py::handle& given) {
     return;
   }
   several_ = side_by_side({all.begin(), all.begin() + static_cast<std::ptrdiff_t>(period)});
+  of_several_ = all[0].last->of;
   span_ = *several_;
+}
+
+const TriangleMesh& Meshes::place_of(const Mesh& mesh) const {
+  for (std::size_t i = 0; i < of_several_.size(); ++i)
+    if (of_several_[i].lock() == mesh.triangles) return span_[i];
+  return *mesh.triangles;
 }
 
 void add_meshes(py::module_& module) {
@@ -180,6 +187,13 @@ are legal. ValueError: another shape or type, NaN, infinity, an index out of ran
           },
           "(m, 3) uint32, read-only: indices of vertices; no copy.")
       .def("__len__", [](const Mesh& mesh) { return mesh.triangles->triangles.size(); })
+      // For pickle and copy; a class of one's own made of this may have more.
+      .def("__reduce__",
+           [](const py::object& self) {
+             return py::make_tuple(py::type::of(self),
+                                   py::make_tuple(self.attr("vertices"), self.attr("faces")),
+                                   py::getattr(self, "__dict__", py::none()));
+           })
       .def("__repr__", [](const Mesh& mesh) {
         return "<bvlab.Mesh: " + std::to_string(mesh.triangles->vertices.size()) + " vertices, " +
                std::to_string(mesh.triangles->triangles.size()) + " triangles>";

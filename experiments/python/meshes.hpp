@@ -33,19 +33,25 @@ class Meshes {
  public:
   /// A list of meshes, or of anything with `vertices` and `faces`; or one of them. A list that
   /// repeats itself, [a, b, a, b], is taken for its first part: object i uses mesh i mod their
-  /// number. Throws Unusable.
-  explicit Meshes(const py::handle& given);
+  /// number. Throws Unusable, also for fewer than `at_least`.
+  explicit Meshes(const py::handle& given, std::size_t at_least = 1);
 
   std::span<const TriangleMesh> span() const { return span_; }
   /// Those that were given, repetitions included.
   std::size_t given() const { return given_; }
+  /// Where the engine has that mesh: one of `span`, or what the mesh itself holds.
+  const TriangleMesh& place_of(const Mesh& mesh) const;
 
  private:
   std::size_t given_ = 0;
   std::shared_ptr<const TriangleMesh> one_;
+  std::vector<std::weak_ptr<const TriangleMesh>> of_several_;
   std::shared_ptr<const std::vector<TriangleMesh>> several_;
   std::span<const TriangleMesh> span_;
 };
+
+/// A Mesh, or anything with `vertices` and `faces`. Throws Unusable.
+Mesh mesh_of(const py::handle& given);
 
 void add_meshes(py::module_& module);
 

@@ -4,6 +4,8 @@
 
 #include <pybind11/stl.h>
 
+#include <string_view>
+
 #include "experiments/commands/kinds.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/python/arrays.hpp"
@@ -17,7 +19,11 @@ PYBIND11_MODULE(_bvlab, module) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Unusable& error) {
-      PyErr_SetString(PyExc_ValueError, error.what());
+      // A path in it may be of any bytes.
+      const std::string_view text = error.what();
+      const auto said = py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(
+          text.data(), static_cast<py::ssize_t>(text.size()), "backslashreplace"));
+      if (said) PyErr_SetObject(PyExc_ValueError, said.ptr());
     }
   });
   module.def(

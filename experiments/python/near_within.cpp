@@ -26,17 +26,23 @@ Box<float> larger(Box<float> box, double reach) {
 }  // namespace
 
 NearWithin::NearWithin(std::span<const TriangleMesh> meshes, std::size_t objects)
-    : objects_(objects), method_(make_method<float>("auto", {.coherence = Coherence::off})) {
-  for (const TriangleMesh& mesh : meshes) of_meshes_.emplace_back(mesh);
+    : method_(make_method<float>("auto", {.coherence = Coherence::off})) {
+  for (std::size_t i = 0; i < objects; ++i) add(meshes[i % meshes.size()]);
+}
+
+void NearWithin::add(const TriangleMesh& mesh) {
+  const auto [at, fresh] = known_.try_emplace(&mesh, of_meshes_.size());
+  if (fresh) of_meshes_.emplace_back(mesh);
+  mesh_of_.push_back(at->second);
 }
 
 std::vector<ObjectPair> NearWithin::pairs(std::span<const Pose> poses,
                                           std::span<const std::uint8_t> present, double distance) {
   boxes_.clear(), of_boxes_.clear();
   Vec3<double> origin = Vec3<double>::Zero();
-  for (std::size_t i = 0; i < objects_; ++i) {
+  for (std::size_t i = 0; i < mesh_of_.size(); ++i) {
     if (!present[i]) continue;
-    const RotatedMeshBox& of_mesh = of_meshes_[i % of_meshes_.size()];
+    const RotatedMeshBox& of_mesh = of_meshes_[mesh_of_[i]];
     // Relative to the first body: what boxes lose by being float makes them larger.
     if (boxes_.empty()) origin = of_mesh.mesh_origin(poses[i]);
     const Box<float> box = of_mesh(poses[i], origin);

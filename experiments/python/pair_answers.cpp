@@ -23,6 +23,12 @@ class AskedBodies {
               Frame frame)
       : bodies_(loops_of<Query>(volume).bodies(hierarchies, objects, frame)), poses_(objects) {}
 
+  std::size_t size() const { return poses_.size(); }
+  void add(const OneOfHierarchies& of_mesh) {
+    bodies_.add(of_mesh);
+    poses_.emplace_back();
+  }
+
   void ask(const ObjectPair& pair, std::span<const Pose> poses, Query& query) {
     // Volumes are posed relative to where bodies are: see centre_of.
     if (!origin_) origin_ = centre_of(poses, bodies_);
@@ -59,15 +65,24 @@ struct PairAnswers::Engine {
 
   template <class Query>
   AskedBodies<Query>& of(std::optional<AskedBodies<Query>>& bodies) {
-    if (!hierarchies) hierarchies = volume_entry(variant.volume).hierarchies(meshes, variant);
-    if (!bodies) bodies.emplace(*hierarchies, variant.volume, objects, frame_of(variant));
+    if (!hierarchies) {
+      const VolumeEntry& volume = volume_entry(variant.volume);
+      auto first = volume.hierarchies(meshes, variant);
+      of_first = first.get();
+      hierarchies.emplace(volume, std::move(first), variant);
+    }
+    if (!bodies) bodies.emplace(*of_first, variant.volume, objects, frame_of(variant));
+    while (bodies->size() < objects + added.size())
+      bodies->add(hierarchies->of(*added[bodies->size() - objects]));
     return *bodies;
   }
 
   std::span<const TriangleMesh> meshes;
   std::size_t objects;
+  std::vector<const TriangleMesh*> added;  // the meshes of objects that came later
   Variant variant;
-  std::unique_ptr<AnyHierarchies> hierarchies;
+  std::optional<HierarchiesByMesh> hierarchies;
+  const AnyHierarchies* of_first = nullptr;  // those of `meshes`
   std::optional<AskedBodies<Contacts>> for_contacts;
   std::optional<AskedBodies<Distance>> for_distances;
 };
@@ -76,6 +91,9 @@ PairAnswers::PairAnswers(std::span<const TriangleMesh> meshes, std::size_t objec
                          const Variant& variant)
     : engine_(std::make_unique<Engine>(meshes, objects, variant)) {}
 PairAnswers::~PairAnswers() = default;
+
+void PairAnswers::add(const TriangleMesh& mesh) { engine_->added.push_back(&mesh); }
+std::size_t PairAnswers::size() const { return engine_->objects + engine_->added.size(); }
 
 std::vector<std::array<std::uint32_t, 4>> PairAnswers::contacts(std::span<const ObjectPair> pairs,
                                                                 std::span<const Pose> poses) {

@@ -22,6 +22,10 @@ class PairAnswers {
   PairAnswers(std::span<const TriangleMesh> meshes, std::size_t objects, const Variant& variant);
   ~PairAnswers();
 
+  /// Adds an object of that mesh, which must outlive this, by the next number.
+  void add(const TriangleMesh& mesh);
+  std::size_t size() const;
+
   /// Object i, object j, triangle of i, triangle of j: pair by pair, sorted in each. `poses` has
   /// one for each object.
   std::vector<std::array<std::uint32_t, 4>> contacts(std::span<const ObjectPair> pairs,

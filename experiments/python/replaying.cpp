@@ -141,14 +141,17 @@ py::dict predicted(const py::object& given_meshes, const py::object& given_poses
   PredictOptions options = options_for(trace.frames);
   if (stride || window) {
     const PredictOptions otherwise;
-    options = {stride.value_or(otherwise.stride), window.value_or(otherwise.window)};
+    options = {.stride = stride.value_or(otherwise.stride),
+               .window = window.value_or(otherwise.window)};
   }
   if (options.stride < 1 || options.window < 2)
     throw Unusable("--stride, --window", "must be at least 1 and 2");
+  Signals signals;
+  options.waiting = [&] { signals(); };
   const auto [rows, sums] = released([&] {
     require_finite_corners(trace, "poses", meshes.span());
     return std::pair(predict(meshes.span(), trace, variant, options),
-                     coherence(meshes.span(), trace, variant));
+                     coherence(meshes.span(), trace, variant, options.waiting));
   });
   py::dict strategies;
   for (const Predicted& row : rows)
@@ -197,6 +200,17 @@ A structured array; None unless series=True. pandas.DataFrame(result.series) has
     type.def_property_readonly(
         field.name, [name = field.name](const Result& result) { return total(result, name); },
         field.what);
+  type.def(py::pickle(
+      [](const Result& result) {
+        return py::make_tuple(result.answers, result.totals, result.series, result.frame_seconds);
+      },
+      [](const py::tuple& state) {
+        if (state.size() != 4 || !py::isinstance<py::dict>(state[1]))
+          throw Unusable("Result", "is not what another version pickled");
+        auto result = std::make_shared<Result>(state[0], state[1].cast<py::dict>());
+        result->series = state[2], result->frame_seconds = state[3];
+        return result;
+      }));
   type.def("__repr__", [](const Result& result) {
     std::string text = "<bvlab.Result:";
     for (const char* key : {"volume", "strategy", "query", "method"})
@@ -221,11 +235,12 @@ void add_replaying(py::module_& module) {
   const std::optional<std::string> none;
   module.def(
       "replay",
-      [](const py::object& meshes, const py::object& poses, const std::string& volume,
-         const std::string& strategy, const std::string& query,
-         std::optional<std::uint32_t> fan_out, const std::optional<std::string>& frame,
-         const std::string& kernel, const std::optional<std::string>& configuration,
-         const std::string& build, std::uint32_t leaf_size, const std::string& fit,
+      [](const py::object& meshes, const py::object& poses,
+         const std::optional<std::string>& volume, const std::optional<std::string>& strategy,
+         const std::string& query, std::optional<std::uint32_t> fan_out,
+         const std::optional<std::string>& frame, const std::optional<std::string>& kernel,
+         const std::optional<std::string>& configuration, const std::optional<std::string>& build,
+         std::optional<std::uint32_t> leaf_size, const std::optional<std::string>& fit,
          const std::string& precision, double relative_error, bool count, int threads, bool answers,
          bool series, bool frame_seconds) {
         return play(meshes, poses,
@@ -233,9 +248,9 @@ void add_replaying(py::module_& module) {
                      leaf_size, fit, precision, relative_error},
                     {count, answers, series, frame_seconds, threads});
       },
-      "meshes"_a, "poses"_a, py::kw_only(), "volume"_a = d.volume, "strategy"_a = d.strategy,
-      "query"_a = d.query, "fan_out"_a = py::none(), "frame"_a = py::none(), "kernel"_a = d.kernel,
-      "configuration"_a = none, "build"_a = d.build, "leaf_size"_a = d.leaf_size, "fit"_a = d.fit,
+      "meshes"_a, "poses"_a, py::kw_only(), "volume"_a = none, "strategy"_a = none,
+      "query"_a = d.query, "fan_out"_a = none, "frame"_a = none, "kernel"_a = none,
+      "configuration"_a = none, "build"_a = none, "leaf_size"_a = none, "fit"_a = none,
       "precision"_a = d.precision, "relative_error"_a = d.relative_error, "count"_a = false,
       "threads"_a = 1, "answers"_a = true, "series"_a = false, "frame_seconds"_a = false,
       R"(Answers a query for all pairs of a motion by one variant of the engine, as `bvlab replay`.
@@ -252,9 +267,12 @@ count    fills n_u, n_v, n_p of the totals (times include the counting); the rec
 series   fills result.series, frame_seconds fills result.frame_seconds
 
 fan_out  most children of a node: 2, 4, 8, 16 (default: 2); frame: "world" or "body", where volumes are
-         tested (default: "world"); kernel: see bvlab.kernels()
+         tested (default: "world"); kernel: see bvlab.kernels() (default: "gathered"); fit: "published" or
+         "tight" (default: "published")
+volume, strategy, build and leaf_size are "sphere", "recursive", "top-down-principal" and 1 by default.
 
-configuration="recommended" chooses volume, tree, strategy, build, fit and leaf size. The names:
+configuration="recommended" chooses volume, tree, strategy, build, fit and leaf size; it is refused beside
+any of them. The names:
 bvlab.volumes(), strategies(), queries(), frames(), kernels(), builds(), precisions(),
 configurations().
 Ctrl-C ends it. ValueError: the line that `bvlab replay` would print.)");
@@ -275,10 +293,18 @@ bvlab.methods() has the names. ValueError: NaN, infinity, lo > hi, another shape
          const std::optional<std::string>& frame, const std::string& build, std::uint32_t leaf_size,
          const std::string& fit, double relative_error, std::optional<std::size_t> stride,
          std::optional<std::size_t> window) {
-        const Variant variant = default_variant();
-        const VariantWords words{
-            volume, variant.strategy, query, fan_out,           frame,         variant.kernel, {},
-            build,  leaf_size,        fit,   variant.precision, relative_error};
+        const VariantWords words{volume,
+                                 {},
+                                 query,
+                                 fan_out,
+                                 frame,
+                                 {},
+                                 {},
+                                 build,
+                                 leaf_size,
+                                 fit,
+                                 default_variant().precision,
+                                 relative_error};
         return predicted(meshes, poses, words, stride, window);
       },
       "meshes"_a, "poses"_a, py::kw_only(), "volume"_a = d.volume, "query"_a = d.query,
@@ -288,13 +314,14 @@ bvlab.methods() has the names. ValueError: NaN, infinity, lo > hi, another shape
       R"(Predicts the cost of each strategy on a motion, from windows of it, as `bvlab predict`.
 
 A dict: fastest, the strategy that takes the fewest seconds (None where its interval overlaps that of
-another, or windows are too few); candidates, those that may be it, the likeliest first; survival, the
+another, windows are too few, or there are no pairs or fewer than two frames); candidates, those that may be it, the likeliest first; survival, the
 share of the front that persists for a frame (None where no bodies were near each other); strategies, of
 each by its name {"n_v": volume tests, "n_p": triangle tests, "seconds": s, "seconds_low", "seconds_high"}.
 Intervals are wide and mostly right: on 40 motions of 600 frames 312 of 320 held what a strategy then
 took (of recursion's, the narrowest, 35 of 40). Half a width is 56 % of the seconds (median), so 7.3 of
 eight strategies were candidates, the fastest always among them: to find which it is, replay these.
-stride and window, in frames: None for all of a short trace. meshes, poses, fan_out and frame as in replay.)");
+stride and window, in frames: None for all of a short trace. meshes, poses, fan_out and frame as in replay.
+Ctrl-C ends it.)");
 }
 
 }  // namespace bvlab

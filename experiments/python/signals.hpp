@@ -5,6 +5,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 
@@ -14,7 +15,8 @@ namespace bvlab {
 struct Interrupted {};
 
 /// To be called often, without the lock of the interpreter: looks about every 20 ms, by a step of
-/// calls that adapts, so that it costs next to nothing.
+/// calls that adapts, so that it costs next to nothing. Steps stay short, since calls may become
+/// slow from one to the next.
 class Signals {
  public:
   void operator()() {
@@ -22,16 +24,21 @@ class Signals {
     const auto now = std::chrono::steady_clock::now();
     const auto passed = now - last_;
     last_ = now;
-    step_ = passed < interval / 2 ? 2 * step_ : passed > interval ? step_ / 2 : step_;
-    if (step_ < 1) step_ = 1;
+    since_ += passed;
+    step_ = passed < interval / 8 ? 2 * step_ : passed > interval / 4 ? step_ / 2 : step_;
+    step_ = std::clamp<std::size_t>(step_, 1, longest);
     next_ = calls_ + step_;
+    if (since_ < interval) return;
+    since_ = {};
     const pybind11::gil_scoped_acquire held;
     if (PyErr_CheckSignals() != 0) throw Interrupted();
   }
 
  private:
   static constexpr std::chrono::milliseconds interval{20};
+  static constexpr std::size_t longest = 16;
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::duration since_{};  // a handler was last looked for
   std::size_t calls_ = 0, next_ = 1, step_ = 1;
 };
 

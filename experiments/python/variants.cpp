@@ -4,6 +4,7 @@
 #include "experiments/commands/require_threads.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/configurations.hpp"
+#include "experiments/replay/registry.hpp"
 
 namespace bvlab {
 
@@ -18,30 +19,23 @@ Variant variant_from(const VariantWords& words) {
   variant.query = words.query;
   variant.precision = words.precision;
   variant.relative_error = words.relative_error;
-  variant.volume = words.volume;
-  variant.strategy = words.strategy;
-  // What is not said is what the kernel is compiled for.
-  set_kernel(variant, words.kernel);
-  if (words.fan_out) variant.fan_out = *words.fan_out;
-  if (words.frame) variant.frame = *words.frame;
-  variant.build = words.build;
-  variant.leaf_size = words.leaf_size;
-  variant.fit = words.fit;
   if (words.configuration) {
-    const Variant standard = default_variant();
-    for (const auto& [name, is_set] :
-         {std::pair("volume", words.volume != standard.volume),
-          std::pair("strategy", words.strategy != standard.strategy),
-          std::pair("fan_out", words.fan_out.has_value()),
-          std::pair("frame", words.frame.has_value()),
-          std::pair("kernel", words.kernel != standard.kernel),
-          std::pair("build", words.build != standard.build),
-          std::pair("leaf_size", words.leaf_size != standard.leaf_size),
-          std::pair("fit", words.fit != standard.fit)})
-      if (is_set) refuse_beside_configuration(name);
+    if (const char* name = words.said()) refuse_beside_configuration(name);
     variant = configured(variant, *words.configuration);
+    check(variant);
+    return variant;
   }
+  variant.volume = words.volume.value_or(variant.volume);
+  variant.strategy = words.strategy.value_or(variant.strategy);
+  // What is not said is what the kernel is compiled for.
+  set_kernel(variant, words.kernel.value_or(variant.kernel));
+  variant.fan_out = words.fan_out.value_or(variant.fan_out);
+  variant.frame = words.frame.value_or(variant.frame);
+  variant.build = words.build.value_or(variant.build);
+  variant.leaf_size = words.leaf_size.value_or(variant.leaf_size);
+  variant.fit = words.fit.value_or(variant.fit);
   check(variant);
+  require_fit(variant);
   return variant;
 }
 

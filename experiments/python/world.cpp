@@ -30,30 +30,49 @@ using namespace py::literals;
 
 class PyWorld : public MadeByCalls {
  public:
-  PyWorld(const py::object& meshes, std::size_t objects, const VariantWords& words, int threads)
-      : meshes_(meshes),
-        objects_(counted(objects > 0 ? objects : meshes_.given())),
+  PyWorld(const py::object& meshes, std::optional<std::size_t> objects, const VariantWords& words,
+          int threads)
+      : meshes_(meshes, 0),
+        first_(counted(objects.value_or(meshes_.given()))),
         variant_(words.configuration
                      ? configured(variant_from(words), *words.configuration, meshes_.span()).variant
                      : variant_from(words)),
-        moved_to_(objects_),
-        stands_(objects_),
-        present_(objects_, 0),
-        is_new_(objects_, 0) {
-    engine_ = released([&] { return make_world(meshes_.span(), objects_, variant_, threads); });
-    for (const TriangleMesh& mesh : meshes_.span())
-      small_.push_back(std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
-                                   [](const auto& v) { return v.cwiseAbs().maxCoeff() < safe; }));
+        moved_to_(first_),
+        stands_(first_),
+        present_(first_, 0),
+        is_new_(first_, 0) {
+    if (first_ > 0 && meshes_.span().empty())
+      throw Unusable("meshes", "at least one is needed for " + std::to_string(first_) + " bodies");
+    engine_ = released([&] { return make_world(meshes_.span(), first_, variant_, threads); });
+    for (const TriangleMesh& mesh : meshes_.span()) small_.push_back(is_small(mesh));
   }
 
-  std::size_t objects() const { return objects_; }
+  std::size_t objects() const { return first_ + added_.size(); }
+
+  std::uint32_t add(const py::object& mesh, const py::object& pose) {
+    // All that calls Python comes before the turn: it may call this world.
+    const Mesh given = mesh_of(mesh);
+    std::optional<CArray<double>> row;
+    if (!pose.is_none()) row = array_of<double>(pose, "pose", Numbers::real, {{"7", 7}});
+    const Turn held(*this);
+    const auto object = static_cast<std::uint32_t>(counted(objects() + 1) - 1);
+    const Added body{given.triangles, {&meshes_.place_of(given), is_small(*given.triangles)}};
+    const auto to = row ? std::optional(pose_of(row->data(), object, body.of)) : std::nullopt;
+    released([&] { engine_->add(*body.of.mesh); });
+    added_.push_back(body);
+    moved_to_.emplace_back(), stands_.emplace_back();
+    present_.push_back(0), is_new_.push_back(0);
+    is_stale_ = true;
+    if (to) place(object, *to);
+    return object;
+  }
 
   void move(const py::object& which, const py::object& pose) {
     // Also an integer of NumPy's; an array has an index, too, but is a sequence.
     if (PyIndex_Check(which.ptr()) && !PySequence_Check(which.ptr())) {
       const auto row = array_of<double>(pose, "pose", Numbers::real, {{"7", 7}});
       const std::uint32_t object = index(which);
-      const Pose to = pose_of(row.data(), object);
+      const Pose to = pose_of(row.data(), object, of(object));
       const Turn held(*this);
       place(object, to);
       return;
@@ -69,7 +88,7 @@ class PyWorld : public MadeByCalls {
   void remove(const py::object& which) {
     const std::uint32_t object = index(which);
     const Turn held(*this);
-    engine_->take_out(object);
+    engine_->remove(object);
     set(object, std::nullopt);
   }
 
@@ -109,26 +128,26 @@ class PyWorld : public MadeByCalls {
   // Arrays are made when the lock is given back: memory that Python asks for may have it collect
   // garbage, whose finalizers may call this world.
   py::array_t<std::uint32_t> touching() {
-    return rows_of(alone([&] { return touching_pairs(); }));
+    return rows_of(fresh([&] { return touching_pairs(); }));
   }
 
   py::array_t<std::uint32_t> contacts() {
-    return taken_rows<std::uint32_t, 4>(alone(
+    return taken_rows<std::uint32_t, 4>(fresh(
         [&] { return released([&] { return answers().contacts(touching_pairs(), stands_); }); }));
   }
 
   py::tuple distances(double below) {
     if (!(below >= 0)) throw Unusable("below", "must be a number that is not negative");
-    auto [pairs, distances] = alone([&] { return released([&] { return within(below); }); });
+    auto [pairs, distances] = fresh([&] { return released([&] { return within(below); }); });
     const auto count = static_cast<py::ssize_t>(distances.size());
     return py::make_tuple(rows_of(std::move(pairs)), taken<double>(std::move(distances), {count}));
   }
 
   std::size_t near() {
-    return alone([&] { return engine_->near(); });
+    return fresh([&] { return engine_->near(); });
   }
   std::size_t queried() {
-    return alone([&] { return engine_->queried(); });
+    return fresh([&] { return engine_->queried(); });
   }
 
  private:
@@ -170,6 +189,20 @@ class PyWorld : public MadeByCalls {
     return work();
   }
 
+  /// The same, where answers are those for the bodies as they stand.
+  template <class Work>
+  std::invoke_result_t<const Work&> fresh(const Work& work) {
+    return alone([&] {
+      if (is_stale_)
+        throw std::runtime_error(
+            std::string("World: ") +
+            (is_updated_ ? "bodies were moved, added or removed since the last update"
+                         : "there was no update yet") +
+            "; call update() first");
+      return work();
+    });
+  }
+
   std::uint32_t index(const py::object& given) const {
     const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(given.ptr()));
     if (!whole) throw py::error_already_set();
@@ -179,9 +212,9 @@ class PyWorld : public MadeByCalls {
     return index(number);
   }
   std::uint32_t index(std::int64_t number) const {
-    if (number < 0 || static_cast<std::size_t>(number) >= objects_)
+    if (number < 0 || static_cast<std::size_t>(number) >= objects())
       throw py::index_error("no body " + std::to_string(number) + "; there are " +
-                            std::to_string(objects_));
+                            std::to_string(objects()));
     return static_cast<std::uint32_t>(number);
   }
 
@@ -204,13 +237,34 @@ class PyWorld : public MadeByCalls {
     moves.reserve(objects.size());
     const double* row = rows.data();
     for (const std::uint32_t object : objects) {
-      moves.emplace_back(object, pose_of(row, object));
+      moves.emplace_back(object, pose_of(row, object, of(object)));
       row += 7;
     }
     return moves;
   }
 
-  Pose pose_of(const double* row, std::uint32_t object) const {
+  /// What a body is made of, and whether no number can be too large for it.
+  struct Made {
+    const TriangleMesh* mesh;
+    bool is_small;
+  };
+  struct Added {
+    std::shared_ptr<const TriangleMesh> kept;
+    Made of;
+  };
+
+  Made of(std::uint32_t object) const {
+    if (object >= first_) return added_[object - first_].of;
+    const std::size_t mesh = object % meshes_.span().size();
+    return {&meshes_.span()[mesh], small_[mesh]};
+  }
+
+  static bool is_small(const TriangleMesh& mesh) {
+    return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                       [](const auto& v) { return v.cwiseAbs().maxCoeff() < safe; });
+  }
+
+  static Pose pose_of(const double* row, std::uint32_t object, const Made& body) {
     // Another thread may be writing there: what is checked is what is kept.
     double v[7];
     std::copy_n(static_cast<const volatile double*>(row), 7, v);
@@ -220,10 +274,9 @@ class PyWorld : public MadeByCalls {
       throw Unusable("pose", std::string(finite ? "zero quaternion" : "not a finite number") +
                                  " of body " + std::to_string(object));
     }
-    const std::size_t mesh = object % meshes_.span().size();
     const auto small = [](double x) { return std::abs(x) < safe; };
-    if (!small_[mesh] || !std::all_of(v, v + 3, small))
-      require_finite_corners(Trace{1, 1, {v, v + 7}}, "pose", meshes_.span().subspan(mesh, 1));
+    if (!body.is_small || !std::all_of(v, v + 3, small))
+      require_finite_corners(Trace{1, 1, {v, v + 7}}, "pose", std::span(body.mesh, 1));
     return *pose;
   }
 
@@ -239,9 +292,11 @@ class PyWorld : public MadeByCalls {
       is_new_[object] = 0;
     }
     changed_.clear();
+    is_stale_ = false, is_updated_ = true;
   }
   /// From the next update on.
   void set(std::uint32_t object, const std::optional<Pose>& pose) {
+    is_stale_ = true;
     moved_to_[object] = pose;
     if (!is_new_[object]) changed_.push_back(object);
     is_new_[object] = 1;
@@ -257,7 +312,8 @@ class PyWorld : public MadeByCalls {
   }
 
   std::pair<std::vector<ObjectPair>, std::vector<double>> within(double below) {
-    if (!near_) near_.emplace(meshes_.span(), objects_);
+    if (!near_) near_.emplace(meshes_.span(), first_);
+    for (std::size_t i = near_->size(); i < objects(); ++i) near_->add(*added_[i - first_].of.mesh);
     const auto near = near_->pairs(stands_, present_, below);
     const auto all = answers().distances(near, stands_);
     std::pair<std::vector<ObjectPair>, std::vector<double>> kept;
@@ -267,7 +323,9 @@ class PyWorld : public MadeByCalls {
   }
 
   PairAnswers& answers() {
-    if (!answers_) answers_.emplace(meshes_.span(), objects_, variant_);
+    if (!answers_) answers_.emplace(meshes_.span(), first_, variant_);
+    for (std::size_t i = answers_->size(); i < objects(); ++i)
+      answers_->add(*added_[i - first_].of.mesh);
     return *answers_;
   }
 
@@ -278,19 +336,21 @@ class PyWorld : public MadeByCalls {
   }
 
   Meshes meshes_;
-  std::size_t objects_;
+  std::size_t first_;  // bodies, of these meshes in turn
+  std::vector<Added> added_;
   Variant variant_;
   std::mutex mutex_;
   std::atomic<std::thread::id> at_work_{};  // whose turn it is
   std::unique_ptr<WorldEngine> engine_;
   std::optional<PairAnswers> answers_;
   std::optional<NearWithin> near_;
-  std::vector<bool> small_;                    // of each mesh
+  std::vector<bool> small_;                    // of each of the first bodies' meshes
   std::vector<std::optional<Pose>> moved_to_;  // of each body: where it is from the next update on
   std::vector<Pose> stands_;                   // where it stood in the last one
   std::vector<std::uint8_t> present_;          // in the last one
   std::vector<std::uint8_t> is_new_;           // whether it is among `changed_`
   std::vector<std::uint32_t> changed_;
+  bool is_stale_ = true, is_updated_ = false;
 };
 
 }  // namespace
@@ -303,53 +363,52 @@ void add_world(py::module_& module) {
 
 World(meshes)            body i has meshes[i]; a Mesh given twice is built once
 World(meshes, objects=n) n bodies: body i has meshes[i mod len(meshes)]
+World()                  no bodies; `add` gives it some
 
-A body is in the scene from its first `move` on. Answers are those of the last `update`. Volume and
+A body is in the scene from its first `move` on. Answers are those of `update`: after a move, an add or a
+remove, and before the first update, all questions are a RuntimeError. Volume and
 strategy are chosen by name, as in replay; if none of these words is given, nor fan_out, frame, kernel,
 build, leaf_size or fit, what is recommended for these meshes is taken. Calls from
 several threads run one after the other.)")
-      .def(py::init([](const py::object& meshes, std::size_t objects,
+      .def(py::init([](const py::object& meshes, std::optional<std::size_t> objects,
                        const std::optional<std::string>& volume,
                        const std::optional<std::string>& strategy,
                        const std::optional<std::uint32_t>& fan_out,
                        const std::optional<std::string>& frame,
                        const std::optional<std::string>& kernel,
-                       const std::optional<std::string>& configuration, const std::string& build,
-                       std::uint32_t leaf_size, const std::string& fit,
-                       const std::string& precision, int threads) {
-             const Variant standard = default_variant();
-             VariantWords words{volume.value_or(standard.volume),
-                                strategy.value_or(standard.strategy),
-                                "touching",
-                                fan_out,
-                                frame,
-                                kernel.value_or(standard.kernel),
-                                configuration,
-                                build,
-                                leaf_size,
-                                fit,
-                                precision,
-                                0};
-             if (!volume && !strategy && !fan_out && !frame && !kernel && !configuration &&
-                 build == standard.build && leaf_size == standard.leaf_size && fit == standard.fit)
-               words.configuration = "recommended";
+                       const std::optional<std::string>& configuration,
+                       const std::optional<std::string>& build,
+                       std::optional<std::uint32_t> leaf_size,
+                       const std::optional<std::string>& fit, const std::string& precision,
+                       int threads) {
+             VariantWords words{volume, strategy,      "touching", fan_out,   frame,
+                                kernel, configuration, build,      leaf_size, fit,
+                                precision, 0};
+             if (!words.said() && !configuration) words.configuration = "recommended";
              check(variant_from(words));
              check_threads(threads);
              return std::make_shared<PyWorld>(meshes, objects, words, threads);
            }),
-           "meshes"_a, py::kw_only(), "objects"_a = 0, "volume"_a = py::none(),
-           "strategy"_a = py::none(), "fan_out"_a = py::none(), "frame"_a = py::none(),
-           "kernel"_a = py::none(), "configuration"_a = py::none(), "build"_a = d.build,
-           "leaf_size"_a = d.leaf_size, "fit"_a = d.fit, "precision"_a = d.precision,
-           "threads"_a = 1)
+           "meshes"_a = py::tuple(), py::kw_only(), "objects"_a = py::none(),
+           "volume"_a = py::none(), "strategy"_a = py::none(), "fan_out"_a = py::none(),
+           "frame"_a = py::none(), "kernel"_a = py::none(), "configuration"_a = py::none(),
+           "build"_a = py::none(), "leaf_size"_a = py::none(), "fit"_a = py::none(),
+           "precision"_a = d.precision, "threads"_a = 1)
       .def(
           "move", &PyWorld::move, "object"_a, "pose"_a,
           R"(Sets the pose of a body, or of several, from the next update on: move(i, pose), move(indices, poses).
 
 pose     (7,) real: x y z qw qx qy qz, object to world; for k bodies (k, 7). All are moved or none.
 ValueError: not finite, a zero quaternion. IndexError: no such body.)")
+      .def(
+          "add", &PyWorld::add, "mesh"_a, "pose"_a = py::none(),
+          R"(Adds a body and returns its number, len(world) so far. Without a pose it waits for its first `move`.
+
+A Mesh that the world has is not built again. Answers are known from the next update on.)")
       .def("remove", &PyWorld::remove, "object"_a,
-           "Takes a body out of the scene, until it is moved again.")
+           R"(Removes a body from the scene, from the next update on, until it is moved again.
+
+All other bodies keep their numbers, and no new body gets this one: len(world) stays.)")
       .def("update", &PyWorld::update,
            "Queries the near pairs of which a body has moved. Bodies at rest cost nothing.")
       .def(

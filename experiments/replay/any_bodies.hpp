@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/replay/hierarchies_by_mesh.hpp"
 #include "traversal/body_pair.hpp"
 #include "traversal/fronts.hpp"
 #include "traversal/shape.hpp"
@@ -34,6 +35,7 @@ class BodyLoops {
   virtual Frame frame() const = 0;
   virtual const TriangleMesh& mesh(std::size_t i) const = 0;
   virtual MovingBody& body(std::size_t i) = 0;
+  virtual void add(const OneOfHierarchies& of_mesh) = 0;
   virtual void make_room() = 0;
   virtual void set_sharing(Sharing sharing) = 0;
   virtual void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) = 0;
@@ -140,6 +142,13 @@ class AnyBodies {
   std::size_t size() const { return bodies_.size(); }
   const TriangleMesh& mesh(std::size_t i) const { return loops_->mesh(i); }
   const Vec3<double>& mesh_origin(std::size_t i) const { return bodies_[i]->extent().origin; }
+  void add(const OneOfHierarchies& of_mesh) {
+    loops_->add(of_mesh);
+    // Bodies may have gone elsewhere.
+    if (!bodies_.empty() && bodies_[0] != &loops_->body(0)) bodies_.clear();
+    for (std::size_t i = bodies_.size(); i < loops_->size(); ++i)
+      bodies_.push_back(&loops_->body(i));
+  }
   void make_room() { loops_->make_room(); }
   void set_sharing(Sharing sharing) { loops_->set_sharing(sharing); }
   void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) {

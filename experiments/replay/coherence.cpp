@@ -68,12 +68,14 @@ class CoherenceMeter {
     }
   }
 
-  void frame(std::span<const Pose> poses) {
+  void frame(std::span<const Pose> poses, const std::function<void()>& waiting) {
     const bool first = before_.empty();
     bodies_.move(poses, Vec3<double>::Zero());
     apart_.move(poses, Vec3<double>::Zero());
-    for (std::size_t p = 0; p < pairs_.size(); ++p)
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
       first ? (void)fresh_front(p, fronts_[p]) : look_at(p, poses);
+      waiting();
+    }
     before_.assign(poses.begin(), poses.end());
   }
 
@@ -208,12 +210,12 @@ class RebuildSearch {
 
 template <class Query>
 CoherenceSums coherence_under(std::span<const TriangleMesh> meshes, const Trace& trace,
-                              const Variant& variant) {
+                              const Variant& variant, const std::function<void()>& waiting) {
   CoherenceMeter<Query> meter(meshes, trace.objects, variant);
   std::vector<Pose> poses(trace.objects);
   for (std::size_t frame = 0; frame < trace.frames; ++frame) {
     trace.poses(frame, poses);
-    meter.frame(poses);
+    meter.frame(poses, waiting);
   }
   return meter.sums();
 }
@@ -237,10 +239,11 @@ BestRebuilds best_rebuilds_under(std::span<const TriangleMesh> meshes, const Tra
 }  // namespace
 
 CoherenceSums coherence(std::span<const TriangleMesh> meshes, const Trace& trace,
-                        const Variant& variant) {
+                        const Variant& variant, const std::function<void()>& waiting) {
   check(variant);
-  return variant.query == Contacts::name ? coherence_under<Contacts>(meshes, trace, variant)
-                                         : coherence_under<Touching>(meshes, trace, variant);
+  return variant.query == Contacts::name
+             ? coherence_under<Contacts>(meshes, trace, variant, waiting)
+             : coherence_under<Touching>(meshes, trace, variant, waiting);
 }
 
 BestRebuilds best_rebuilds(std::span<const TriangleMesh> meshes, const Trace& trace,

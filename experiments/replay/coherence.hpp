@@ -15,6 +15,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "experiments/replay/replay.hpp"
@@ -38,8 +39,10 @@ struct CoherenceSums {
 
 /// For the variant's volume, query, build and leaf size; its strategy does not matter. The size of
 /// a leaf is half the mean of its triangle's longest edge.
-CoherenceSums coherence(std::span<const TriangleMesh> meshes, const Trace& trace,
-                        const Variant& variant);
+/// `waiting` is called for each pair; what it throws ends the work.
+CoherenceSums coherence(
+    std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
+    const std::function<void()>& waiting = [] {});
 
 /// What a separation list costs at best, see best_rebuilds.hpp: all pairs together.
 struct BestRebuilds {

@@ -32,8 +32,10 @@ class HierarchiesOf final : public AnyHierarchies {
   }
 
   std::size_t meshes() const override { return all_.size(); }
+  const TriangleMesh& mesh(std::size_t i) const override { return meshes_[i]; }
   const Hierarchy<V>& operator[](std::size_t i) const { return all_[i]; }
 
+  Shape<V> shape(std::size_t mesh) const { return {&meshes_[mesh], &all_[mesh]}; }
   /// Object i uses mesh i mod the number of meshes.
   std::vector<Shape<V>> shapes(std::size_t objects) const {
     return shapes_over(meshes_, all_, objects);

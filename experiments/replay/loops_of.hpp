@@ -29,6 +29,10 @@ class BodiesOver : public BodyLoops<Query> {
   Frame frame() const override { return bodies_.frame(); }
   const TriangleMesh& mesh(std::size_t i) const override { return bodies_.mesh(i); }
   MovingBody& body(std::size_t i) override { return bodies_[i]; }
+  void add(const OneOfHierarchies& of_mesh) override {
+    const auto& all = static_cast<const HierarchiesOf<V>&>(*of_mesh.hierarchies);
+    bodies_.add(all.shape(of_mesh.mesh));
+  }
   void make_room() override { bodies_.make_room(); }
   void set_sharing(Sharing sharing) override { bodies_.set_sharing(sharing); }
   void move(std::size_t i, const Pose& pose, const Vec3<double>& origin) override {

@@ -218,8 +218,9 @@ std::unique_ptr<WorldEngine> world(const VolumeEntry& volume,
   if constexpr (AnswersYesOrNo<Query>) {
     Pairs pairs(bodies_for<Strategy, Query, NotCounting>(volume, *hierarchies, objects, variant),
                 made_from<Strategy>(variant.strategy));
-    return std::make_unique<TouchingWorld<Pairs, Query, std::unique_ptr<AnyHierarchies>>>(
-        std::move(hierarchies), std::move(pairs), variant, threads);
+    return std::make_unique<TouchingWorld<Pairs, Query, HierarchiesByMesh>>(
+        HierarchiesByMesh(volume, std::move(hierarchies), variant), std::move(pairs), variant,
+        threads);
   } else {
     return nullptr;
   }

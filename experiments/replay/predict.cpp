@@ -47,9 +47,11 @@ std::vector<std::size_t> window_starts(std::size_t frames, const PredictOptions&
 /// Plays strategies over parts of a trace; hierarchies are built once.
 class Player {
  public:
-  Player(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant)
+  Player(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
+         const std::function<void()>& waiting)
       : trace_(trace),
         variant_(variant),
+        waiting_(waiting),
         volume_(volume_entry(variant.volume)),
         hierarchies_(volume_.hierarchies(meshes, variant)) {}
 
@@ -64,6 +66,7 @@ class Player {
     options.count = Count::on;
     options.keep_answers = false;
     options.keep_series = true;
+    options.after_frame = [&](std::size_t) { waiting_(); };
     const ReplayResult counted = played(variant, part, options);
     for (const FrameCounts& counts : counted.series) {
       window.volumes.push_back(static_cast<double>(counts.n_v));
@@ -89,6 +92,7 @@ class Player {
     options.keep_answers = false;
     options.after_frame = [&](std::size_t frame) {
       if ((frame + 1) % few == 0 || frame + 1 == part.frames) read.push_back(Clock::now());
+      waiting_();
     };
     const ReplayResult result = played(variant, part, options);
     std::vector<double> seconds(part.frames);
@@ -107,6 +111,7 @@ class Player {
 
   const Trace& trace_;
   const Variant& variant_;
+  const std::function<void()>& waiting_;
   const VolumeEntry& volume_;
   std::unique_ptr<AnyHierarchies> hierarchies_;
 };
@@ -275,7 +280,7 @@ std::vector<Predicted> predict(std::span<const TriangleMesh> meshes, const Trace
     for (const auto name : names) all.push_back({name});
     return all;
   }
-  const Player player(meshes, trace, variant);
+  const Player player(meshes, trace, variant, options.waiting);
   const Baseline known(player.play(Recursive::name, 0, trace.frames),
                        static_cast<double>(trace.pairs()));
   all.push_back(predicted(Recursive::name, {known.recursion}, known, trace.frames));
@@ -287,7 +292,16 @@ std::vector<Predicted> predict(std::span<const TriangleMesh> meshes, const Trace
           player.play(names[i], first, std::min(options.window, trace.frames - first)));
     all.push_back(predicted(names[i], windows, known, options.window));
   }
+  if (!nothing_to_tell(trace).empty())
+    for (Predicted& each : all) each.windows = 0, each.is_played = false;
   return all;
+}
+
+std::string_view nothing_to_tell(const Trace& trace) {
+  if (trace.frames == 0) return "there are no frames";
+  if (trace.pairs() == 0) return "there are no pairs of bodies";
+  if (trace.frames == 1) return "of one frame, every strategy starts from the roots";
+  return {};
 }
 
 bool can_tell(std::span<const Predicted> predicted) {

@@ -44,6 +44,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -58,13 +59,15 @@ struct Predicted {
   double n_p = 0;            ///< pairs of triangles
   double seconds = 0;        ///< as measured here; n_v and n_p are the same every time
   double low = 0, high = 0;  ///< of the seconds, see above
-  std::size_t windows = 0;   ///< that it stands on
+  std::size_t windows = 0;   ///< that it stands on; 0 where there is nothing to tell
   bool is_played = false;    ///< one window is the whole trace
 };
 
 struct PredictOptions {
   std::size_t stride = 96;
   std::size_t window = 48;
+  /// Called now and then; what it throws ends the work.
+  std::function<void()> waiting = [] {};
 };
 
 /// Windows of which an interval is told, at least.
@@ -81,6 +84,9 @@ std::vector<Predicted> predict(std::span<const TriangleMesh> meshes, const Trace
                                const Variant& variant, const PredictOptions& options);
 std::vector<Predicted> predict(std::span<const TriangleMesh> meshes, const Trace& trace,
                                const Variant& variant);
+
+/// Why nothing can be told of that trace, whatever its windows: "there are no frames"; else empty.
+std::string_view nothing_to_tell(const Trace& trace);
 
 /// Whether the windows are enough for intervals.
 bool can_tell(std::span<const Predicted> predicted);

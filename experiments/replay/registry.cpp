@@ -98,6 +98,13 @@ const VolumeEntry& volume_entry(std::string_view name) {
   refuse("--volume", name, volumes());
 }
 
+void require_fit(const Variant& variant) {
+  if (variant.fit != "tight") return;
+  for (const auto* volume : volume_entries())
+    if (volume->name == variant.volume && !volume->has_tight_fit)
+      throw Unusable("--fit tight", variant.volume + " has only one fit: published");
+}
+
 const WideEntry& wide_entry(std::string_view volume, std::string_view query) {
   bool volume_exists = false;
   for (const auto* entry : wide_entries()) {

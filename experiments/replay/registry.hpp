@@ -51,6 +51,9 @@ std::uint32_t wide_fan_out(std::string_view volume, std::string_view kernel);
 std::vector<Named> strategies();
 std::vector<Named> queries();
 
+/// Throws Unusable where the variant wants a tight fit of a volume that has none.
+void require_fit(const Variant& variant);
+
 /// Those of that name. Throw Unusable, naming the option and what there is.
 const VolumeEntry& volume_entry(std::string_view name);
 const PlayEntry& play_entry(std::string_view strategy, std::string_view query);

@@ -31,6 +31,8 @@ class NearBoxes {
   std::unique_ptr<AnyMethod<float>> method_;
 };
 
+/// `Hierarchies` holds those of all meshes; `of(mesh)` is what Pairs has for a body of a mesh, for
+/// which it builds one that was not there.
 template <class Pairs, AnswersYesOrNo Query, class Hierarchies>
 class TouchingWorld final : public WorldEngine {
  public:
@@ -41,7 +43,8 @@ class TouchingWorld final : public WorldEngine {
         how_{triangle_test(variant.precision), 0} {}
 
   void move(std::uint32_t object, const Pose& pose) override { world_.move(object, pose); }
-  void take_out(std::uint32_t object) override { world_.take_out(object); }
+  void add(const TriangleMesh& mesh) override { world_.add(hierarchies_.of(mesh)); }
+  void remove(std::uint32_t object) override { world_.remove(object); }
 
   void update() override {
     NotCounting counter;

@@ -21,6 +21,7 @@ class AnyHierarchies {
  public:
   virtual ~AnyHierarchies() = default;
   virtual std::size_t meshes() const = 0;
+  virtual const TriangleMesh& mesh(std::size_t i) const = 0;
 };
 
 /// A point that is asked how far it is from a node's triangles, by the node's volume.

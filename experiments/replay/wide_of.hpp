@@ -2,9 +2,10 @@
 /// All that is compiled for a volume in wide trees under one query.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <type_traits>
-#include <vector>
+#include <unordered_map>
 
 #include "experiments/replay/hierarchies_of.hpp"
 #include "experiments/replay/play.hpp"
@@ -24,20 +25,37 @@ inline constexpr int fan_out_of = native_fan_out<T>;
 template <class T>
 inline constexpr int fan_out_of<MixedKernel, T> = 4;
 
+/// Those of some meshes, and of others when a body of them comes (see HierarchiesByMesh).
 template <class Hierarchy>
-std::vector<Hierarchy> wide_hierarchies(std::span<const TriangleMesh> meshes,
-                                        const Variant& variant, int threads) {
-  Threads several(threads);
-  // Leaves are made while the tree is collapsed.
-  Variant down_to_triangles = variant;
-  down_to_triangles.leaf_size = 1;
-  std::vector<Hierarchy> hierarchies;
-  hierarchies.reserve(meshes.size());
-  for (const auto& mesh : meshes)
-    hierarchies.emplace_back(mesh, topology_of(mesh, down_to_triangles), fit_of(variant),
-                             variant.leaf_size, several);
-  return hierarchies;
-}
+class WideHierarchies {
+ public:
+  WideHierarchies(std::span<const TriangleMesh> meshes, const Variant& variant, int threads)
+      : variant_(variant), threads_(threads) {
+    for (const auto& mesh : meshes) of(mesh);
+  }
+
+  /// The mesh must outlive this.
+  ShapeOver<Hierarchy> of(const TriangleMesh& mesh) {
+    if (const auto at = known_.find(&mesh); at != known_.end()) return {&mesh, at->second};
+    return {&mesh, known_[&mesh] = &build(mesh)};
+  }
+  const std::deque<Hierarchy>& all() const { return all_; }
+
+ private:
+  const Hierarchy& build(const TriangleMesh& mesh) {
+    Threads several(threads_);
+    // Leaves are made while the tree is collapsed.
+    Variant down_to_triangles = variant_;
+    down_to_triangles.leaf_size = 1;
+    return all_.emplace_back(mesh, topology_of(mesh, down_to_triangles), fit_of(variant_),
+                             variant_.leaf_size, several);
+  }
+
+  Variant variant_;
+  int threads_;
+  std::deque<Hierarchy> all_;  // a deque: bodies refer to its elements while it grows
+  std::unordered_map<const TriangleMesh*, const Hierarchy*> known_;
+};
 
 /// Of "deferred:k", as Deferred(k).
 struct DeferredRule {
@@ -79,10 +97,10 @@ void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const V
   with_kernel<V>(variant, [&]<class Kernel>(std::type_identity<Kernel>) {
     constexpr int fan_out = fan_out_of<Kernel, typename V::scalar>;
     const auto start = Clock::now();
-    const auto hierarchies = wide_hierarchies<typename Kernel::template Hierarchy<V, fan_out>>(
+    const WideHierarchies<typename Kernel::template Hierarchy<V, fan_out>> hierarchies(
         meshes, variant, static_cast<int>(options.threads));
     result.build_seconds = seconds_since(start);
-    const auto shapes = shapes_over(meshes, hierarchies, trace.objects);
+    const auto shapes = shapes_over(meshes, hierarchies.all(), trace.objects);
     with_memory(variant, [&]<class Memory>(const Memory& memory) {
       const auto engine = [&](auto) {
         return AllPairsOf(WidePairs<V, fan_out, Memory, Kernel>(shapes, memory),
@@ -102,10 +120,10 @@ std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, st
   if constexpr (AnswersYesOrNo<Query>)
     with_kernel<V>(variant, [&]<class Kernel>(std::type_identity<Kernel>) {
       constexpr int fan_out = fan_out_of<Kernel, typename V::scalar>;
-      auto hierarchies = wide_hierarchies<typename Kernel::template Hierarchy<V, fan_out>>(
-          meshes, variant, threads);
-      // Shapes point to what the vector holds, wherever that is moved.
-      const auto shapes = shapes_over(meshes, hierarchies, objects);
+      WideHierarchies<typename Kernel::template Hierarchy<V, fan_out>> hierarchies(meshes, variant,
+                                                                                   threads);
+      // Shapes point to what it holds, wherever it is moved.
+      const auto shapes = shapes_over(meshes, hierarchies.all(), objects);
       with_memory(variant, [&]<class Memory>(const Memory& memory) {
         using Pairs = WidePairs<V, fan_out, Memory, Kernel>;
         world = std::make_unique<TouchingWorld<Pairs, Query, decltype(hierarchies)>>(

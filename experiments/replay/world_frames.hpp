@@ -27,8 +27,11 @@ class WorldEngine {
   virtual std::size_t near() const { return 0; }
   virtual std::size_t queried() const { return 0; }
 
-  /// Takes a body out of the scene until it is moved again; ours alone can.
-  virtual void take_out(std::uint32_t) {}
+  // Ours alone can:
+  /// Adds a body of that mesh, which must outlive the world; it enters the scene when it is moved.
+  virtual void add(const TriangleMesh&) {}
+  /// Removes a body from the scene, until it is moved again.
+  virtual void remove(std::uint32_t) {}
 };
 
 struct WorldRun {

@@ -71,7 +71,12 @@ NamedMesh from_text(const std::string& text, std::size_t polygons) {
 std::vector<std::string> entries_of(const std::string& list) {
   std::error_code none;
   if (is_file(list) && std::filesystem::is_regular_file(list, none)) return {list};
-  return parts_of(list, ',');
+  auto parts = parts_of(list, ',');
+  for (auto& part : parts) {
+    part.erase(part.find_last_not_of(" \t") + 1);
+    part.erase(0, part.find_first_not_of(" \t"));
+  }
+  return parts;
 }
 
 std::string source_of(const std::string& name) { return name == "bunny" ? "bunny00" : name; }

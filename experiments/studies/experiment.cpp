@@ -99,11 +99,14 @@ const Row coherence_columns{"pair_runs",  "near_runs",     "moved_runs",  "still
                             "best_tests", "best_rebuilds"};
 const Row prediction_columns{"strategy", "n_v", "n_p", "time_ns", "taken_ns", "low_ns", "high_ns"};
 
+/// What is computed of a record when it is read: see plots/bvlab_plots/records.py.
+const Row computed_columns{"later_ns", "later_pairs", "survival"};
+
 /// A label has a column of its own.
 void check_axis_name(const Definition::Axis& axis) {
   if (axis.is_parameter) return;
   for (const Row* columns : {&measured_columns, &frame_columns, &disagreement_columns,
-                             &coherence_columns, &prediction_columns})
+                             &coherence_columns, &prediction_columns, &computed_columns})
     if (std::find(columns->begin(), columns->end(), axis.name) != columns->end())
       throw Unusable("axis '" + axis.name + "': a record has a column of that name");
 }

@@ -32,8 +32,17 @@ def exit_status(main):
 
 def run(main):
     """What a file of plots/ is: ends the process with main's exit status; quietly where nobody reads on."""
+    import matplotlib
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # | head
-    sys.exit(exit_status(main))
+    matplotlib.use("Agg")
+    status = exit_status(main)
+    try:
+        sys.stdout.flush()
+    except OSError as fault:  # a full disk
+        print(f"{Path(sys.argv[0]).name}: standard output: {fault.strerror}", file=sys.stderr)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        status = 1
+    sys.exit(status)
 
 
 def record_arguments(doc, table_only=False):

@@ -13,7 +13,9 @@ LETTER = 0.53  # of the type's size: how wide a letter is, about
 
 
 def counted(column, count):
-    """"3 repetitions", "5 values of volume"."""
+    """"3 repetitions", "2 to 8 seeds", "5 values of volume"."""
+    if isinstance(count, tuple):
+        count = f"{count[0]} to {count[1]}"
     return f"{count} {MANY[column]}" if column in MANY else f"{count} {called(column)} values"
 
 

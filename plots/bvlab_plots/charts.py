@@ -6,7 +6,6 @@ import re
 import textwrap
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import NullLocator
 
@@ -34,8 +33,7 @@ def panel_grid(figure, points, places):
     narrow, wide = style.WIDTHS["column"], style.WIDTHS["page"]
     width = wide if places > 40 else narrow if columns == 1 else min(wide, 1.2 + 2.5 * columns)
     width = style.WIDTHS.get(figure.width, width)
-    drawing, axes = plt.subplots(lines, columns, figsize=(width, 0.5 + height * lines), squeeze=False, sharex=True,
-                                 layout="constrained")
+    drawing, axes = style.subplots(lines, columns, figsize=(width, 0.5 + height * lines), sharex=True)
     for axis in axes.flat[len(names):]:
         axis.remove()
     for axis, (_, name) in zip(axes.flat, names):
@@ -51,8 +49,7 @@ def declared_grid(figure, names):
     """Small multiples: a line of panels for each value of panel_rows, a column for each of panels."""
     lines, columns = (list(dict.fromkeys(name[i] for name in names)) for i in (0, 1))
     width = style.WIDTHS.get(figure.width, min(style.WIDTHS["page"], 1.0 + 2.1 * len(columns)))
-    drawing, axes = plt.subplots(len(lines), len(columns), figsize=(width, 0.5 + 1.45 * len(lines)), squeeze=False,
-                                 sharex=True, layout="constrained")
+    drawing, axes = style.subplots(len(lines), len(columns), figsize=(width, 0.5 + 1.45 * len(lines)), sharex=True)
     found = {}
     for i, line in enumerate(lines):
         for j, column in enumerate(columns):

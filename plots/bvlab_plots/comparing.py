@@ -75,7 +75,10 @@ def same(one, other):
 def text_of(found, before, after, everything):
     """As lines: a cell that has changed each, then how many did what."""
     varied = [c for c in found.attrs["shared"] if found[c].nunique() > 1]
-    lines = [f"{found.attrs['text']} of {after.attrs['name']} over {before.attrs['name']}: ratio of medians, 95 %"]
+    mine, theirs = (rows.attrs["name"] for rows in (before, after))
+    if mine == theirs:
+        mine, theirs = (rows.attrs["record"] for rows in (before, after))
+    lines = [f"{found.attrs['text']} of {theirs} over {mine}: ratio of medians, 95 %", *made_otherwise(before, after)]
     for name, rows in (("before", before), ("after", after)):
         if rows.attrs["unfinished"]:
             lines.append(f"{name}: UNFINISHED, {rows.attrs['unfinished']}")
@@ -91,6 +94,19 @@ def text_of(found, before, after, everything):
                  (f"; {(found.different != '').sum()} different" if (found.different != "").any() else "") +
                  f"; geometric mean {geometric(found.ratio)}")
     return "\n".join(lines) + "\n"
+
+
+def made_otherwise(before, after):
+    """A line for all in which the machines that made two records differ, where it moves times."""
+    machines = [rows.attrs["machine"] for rows in (before, after)]
+    lines = []
+    for what, keys in (("TWO MACHINES", ["node", "processor", "cores"]), ("compiled otherwise", ["compiler", "flags"]),
+                       ("clocks differ", ["clock"])):
+        unlike = [key for key in keys if machines[0].get(key) != machines[1].get(key)]
+        if unlike:
+            lines.append(f"{what}: " + "; ".join(
+                f"{key} {' before, '.join(str(each.get(key, 'unknown')) for each in machines)} after" for key in unlike))
+    return lines
 
 
 def geometric(ratios):

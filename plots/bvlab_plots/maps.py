@@ -50,7 +50,7 @@ def field_axes(points):
     across = len(panels) if len(panels) <= 2 and len(panels) * len(columns) <= 8 else 1
     down = -(-len(panels) // across)
     size = (1.2 + 1.16 * len(columns) * across, 0.8 + (0.35 + 0.74 * len(lines)) * down)
-    drawing, axes = plt.subplots(down, across, figsize=size, squeeze=False, layout="constrained")
+    drawing, axes = style.subplots(down, across, figsize=size)
     for axis in axes.flat:
         axis.set(xlim=(-0.5, len(columns) - 0.5), ylim=(-0.5, len(lines) - 0.5))
         axis.set_xticks(range(len(columns)), texts(columns))

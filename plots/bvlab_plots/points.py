@@ -112,8 +112,8 @@ def places_of(rows, figure):
 
 
 def pooled_in(rows, figure, apart):
-    """What varies in a point and is neither named nor fixed, as {column: how many values}; refused where `pool` does
-    not name it. Points are told apart by the columns `apart` of a frame."""
+    """What varies in a point and is neither named nor fixed, as {column: how many values}, or (least, most) of them
+    where points differ; refused where `pool` does not name it. Points are told apart by the columns `apart` of a frame."""
     asked = columns_of(rows, figure.pool, "pool")
     # What goes into an interval without being asked for; `frame` is also where volumes are compared.
     repeated = ["seed", "frame"] if figure.table == "frames" else ["seed"]
@@ -122,13 +122,14 @@ def pooled_in(rows, figure, apart):
     pooled = {}
     # Those that may vary first: what they determine, as a label does its parameters, varies with them.
     for column in [c for c in repeated if c in rows] + asked + [c for c in settings if c not in asked] + ["repetition"] * ("repetition" in rows):
-        most = int(rows.groupby(keys, sort=False, dropna=False)[column].nunique(dropna=False).max())
+        counts = rows.groupby(keys, sort=False, dropna=False)[column].nunique(dropna=False)
+        least, most = int(counts.min()), int(counts.max())
         if most < 2 or column in pooled:
             continue
         if column not in asked + repeated + ["repetition"]:
             raise Refused(f"'{column}' is neither named nor fixed: {most} of its values would be one point; say where = "
                           f"[\"{column}=...\"], or name it in x, series or panels, or say pool = \"{column}\"")
-        pooled[column] = most
+        pooled[column] = most if least == most else (least, most)
         if column != "repetition":
             keys.append(rows[column].to_numpy())
     return pooled

@@ -54,15 +54,24 @@ def ratios(rows, over):
     # A peer has no leaf size and the like: it is compared in the rest.
     peers = rows[rows.peer != ""]
     shared = [c for c in cells if c not in VARIANT and not peers[c].astype(str).isin(["", "nan"]).any()]
-    result = pd.Series(np.nan, rows.index)
+    under = pd.Series(np.nan, rows.index)
     for part in (rows[rows.peer == ""], peers):
         keys = shared if over in BEST or part is peers else cells
-        result[part.index] = part.value / denominators(part, base, keys, over in BEST)
-    alone = result.isna() & rows.value.notna()
-    if alone.all():
-        raise Refused(f"over {over}: no cell holds it beside another")
-    records.say_left_out(rows[alone].variant, f"in cells without {over}")
-    return rows.assign(ratio=result)[~alone]
+        under[part.index] = denominators(part, base, keys, over in BEST)
+    return over_known(rows, under, f"in cells without {over}", f"over {over}: no cell holds it beside another",
+                      f"over {over}")
+
+
+def over_known(rows, under, without, nowhere, over):
+    """The rows with `ratio`, their value over `under`, where that is known and not 0; the others are said."""
+    absent, zero = under.isna(), under == 0
+    if absent.all():
+        raise Refused(nowhere)
+    if (absent | zero).all():
+        raise Refused(f"{over}: it is 0 in every cell")
+    records.say_left_out(rows[absent].variant, without)
+    records.say_left_out(rows[zero].variant, f"{over}, which is 0 in their cells")
+    return rows.assign(ratio=rows.value / under)[~absent & ~zero]
 
 
 def ratios_to(rows, others):
@@ -76,8 +85,6 @@ def ratios_to(rows, others):
         base = left.merge(base, how="left", on=keys).base.to_numpy()
     else:
         base = right.value.median()
-    result = rows.value / base
-    if result.isna().all():
-        raise Refused(f"over {others.attrs['name']}: no cell is in both records")
-    records.say_left_out(rows[result.isna()].variant, f"in cells that {others.attrs['name']} does not have")
-    return rows.assign(ratio=result)[result.notna()]
+    name = others.attrs["name"]
+    return over_known(rows, pd.Series(base, rows.index), f"in cells that {name} does not have",
+                      f"over {name}: no cell is in both records", f"over {name}")

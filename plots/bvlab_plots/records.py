@@ -39,15 +39,15 @@ def read(record, table="", needs=(), clock="wall"):
     the record says how much longer the run took (`wall_per_processor`). They are NaN in rows that were measured beside other work (column `alone` "no") where their cell
     has others, and where nothing was timed.
 
-    attrs: name and kind (of the study, "" for an experiment), definition (a dictionary), settings (the columns that
-    say what was run), units (of each column: ns, B, radii, °, or ""), clock (of times), clock_of_frames (of single frames), unfinished (nothing, or "31 of
+    attrs: record (its folder), machine (machine.json), name and kind (of the study, "" for an experiment), definition
+    (a dictionary), settings (the columns that say what was run), units (of each column: ns, B, radii, °, or ""), clock (of times), clock_of_frames (of single frames), unfinished (nothing, or "31 of
     216 rows"). Refused where it is no record, where a column that is needed is not there,
     and where answers of an experiment were not compared.
     """
     record = Path(record)
     definition = read_definition(record)
     name, kind = definition["name"], definition.get("kind", "")
-    rows = read_table(record / (f"{name}.{table}.csv" if table else f"{name}.csv"))
+    rows = read_table(record / (f"{name}.{table}.csv" if table else f"{name}.csv"), names_in(definition))
     if rows.empty:
         raise Refused(f"{name}.csv has no rows")
     unfinished = unfinished_of(record, definition, rows if not table else [])
@@ -58,13 +58,13 @@ def read(record, table="", needs=(), clock="wall"):
             rows["peer"] = ""
             rows = with_variants(rows)
             rows = in_order(rows, definition, settings)
-        rows.attrs.update(name=name, kind=kind, definition=definition, settings=settings, units=units, clock="",
-                          unfinished=unfinished)
+        rows.attrs.update(record=str(record), machine=provenance.machine_of(record), name=name, kind=kind,
+                          definition=definition, settings=settings, units=units, clock="", unfinished=unfinished)
         return rows
     check_compared(rows, name, kind)
     settings = setting_columns(rows, kind)
     rows, settings = with_peers(rows, definition, settings)
-    rows = with_coherence(rows, record / f"{name}.coherence.csv")
+    rows = with_coherence(rows, record / f"{name}.coherence.csv", names_in(definition))
     rows = own_times(rows)
     if clock == "processor" and "wall_per_processor" in rows:
         longer = pd.to_numeric(rows.wall_per_processor, errors="coerce").fillna(1)
@@ -83,8 +83,8 @@ def read(record, table="", needs=(), clock="wall"):
     if missing := [column for column in needs if column not in rows]:
         raise Refused(f"{record}: has no {', '.join(missing)}: it is the record of something else")
     rows = in_order(rows, definition, settings)
-    rows.attrs.update(name=name, kind=kind, definition=definition, settings=settings, units=units, clock=clock,
-                      clock_of_frames=clock_of_frames(record), unfinished=unfinished)
+    rows.attrs.update(record=str(record), machine=provenance.machine_of(record), name=name, kind=kind,
+                      definition=definition, settings=settings, units=units, clock=clock, clock_of_frames=clock_of_frames(record), unfinished=unfinished)
     return rows
 
 
@@ -152,15 +152,28 @@ def read_definition(record):
     return read_toml(Path(record) / "definition.toml")
 
 
-def read_table(path):
-    """Blanks are empty names, and NaN in columns of numbers."""
+def names_in(definition):
+    """The axes whose values are names, though they may look like numbers: several of them are one number, as "1", "1.0"
+    and "01" are, or are truth values to pandas."""
+    names = set()
+    for axis in definition.get("axis", []):
+        values = [str(value.get("name")) for value in axis.get("value", []) if isinstance(value, dict)]
+        values = values or list(map(str, axis.get("values", [])))
+        numbers = pd.to_numeric(pd.Series(values, dtype=object), errors="coerce")
+        if (numbers.notna().all() and numbers.nunique() < len(values)) or {"true", "false"} & set(map(str.lower, values)):
+            names.add(axis.get("name"))
+    return names
+
+
+def read_table(path, names=()):
+    """Blanks are empty names, and NaN in columns of numbers; `names` are columns of which all is a name."""
     try:
         if not ends(path):
             raise Refused(f"{path}: is cut off: its last line has no end")
-        rows = pd.read_csv(path, keep_default_na=False, encoding="utf-8-sig")
+        rows = pd.read_csv(path, keep_default_na=False, encoding="utf-8-sig", dtype=dict.fromkeys(names, str))
     except (OSError, ValueError, UnicodeDecodeError) as fault:
         raise Refused(f"{path}: {fault}".replace("\n", " ")) from None
-    for column in rows.columns[rows.dtypes == object]:
+    for column in rows.columns[rows.dtypes == object].difference(list(names), sort=False):
         text = rows[column]
         numbers = pd.to_numeric(text, errors="coerce")
         if (text != "").any() and numbers[text != ""].notna().all():
@@ -212,10 +225,10 @@ def without_ours(rows):
     return rows
 
 
-def with_coherence(rows, path):
+def with_coherence(rows, path, names):
     if not path.is_file():
         return rows
-    coherence = read_table(path)
+    coherence = read_table(path, names)
     shared = [column for column in coherence if column in rows]
     rows = rows.merge(coherence, how="left", on=shared)
     if {"kept", "entries"} <= set(rows):

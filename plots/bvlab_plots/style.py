@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How figures look: legible in print and in greyscale; names have the looks of looks.py."""
 
+import io
 from pathlib import Path
 
 import matplotlib
-
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
 from bvlab_plots.looks import STYLES, joint_looks, looks  # noqa: F401
 
@@ -31,6 +32,13 @@ plt.rcParams.update({
     "savefig.bbox": "tight",
     "hatch.linewidth": 0.6,
 })
+
+
+def subplots(lines, columns, figsize, **keywords):
+    """As plt.subplots, for files: whatever backend is set, and whether or not there is a display."""
+    figure = Figure(figsize=figsize, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure, figure.subplots(lines, columns, squeeze=False, **keywords)
 
 
 def line_style(look):
@@ -83,28 +91,25 @@ def labelled(axes):
 
 def save(figure, folder, name, formats=None):
     """Writes <folder>/<name>.pdf and .png, the same bytes for the same record, each whole or not at all."""
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
     written = [ending for ending in FORMATS if formats is None or ending in formats]
     for ending in written:
-        unfinished = folder / f".{name}.{ending}.unfinished"
-        try:
-            figure.savefig(unfinished, format=ending, dpi=DPI, metadata=FORMATS[ending])
-            unfinished.replace(folder / f"{name}.{ending}")
-        finally:
-            unfinished.unlink(missing_ok=True)
+        # In memory first: where a disk is full, matplotlib's own handling of the fault fails, too.
+        drawn = io.BytesIO()
+        figure.savefig(drawn, format=ending, dpi=DPI, metadata=FORMATS[ending])
+        path = write(folder, f"{name}.{ending}", drawn.getvalue())
     plt.close(figure)
-    return folder / f"{name}.{written[-1]}"
+    return path
 
 
-def write(folder, name, text):
-    """A file of text, whole or not at all."""
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    unfinished = folder / f".{name}.unfinished"
+def write(folder, name, content):
+    """A file of text or bytes, whole or not at all."""
+    path, unfinished = Path(folder) / name, Path(folder) / f".{name}.unfinished"
     try:
-        unfinished.write_text(text)
-        unfinished.replace(folder / name)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        unfinished.write_bytes(content.encode() if isinstance(content, str) else content)
+        unfinished.replace(path)
+    except OSError as fault:  # of a file that is written to, it does not say the name
+        raise OSError(fault.errno, fault.strerror, str(path)) from None
     finally:
         unfinished.unlink(missing_ok=True)
-    return folder / name
+    return path

@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <iomanip>
 #include <random>
+#include <sstream>
+#include <string>
 
 #include "hierarchies/bounding_volume.hpp"
 #include "tests/types_of.hpp"
@@ -78,6 +81,19 @@ double reach_of(const Points& points) {
   return reach;
 }
 
+/// What failed: the round, and its points, to be pasted into a test.
+template <class... Clouds>
+std::string in_round(int round, const Clouds&... clouds) {
+  std::ostringstream text;
+  text << std::setprecision(17) << "round " << round;
+  const auto add = [&](const Points& points) {
+    text << "\n  ";
+    for (const auto& p : points) text << '{' << p[0] << ", " << p[1] << ", " << p[2] << "}, ";
+  };
+  (add(clouds), ...);
+  return text.str();
+}
+
 Vec3<long double> wide(const Vec3<double>& p) { return p.cast<long double>(); }
 
 /// A cloud as it stands in the world, and its volume posed.
@@ -112,10 +128,11 @@ TYPED_TEST_P(VolumeLaws, WhatIsGivenIsInsideAndMergingKeepsItSo) {
     const auto both = merge(va, vb);
     const PlacementOf<TypeParam> here;
     for (const auto& p : a) {
-      ASSERT_TRUE(contains(posed(va, here), wide(p))) << "round " << round;
-      ASSERT_TRUE(contains(posed(both, here), wide(p))) << "round " << round;
+      ASSERT_TRUE(contains(posed(va, here), wide(p))) << in_round(round, a, b);
+      ASSERT_TRUE(contains(posed(both, here), wide(p))) << in_round(round, a, b);
     }
-    for (const auto& p : b) ASSERT_TRUE(contains(posed(both, here), wide(p))) << "round " << round;
+    for (const auto& p : b)
+      ASSERT_TRUE(contains(posed(both, here), wide(p))) << in_round(round, a, b);
   }
 }
 
@@ -137,11 +154,12 @@ TYPED_TEST_P(VolumeLaws, WhatIsFittedTightlyHoldsItsTriangles) {
           posed(volume, PlacementOf<TypeParam>(pose, pose.translation, reach * (1 + 1e-6)));
       const auto here = posed(volume, PlacementOf<TypeParam>());
       for (const auto& p : points)
-        ASSERT_TRUE(contains(moved, wide(pose(p)) - wide(pose.translation))) << "round " << round;
+        ASSERT_TRUE(contains(moved, wide(pose(p)) - wide(pose.translation)))
+            << in_round(round, points);
       for (const auto& [a, b, c] : triangles)
         for (const auto& p : {wide(a), wide(b), wide(c), Vec3<long double>((wide(b) + wide(c)) / 2),
                               Vec3<long double>((wide(a) + (wide(b) + wide(c)) / 2) / 2)})
-          ASSERT_TRUE(contains(here, p)) << "round " << round;
+          ASSERT_TRUE(contains(here, p)) << in_round(round, points);
     }
   }
 }
@@ -157,7 +175,8 @@ TYPED_TEST_P(VolumeLaws, PosingKeepsVerticesInside) {
                                     : Vec3<double>(Vec3<double>::Zero());
     const PosedPoints<TypeParam> posed_points(points, pose, origin);
     for (const auto& w : posed_points.world)
-      ASSERT_TRUE(contains(posed_points.volume, wide(w) - wide(origin))) << "round " << round;
+      ASSERT_TRUE(contains(posed_points.volume, wide(w) - wide(origin)))
+          << in_round(round, points, posed_points.world, Points{origin});
   }
 }
 
@@ -174,8 +193,8 @@ TYPED_TEST_P(VolumeLaws, VolumesThatShareAPointAreNotDisjoint) {
     for (int i = hostile.below(10); i > 0; --i)
       b.push_back(b[0] + hostile.direction() * scale * hostile.uniform(0, 2));
     const PosedPoints<TypeParam> second(b, Pose{}, origin);
-    ASSERT_FALSE(disjoint(first.volume, second.volume)) << "round " << round;
-    ASSERT_EQ(gap(first.volume, second.volume), 0) << "round " << round;
+    ASSERT_FALSE(disjoint(first.volume, second.volume)) << in_round(round, a, first.world, b);
+    ASSERT_EQ(gap(first.volume, second.volume), 0) << in_round(round, a, first.world, b);
   }
 }
 
@@ -198,8 +217,8 @@ TYPED_TEST_P(VolumeLaws, TheGapIsAtMostTheDistance) {
     for (const auto& p : first.world)
       for (const auto& q : second.world) distance = std::min(distance, (wide(p) - wide(q)).norm());
     const auto g = gap(first.volume, second.volume);
-    ASSERT_GE(g, 0) << "round " << round;
-    ASSERT_LE(static_cast<long double>(g), distance) << "round " << round;
+    ASSERT_GE(g, 0) << in_round(round, a, first.world, b);
+    ASSERT_LE(static_cast<long double>(g), distance) << in_round(round, a, first.world, b);
     apart += disjoint(first.volume, second.volume);
   }
   // The laws would hold for a volume that is never disjoint; such a one is of no use.

@@ -79,7 +79,7 @@ void follow(World& world, const Script& script, std::size_t frame) {
     if (const auto& pose = script[frame][i])
       world.move(i, *pose);
     else
-      world.take_out(i);
+      world.remove(i);
 }
 
 const std::vector<TriangleMesh>& hostile_meshes() {
@@ -169,6 +169,50 @@ TEST(WorldThatComesAndGoes, TouchesWhereBruteForceDoes) {
     expect(binary_world<Margins>(threads), "binary, margins", threads);
     expect(binary_world<Adaptive>(threads), "binary, adaptive", threads);
   }
+}
+
+/// A world that begins with some bodies, and is given the others when they first have a place.
+template <class World, class Shapes>
+struct Growing {
+  World world;
+  const Shapes& shapes;
+
+  void move(std::uint32_t i, const Pose& pose) {
+    while (world.size() < i) world.add(shapes[world.size()]);
+    if (i < world.size())
+      world.move(i, pose);
+    else
+      EXPECT_EQ(world.add(shapes[i], pose), i);
+  }
+  void remove(std::uint32_t i) {
+    if (i < world.size()) world.remove(i);
+  }
+  template <class... Arguments>
+  void update(Arguments&&... arguments) {
+    world.update(std::forward<Arguments>(arguments)...);
+  }
+};
+
+template <class Pairs, class Shapes, class... Strategy>
+void expect_grows(const char* name, const Shapes& shapes, const Strategy&... strategy) {
+  for (const int threads : {1, 3})
+    for (const std::size_t first : {std::size_t{0}, std::size_t{5}}) {
+      const auto begin = std::span(shapes).first(first);
+      Growing<World<Pairs>, Shapes> growing{World<Pairs>(Pairs(begin, strategy...), threads),
+                                            shapes};
+      EXPECT_EQ(touching_of(growing, hostile_scene()), hostile_truth().touching)
+          << name << ", from " << first << ", " << threads << " threads";
+      EXPECT_EQ(growing.world.size(), hostile_bodies);
+    }
+}
+
+TEST(WorldThatComesAndGoes, GrowsAndShrinks) {
+  expect_grows<Recommended::Pairs>("recommended", wide_shapes());
+  using FromTheRoots = WidePairs<Recommended::Volume, Recommended::fan_out, NoMemory>;
+  expect_grows<FromTheRoots>("wide, from the roots", wide_shapes());
+  using Balls = Bodies<Batch<float, 8>, Ball>;
+  expect_grows<StrategyPairs<Balls, Recursive>>("binary", binary_shapes(), Recursive());
+  expect_grows<StrategyPairs<Balls, Margins>>("binary, margins", binary_shapes(), Margins());
 }
 
 /// Few bodies move at a time.

@@ -4,12 +4,14 @@
 import contextlib
 import csv
 import io
+import resource
+import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
 from drawing import Seen
-from small_records import COUNTS, ROOT, STRATEGIES, names_added, own_record, small_record, stranger
+from small_records import COUNTS, PLOTS, ROOT, STRATEGIES, names_added, own_record, small_record, stranger
 
 from bvlab_plots import draw, figures, records
 
@@ -243,6 +245,22 @@ class Refuses(unittest.TestCase):
 
         with tempfile.TemporaryDirectory() as folder:
             self.refuse(own_record(folder, change=differing), mentions=["differ from the reference"])
+
+    def test_a_full_disk(self):
+        """Wherever it fills up, also where matplotlib is in the midst of a file: one line that names it, no half a file."""
+        with tempfile.TemporaryDirectory() as folder:
+            record = own_record(folder, more='[[figure]]\nname = "mine"\nx = "degrees"\nseries = "variant"\n')
+            for most in (0, 2000, 4096, 9000, 12000, 16000):
+                out = Path(folder) / f"out-{most}"
+                done = subprocess.run([PLOTS / "draw", record, "--out", out], capture_output=True, text=True, check=False,
+                                      preexec_fn=lambda most=most: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
+                self.assertEqual(done.returncode, 1, most)
+                self.assertRegex(done.stderr, r"\Adraw: .*/mine\.(pdf|png): File too large\n\Z")
+                self.assertLessEqual({path.name for path in out.iterdir()}, {"mine.pdf"})
+            with open("/dev/full", "w", encoding="utf-8") as full:
+                done = subprocess.run([PLOTS / "draw", record, "--table"], stdout=full, stderr=subprocess.PIPE, text=True,
+                                      check=False)
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
 
     def test_what_is_no_record(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -4,6 +4,7 @@ and two records compared."""
 
 import contextlib
 import io
+import json
 import os
 import re
 import shutil
@@ -169,6 +170,23 @@ class Compares(unittest.TestCase):
         code, said = self.compare(record, record)
         self.assertEqual(code, 0)
         self.assertIn("12 as before; geometric mean 1\n", said)
+
+    def test_two_machines(self):
+        """Times of two machines are compared, and that they are of two is said; records of one name are told apart."""
+        records_of = []
+        for machine in (dict(node="a", processor="AMD EPYC", cores=2, compiler="GNU 12.2.0", flags="-O3", clock="wall"),
+                        dict(node="b", processor="Intel Xeon", cores=2, compiler="GNU 13.1.0", flags="-O3", clock="wall")):
+            records_of.append(self.record())
+            (records_of[-1] / "machine.json").write_text(json.dumps(machine))
+        code, said = self.compare(*records_of)
+        self.assertEqual(code, 0)
+        self.assertEqual(said.splitlines()[:3], [
+            f"time_ns / pairs of {records_of[1]} over {records_of[0]}: ratio of medians, 95 %",
+            "TWO MACHINES: node a before, b after; processor AMD EPYC before, Intel Xeon after",
+            "compiled otherwise: compiler GNU 12.2.0 before, GNU 13.1.0 after"])
+        code, said = self.compare(records_of[0], self.record())
+        self.assertIn("TWO MACHINES: node a before, unknown after", said)
+        self.assertNotIn("MACHINES", self.compare(records_of[0], records_of[0])[1])
 
     def test_bootstrap_of_many(self):
         low, middle, high = comparing.ratio_of(np.linspace(90, 110, 21), np.linspace(180, 220, 21))

@@ -75,6 +75,45 @@ class Points(unittest.TestCase):
         points = self.points(x="degrees", y="time_ns", over="volume=sphere, strategy=recursive", series="variant")
         self.assertAlmostEqual(self.at(points, 1, "obb deferred").middle, 1.5)
 
+    def test_a_base_of_nothing(self):
+        """What has nothing to be compared with is said to be so, and nothing else."""
+        def none_at_one(rows):
+            rows.loc[(rows.strategy == "recursive") & (rows.degrees == 1), "n_v"] = 0
+            return rows
+        points = self.points(none_at_one, x="degrees", y="n_v", over="strategy=recursive", series="variant")
+        self.assertEqual(set(points.x), {0.1, 10})
+        self.assertEqual(self.printed.getvalue().splitlines(), [
+            "left out, over strategy=recursive, which is 0 in their cells: "
+            "obb deferred, obb recursive, sphere deferred, sphere recursive"])
+        with self.assertRaisesRegex(Refused, "over strategy=recursive: it is 0 in every cell"):
+            self.points(lambda rows: rows.assign(n_v=rows.n_v.where(rows.strategy != "recursive", 0)), x="degrees",
+                        y="n_v", over="strategy=recursive", series="variant")
+
+    def test_points_of_unlike_many_values(self):
+        """A base that lacks rows: some points have fewer values than others, which the caption says."""
+        def lacking(rows):
+            rows = pd.concat([rows.assign(seed=seed) for seed in range(8)])
+            rows.insert(0, "seed", rows.pop("seed"))
+            return rows[(rows.strategy != "recursive") | (rows.degrees != 1) | (rows.seed < 2)]
+        keys = dict(x="degrees", y="n_v", series="variant")
+        points = self.points(lacking, over="strategy=recursive", **keys)
+        self.assertEqual(self.printed.getvalue(), "left out, in cells without strategy=recursive: obb deferred, sphere deferred\n")
+        self.assertIn("Medians of 2 to 8 seeds × 3 repetitions", note_of(Figure(name="test", **keys), points))
+
+    def test_names_that_are_one_number(self):
+        """"1", "1.0", "01" and "True" are four readings, as in the table, and of no kind of number."""
+        for names in (["1", "1.0", "01", "True"], ["1", "1.0", "01"], ["True", "False"], ["1", "TRUE"]):
+            def named(rows, names=names):
+                rows = pd.concat([rows.assign(reading=name) for name in names])
+                rows.insert(0, "reading", rows.pop("reading"))
+                return rows
+            more = "\n[[axis]]\nname = \"reading\"\n" + "".join(f'[[axis.value]]\nname = "{name}"\n' for name in names)
+            points = self.points(named, more, x="reading", y="time_ns", series="variant", where=["degrees=1"])
+            self.assertEqual(list(dict.fromkeys(points.x)), names)
+            self.assertEqual(points.attrs["pooled"], {"repetition": 3})
+            alone = self.points(named, more, x="degrees", y="time_ns", series="variant", where=[f"reading={names[-1]}"])
+            self.assertEqual(alone.attrs["pooled"], {"repetition": 3})
+
     def test_conditions_on_what_it_is_over_do_not_hide_that(self):
         points = self.points(x="degrees", y="time_ns", over="strategy=recursive", series="strategy",
                              where=["strategy=deferred", "volume=obb"])

@@ -137,7 +137,8 @@ class Mesh(unittest.TestCase):
     def test_hostile_meshes(self):
         for bad in (None, [], 3, "mesh", [None], [VERTICES], {}, (each for each in ()), iter([1])):
             self.refused(ValueError, bvlab.replay, bad, POSES)
-            self.refused(ValueError, bvlab.World, bad)
+            if bad not in ([], {}):  # a world may begin without a body
+                self.refused(ValueError, bvlab.World, bad)
 
     def test_hostile_moves(self):
         mesh = bvlab.Mesh(VERTICES, FACES)
@@ -210,6 +211,68 @@ class Poses(unittest.TestCase):
             with self.assertRaises(ValueError) as caught:
                 bvlab.poses(change(matrices))
             self.assertRegex(str(caught.exception), "^matrices: [^\n]*$")
+
+    def rotations(self, count):
+        """Random ones, as matrices in their own right: products of reflections."""
+        a, b = np.random.default_rng(4).normal(size=(2, count, 3, 1))
+        turn = [np.eye(3) - 2 * v @ v.swapaxes(1, 2) / (v.swapaxes(1, 2) @ v) for v in (a, b)]
+        return turn[0] @ turn[1]
+
+    def matrices(self, rotations):
+        all_of_them = np.tile(np.eye(4), (1, len(rotations), 1, 1))
+        all_of_them[0, :, :3, :3] = rotations
+        return all_of_them
+
+    def rotated(self, poses):
+        """The matrices of the quaternions."""
+        w, x, y, z = np.moveaxis(poses[0, :, 3:], -1, 0)
+        return np.moveaxis(np.array([
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]), -1, 0)
+
+    def test_matrices_of_few_digits(self):
+        """The nearest rotation, by Frobenius' norm: no small turn of it is nearer."""
+        rotations = self.rotations(1000)
+        products = np.eye(3, dtype=np.float32)[None].repeat(50, 0)
+        for each in rotations.astype(np.float32):
+            products = products @ each
+        turns = [np.eye(3) + np.cross(np.eye(3), 1e-6 * axis * sign) for axis in np.eye(3) for sign in (-1, 1)]
+        for given, tolerance in ((rotations.round(6), None), (rotations.round(4), None), (products, None),
+                                 (rotations.round(2), 0.02), (rotations * 1.0002, None), (rotations * 1.05, 0.06)):
+            more = {} if tolerance is None else {"tolerance": tolerance}
+            given = np.asarray(given, float)
+            nearest = self.rotated(bvlab.poses(self.matrices(given), **more))
+            np.testing.assert_allclose(nearest @ nearest.swapaxes(1, 2), np.eye(3)[None].repeat(len(given), 0), atol=1e-14)
+            self.assertGreater(np.linalg.det(nearest).min(), 0)
+            away = np.linalg.norm(nearest - given, axis=(1, 2))
+            for turn in turns:
+                self.assertTrue((np.linalg.norm(turn @ nearest - given, axis=(1, 2)) > away - 1e-15).all())
+
+    def test_matrices_that_are_no_rotations(self):
+        """Each with the size of what is wrong, and where."""
+        turn = self.rotations(2)[1]
+        shear = np.eye(3) + [[0, 0.1, 0], [0, 0, 0], [0, 0, 0]]
+        for bad, said in ((2 * turn, "scaled by 2 "), (1.001 * turn, "scaled by 1.001 "), (1e200 * turn, "scaled by 1e+200 "),
+                          (turn * [1, 2, 3], "scaled by 1, 2, 3 along its own axes "),
+                          ((turn.T * [1, 2, 3]).T, "scaled by 1, 2, 3 along the world's axes "),
+                          (-turn, "mirrored: its determinant is -1 "), (turn * [1, 1, -1], "mirrored: its determinant is -1 "),
+                          (-2 * turn, "mirrored: its determinant is -8 and scaled by 2 "),
+                          (turn @ shear, "sheared: two of its axes are 84.29 degrees apart"),
+                          (0 * turn, "flat: its determinant is 0 "), (turn * [1, 1, 0], "flat: its determinant is 0 ")):
+            with self.subTest(said), self.assertRaises(ValueError) as caught:
+                bvlab.poses(self.matrices(np.stack([turn, turn, bad, bad])))
+            self.assertRegex(str(caught.exception), r"^matrices: no rotation in frame 0, object 2: [^\n]* "
+                                                    r"\(lengths may change by 0.0005 of themselves: tolerance\)$")
+            self.assertIn(f": {said}", str(caught.exception))
+        for tolerance in (-1, 1, np.nan, np.inf, "x", [1], 10**400):
+            with self.assertRaisesRegex(ValueError, "^tolerance: a number from 0 on and below 1"):
+                bvlab.poses(self.matrices(turn[None]), tolerance=tolerance)
+        with self.assertRaisesRegex(ValueError, "^tolerance: is of matrices"):
+            bvlab.poses(POSES[..., :3], POSES[..., 3:], order="wxyz", tolerance=0.1)
+        with self.assertRaisesRegex(ValueError, "no rotation"):
+            bvlab.poses(self.matrices(turn[None].round(6)), tolerance=0)
+        np.testing.assert_array_equal(bvlab.poses(self.matrices(np.eye(3)[None]), tolerance=0)[0, 0, 3:], [1, 0, 0, 0])
 
     def test_hostile(self):
         at, q = POSES[..., :3], POSES[..., 3:]

@@ -26,19 +26,30 @@ class Calls(unittest.TestCase):
         # Long, since it stands for work that nobody wants to wait for.
         cls.long = np.tile(scenes.walk(frames=100, objects=6, side=1), (1000, 1, 1))
 
-    def interrupted(self, call):
+    def interrupted(self, call, wait=0.3):
+        """The processor time that goes on after Ctrl-C."""
+        pressed = []
+
         def press():
-            time.sleep(0.3)
+            time.sleep(wait)
+            pressed.append(time.process_time())
             signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
         threading.Thread(target=press).start()
         start = time.monotonic()
         with self.assertRaises(KeyboardInterrupt):
             call()
-        self.assertLess(time.monotonic() - start, 5)
+        self.assertLess(time.monotonic() - start, wait + 5)
+        return time.process_time() - pressed[0]
 
     def test_ctrl_c_ends_a_replay(self):
         self.interrupted(lambda: bvlab.replay(self.mesh, self.long, query="contacts"))
         self.interrupted(lambda: bvlab.replay(self.mesh, self.long, kernel="siblings", volume="slab-box"))
+
+    def test_ctrl_c_ends_a_prediction(self):
+        """Within a tenth of a second, in whichever of its parts: recursion in every frame, windows, coherence."""
+        for wait in (0.3, 1, 3):
+            for query in ("touching", "distance"):
+                self.assertLess(self.interrupted(lambda: bvlab.predict(self.mesh, self.long, query=query), wait), 0.1)
 
     def test_ctrl_c_ends_boxes(self):
         trace = np.random.default_rng(1).random((300, 20000, 6), dtype=np.float32)
@@ -69,7 +80,11 @@ class Calls(unittest.TestCase):
                 for frame in range(30):
                     world.move(i, self.long[frame, i])
                     world.update()
-                    world.touching(), world.contacts(), world.distances(0.1)
+                    for ask in (world.touching, world.contacts, lambda: world.distances(0.1)):
+                        try:
+                            ask()
+                        except RuntimeError as fault:  # another thread has moved a body meanwhile
+                            self.assertIn("call update() first", str(fault))
             except Exception as fault:  # noqa: BLE001
                 faults.append(fault)
         threads = [threading.Thread(target=work, args=[i]) for i in range(6)]
@@ -127,9 +142,83 @@ class Calls(unittest.TestCase):
                 self.assertIn("KeyboardInterrupt", waiting.stderr.read())
             os.close(held)
 
+    def test_a_fit_that_a_volume_lacks(self):
+        """As the program refuses it: a sphere has one fit."""
+        poses = self.long[:2, :2]
+        for call in (lambda **words: bvlab.replay(self.mesh, poses, **words), lambda **words: bvlab.predict(self.mesh, poses, **words),
+                     lambda **words: bvlab.World(self.mesh, objects=2, **words)):
+            with self.assertRaisesRegex(ValueError, "^--fit tight: sphere has only one fit: published$"):
+                call(volume="sphere", fit="tight")
+            call(volume="obb", fit="tight")
+
+    def test_predictions_of_nothing(self):
+        """Of one frame, or of no pairs, no strategy is faster than another."""
+        for frames, objects in ((1, 3), (0, 3), (5, 1), (5, 0), (1, 1)):
+            told = bvlab.predict(self.mesh, self.long[:frames, :objects])
+            self.assertIsNone(told["fastest"], (frames, objects))
+            self.assertEqual(set(told["candidates"]), set(told["strategies"]))
+
+    def test_a_path_that_is_no_text(self):
+        """Its bytes are named as they are."""
+        import tempfile
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.fsdecode(os.fsencode(folder) + b"/\xff\xfe.off")
+            with self.assertRaisesRegex(ValueError, r"\\xff\\xfe\.off: "):
+                bvlab.read(path)
+            scenes.write_off(path, self.mesh)
+            self.assertEqual(len(bvlab.read(path)), len(self.mesh))
+            definition = os.fsdecode(os.fsencode(folder) + b"/\xff.toml")
+            Path(definition).write_text("name = \"x\"\n[parameters]\nfrobs = 3\n")
+            with self.assertRaisesRegex(ValueError, r"\\xff\.toml: line 3: unknown parameter"):
+                bvlab.run(definition, folder + "/x")
+            record = os.fsdecode(os.fsencode(folder) + b"/\xfe")
+            parameters = {"mesh": "torus", "polygons": 50, "frames": 2, "objects": 2}
+            made = bvlab.run({"name": "x", "parameters": parameters}, record, counts=True, progress=False)
+            self.assertEqual(made, Path(record))
+            self.assertEqual(len(bvlab.record(record)), 1)
+
+    def test_copies(self):
+        """Of a mesh and of a result, by copy and by pickle."""
+        import copy
+        import pickle
+
+        class Named(bvlab.Mesh):
+            pass
+        named = Named(self.mesh)
+        named.name = "a"
+        result = bvlab.replay(self.mesh, self.long[:3, :2], query="contacts", count=True, series=True, frame_seconds=True)
+        boxes = bvlab.boxes(np.zeros((2, 3, 6)))
+        ways = [copy.copy, copy.deepcopy, *(lambda each, p=p: pickle.loads(pickle.dumps(each, p)) for p in range(2, 6))]
+        for way in ways:
+            mesh = way(self.mesh)
+            self.assertIsInstance(mesh, bvlab.Mesh)
+            np.testing.assert_array_equal(mesh.vertices, self.mesh.vertices)
+            np.testing.assert_array_equal(mesh.faces, self.mesh.faces)
+            one, other = way([self.mesh, self.mesh]) if way is not copy.copy else (mesh, mesh)
+            self.assertIs(one, other)
+            for given in (result, boxes):
+                again = way(given)
+                np.testing.assert_array_equal(again.answers, given.answers)
+                self.assertEqual(again.totals, given.totals)
+                self.assertEqual(repr(again), repr(given))
+                self.assertEqual(again.n_v, given.n_v)
+            np.testing.assert_array_equal(way(result).series, result.series)
+            np.testing.assert_array_equal(way(result).frame_seconds, result.frame_seconds)
+            np.testing.assert_array_equal(bvlab.replay(mesh, self.long[:3, :2], query="contacts").answers, result.answers)
+        self.assertEqual(copy.copy(named).name, "a")
+        self.assertIsInstance(copy.copy(named), Named)
+        for nothing in (bvlab.Mesh.__new__(bvlab.Mesh), bvlab.Result.__new__(bvlab.Result)):
+            for way in ways:
+                self.assertRaises(TypeError, way, nothing)
+        for bad in ((), (1, 2), (None, 3, None, None), (None,) * 5, 3, "x"):
+            with self.assertRaises((ValueError, TypeError)):
+                bvlab.Result.__new__(bvlab.Result).__setstate__(bad)
+
     def test_what_a_configuration_sets(self):
         poses = self.long[:2, :2]
-        for given in ({"volume": "obb"}, {"strategy": "raise"}, {"leaf_size": 3}, {"fan_out": 2}, {"frame": "world"}):
+        for given in ({"volume": "obb"}, {"strategy": "raise"}, {"leaf_size": 3}, {"fan_out": 2}, {"frame": "world"},
+                      {"volume": "sphere"}, {"strategy": "recursive"}, {"leaf_size": 1}, {"kernel": "gathered"},
+                      {"build": "top-down-principal"}, {"fit": "published"}):
             (name,) = given
             with self.assertRaisesRegex(ValueError, f"{name}: is set by the configuration"):
                 bvlab.replay(self.mesh, poses, configuration="recommended", **given)

@@ -44,7 +44,9 @@ class Figures(unittest.TestCase):
 
     def test_without_a_display(self):
         """A backend that needs a display may be configured; files are drawn without one."""
-        code = f"import bvlab; print(len(bvlab.record({str(RECORD)!r}))); bvlab.record('none')"
+        code = (f"import bvlab; print(len(bvlab.record({str(RECORD)!r})) * len(bvlab.figures({str(RECORD)!r}))); "
+                f"import matplotlib; matplotlib.use('svg'); bvlab.figures({str(RECORD)!r}); "
+                "assert matplotlib.get_backend() == 'svg'; bvlab.record('none')")
         environment = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
         done = subprocess.run([sys.executable, "-B", "-c", code], env={**environment, "MPLBACKEND": "TkAgg"},
                               capture_output=True, text=True, check=False)

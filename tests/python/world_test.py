@@ -73,13 +73,13 @@ class Worlds(unittest.TestCase):
         world = bvlab.World([mesh, mesh, mesh])
         at = np.array([0, 0, 0, 1, 0, 0, 0.0])
         world.move([0, 1], [at, at])
-        self.assertEqual(len(world.touching()), 0)
+        self.refuses(world, "World: there was no update yet; call update\\(\\) first")
         world.update()
         self.assertEqual(world.touching().tolist(), [[0, 1]])
-        contacts = world.contacts()
+        self.assertGreater(len(world.contacts()), 0)
+        since = "World: bodies were moved, added or removed since the last update; call update\\(\\) first"
         world.move(1, at + [9, 0, 0, 0, 0, 0, 0])
-        np.testing.assert_array_equal(world.contacts(), contacts)
-        self.assertEqual(world.touching().tolist(), [[0, 1]])
+        self.refuses(world, since)
         world.update()
         self.assertEqual(world.touching().tolist(), [])
         self.assertEqual(len(world.contacts()), 0)
@@ -88,10 +88,96 @@ class Worlds(unittest.TestCase):
         self.assertEqual(world.touching().tolist(), [[0, 2]])
         self.assertEqual(world.distances(9)[0].tolist(), [[0, 1], [0, 2], [1, 2]])
         world.remove(2)
+        self.refuses(world, since)
         world.update()
         self.assertEqual(world.touching().tolist(), [])
         self.assertEqual(world.distances(9)[0].tolist(), [[0, 1]])
         self.assertEqual(len(world), 3)
+
+    def refuses(self, world, why):
+        """All questions alike."""
+        for ask in (world.touching, world.contacts, lambda: world.distances(1), lambda: world.near, lambda: world.queried):
+            self.assertRaisesRegex(RuntimeError, f"^{why}$", ask)
+
+    def test_a_world_that_grows_and_shrinks(self):
+        """Bodies that come one after the other, some of a mesh of their own, and leave for a while."""
+        meshes = [*self.meshes, bvlab.Mesh(*scenes.torus(10, 5, 0.3))]
+        of = [0, 1, 0, 2, 1, 2, 0]
+        alone = {query: bvlab.replay([meshes[k] for k in of], self.poses, query=query).answers
+                 for query in ("touching", "contacts", "distance")}
+        for first, options in ((0, {}), (2, {}), (2, {"volume": "obb", "strategy": list(bvlab.strategies())[-1]}),
+                               (3, {"fan_out": 8, "frame": "body", "threads": 2})):
+            world, present = bvlab.World([meshes[k] for k in of[:first]], **options), set(range(first))
+            for frame, poses in enumerate(self.poses):
+                if len(world) < 7 and frame % 2:
+                    body = len(world)
+                    pose = poses[body] if frame % 4 == 1 else None
+                    self.assertEqual(world.add(meshes[of[body]], pose), body)
+                    present |= {body}
+                gone = frame % len(world) if frame > 4 else None
+                for body in range(len(world)):
+                    if body == gone:
+                        world.remove(body)
+                    else:
+                        world.move(body, poses[body])
+                world.update()
+                here = present - {gone}
+                are_here = np.isin(self.pairs, list(here)).all(axis=1)
+                wanted = (alone["touching"][frame] == 1) & are_here
+                np.testing.assert_array_equal(world.touching(), self.pairs[wanted])
+                contacts = alone["contacts"][alone["contacts"][:, 0] == frame][:, 1:]
+                np.testing.assert_array_equal(world.contacts(), contacts[np.isin(contacts[:, :2], list(here)).all(axis=1)])
+                pairs, distances = world.distances(1)
+                near = (alone["distance"][frame] <= 1) & are_here
+                np.testing.assert_array_equal(pairs, self.pairs[near])
+                np.testing.assert_allclose(distances, alone["distance"][frame][near], rtol=2**-44, atol=0)
+
+    def test_what_is_added(self):
+        mesh = bvlab.Mesh(*scenes.torus())
+        at = np.array([0, 0, 0, 1, 0, 0, 0.0])
+        for world in (bvlab.World(), bvlab.World([]), bvlab.World(mesh, objects=0)):
+            self.assertEqual(len(world), 0)
+            world.update()
+            self.assertEqual(world.touching().shape, (0, 2))
+            for bad, pose in ((None, at), (3, at), (mesh, at[:6]), (mesh, at * np.nan), (mesh, 0 * at), ([mesh], at)):
+                self.assertRaises(ValueError, world.add, bad, pose)
+            self.assertEqual(len(world), 0)
+            self.assertEqual(world.touching().shape, (0, 2))  # nothing has changed
+            self.assertRaises(IndexError, world.move, 0, at)
+            self.assertEqual([world.add(mesh, at), world.add(bvlab.Mesh(mesh)), world.add(mesh, pose=at + 0.01)], [0, 1, 2])
+            self.refuses(world, "World: bodies were .*")
+            world.update()
+            self.assertEqual(world.touching().tolist(), [[0, 2]])
+            world.remove(0)
+            world.move(1, at)
+            world.update()
+            self.assertEqual(world.touching().tolist(), [[1, 2]])
+            self.assertEqual(world.distances(1)[0].tolist(), [[1, 2]])
+            self.assertEqual(world.add(mesh), 3)
+        self.assertRaisesRegex(ValueError, "meshes: at least one", bvlab.World, objects=2)
+        kept = bvlab.World()
+        kept.add(bvlab.Mesh(*scenes.torus()), at)
+        kept.add(bvlab.Mesh(*scenes.torus()), at)
+        kept.update()
+        self.assertGreater(len(kept.contacts()), 0)
+
+    def test_many_come_and_go(self):
+        """A thousand bodies of two meshes, of which a few are there at a time: answers are those of who is there."""
+        meshes, random = [bvlab.Mesh(*scenes.torus(6, 4)), bvlab.Mesh(*scenes.torus(5, 4))], np.random.default_rng(3)
+        world, there = bvlab.World(), {}
+        for step in range(60):
+            for _ in range(16):
+                pose = np.concatenate([random.uniform(-4, 4, 3), random.normal(size=4)])
+                there[world.add(meshes[step % 2], pose)] = meshes[step % 2], pose
+            for body in random.choice(list(there), min(len(there), 18 if step > 2 else 0), replace=False):
+                world.remove(body)
+                del there[int(body)]
+            world.update()
+            if not there:
+                continue
+            bodies = sorted(there)
+            wanted = bvlab.replay([there[b][0] for b in bodies], np.stack([there[b][1] for b in bodies])[None]).answers[0]
+            np.testing.assert_array_equal(world.touching(), np.array(bodies)[bvlab.pairs_of(len(bodies))[wanted == 1]])
 
     def test_meshes_and_arrays_may_be_freed(self):
         vertices, faces = scenes.torus()

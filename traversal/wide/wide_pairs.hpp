@@ -37,14 +37,17 @@ class WidePairs {
   explicit WidePairs(std::span<const WideShape<V, F, Kernel>> shapes, Memory memory = {})
       : memory_(std::move(memory)) {
     bodies_.reserve(shapes.size());
-    for (const auto& [mesh, hierarchy] : shapes) {
-      bodies_.emplace_back(*mesh, *hierarchy);
-      meshes_.push_back(mesh);
-      culling_.add_body(hierarchy->supports());
-      const auto& sphere = hierarchy->sphere();
-      memory_.add_body({sphere.centre, sphere.radius, hierarchy->reach(), hierarchy->size(), 0,
-                        hierarchy->origin()});
-    }
+    for (const auto& shape : shapes) add(shape);
+  }
+
+  void add(const WideShape<V, F, Kernel>& shape) {
+    const auto& [mesh, hierarchy] = shape;
+    bodies_.emplace_back(*mesh, *hierarchy);
+    meshes_.push_back(mesh);
+    culling_.add_body(hierarchy->supports());
+    const auto& sphere = hierarchy->sphere();
+    memory_.add_body({sphere.centre, sphere.radius, hierarchy->reach(), hierarchy->size(), 0,
+                      hierarchy->origin()});
   }
 
   std::size_t size() const { return bodies_.size(); }

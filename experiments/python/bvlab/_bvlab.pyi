@@ -54,22 +54,23 @@ class Result:
 class World:
     def __init__(
         self,
-        meshes: Meshes,
+        meshes: Meshes = (),
         *,
-        objects: int = 0,
+        objects: int | None = None,
         volume: str | None = None,
         strategy: str | None = None,
         fan_out: int | None = None,
         frame: str | None = None,
         kernel: str | None = None,
         configuration: str | None = None,
-        build: str = ...,
-        leaf_size: int = ...,
-        fit: str = ...,
+        build: str | None = None,
+        leaf_size: int | None = None,
+        fit: str | None = None,
         precision: str = ...,
         threads: int = 1,
     ) -> None: ...
     def move(self, object: int | ArrayLike, pose: ArrayLike) -> None: ...
+    def add(self, mesh: Mesh | HasFaces, pose: ArrayLike | None = None) -> int: ...
     def remove(self, object: int) -> None: ...
     def update(self) -> None: ...
     def timed_steps(self, objects: ArrayLike, poses: ArrayLike) -> NDArray[np.float64]: ...
@@ -88,16 +89,16 @@ def replay(
     meshes: Meshes,
     poses: ArrayLike,
     *,
-    volume: str = ...,
-    strategy: str = ...,
+    volume: str | None = None,
+    strategy: str | None = None,
     query: str = ...,
     fan_out: int | None = None,
     frame: str | None = None,
-    kernel: str = ...,
+    kernel: str | None = None,
     configuration: str | None = None,
-    build: str = ...,
-    leaf_size: int = ...,
-    fit: str = ...,
+    build: str | None = None,
+    leaf_size: int | None = None,
+    fit: str | None = None,
     precision: str = ...,
     relative_error: float = ...,
     count: bool = False,
@@ -135,8 +136,8 @@ def kinds() -> list[str]: ...
 def _real_array(given: ArrayLike, name: str, axes: list[tuple[str, int]]) -> NDArray[np.float64]: ...
 def run_text(
     text: str,
-    file: str,
-    record: str,
+    file: bytes,
+    record: bytes,
     counts: bool,
     threads: int,
     progress: Callable[[int, int], object] | None,

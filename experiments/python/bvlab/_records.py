@@ -63,21 +63,14 @@ def figures(path: str | os.PathLike, **figure: str | list[str]) -> dict[str, mat
 def _drawing():
     """Imports and uses bvlab_plots with its own matplotlib settings; what it refuses becomes a ValueError."""
     import matplotlib
-    backend, settings = matplotlib.get_backend(), dict(matplotlib.rcParams)
+    settings = dict(matplotlib.rcParams)
     with matplotlib.rc_context(_looks):
+        from bvlab_plots import style  # noqa: F401  sets them
+        from bvlab_plots.refused import Refused
+        if not _looks:
+            _looks.update({key: value for key, value in matplotlib.rcParams.items()
+                           if settings.get(key) != value and key != "backend"})
         try:
-            from bvlab_plots import style  # noqa: F401  sets them
-            from bvlab_plots.refused import Refused
-            if not _looks:
-                _looks.update({key: value for key, value in matplotlib.rcParams.items()
-                               if settings.get(key) != value and key != "backend"})
-            try:
-                yield
-            except Refused as fault:
-                raise ValueError(str(fault)) from None
-        finally:
-            if matplotlib.get_backend() != backend:
-                try:
-                    matplotlib.use(backend)
-                except ImportError:  # it needs a display, and there is none
-                    matplotlib.rcParams["backend"] = backend
+            yield
+        except Refused as fault:
+            raise ValueError(str(fault)) from None

@@ -46,7 +46,9 @@ def run(definition: dict | str | os.PathLike, record: str | os.PathLike | None =
     else:
         show = progress
     try:
-        return Path(run_text(text, name, "" if record is None else os.fspath(record), counts, threads, show))
+        # As bytes: a path may have some that are no text.
+        folder = b"" if record is None else os.fsencode(record)
+        return Path(run_text(text, os.fsencode(name), folder, counts, threads, show))
     finally:
         if isinstance(show, Bar):
             show.close()

@@ -2,6 +2,7 @@
 """Input that is degenerate and legal: taken without a word, answered in full, in arrays of the
 promised type, shape and order."""
 
+import csv
 import json
 import os
 import shutil
@@ -165,6 +166,28 @@ class Replay(ProgramTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = (self.folder / "record" / "commas.csv").read_text().splitlines()
         self.assertEqual(len(rows), 3)
+
+    def test_lists_of_files_in_definitions(self):
+        """With blanks after their commas, or as a list: the same files, in parameters, in axes and in values."""
+        self.write("a.off", TETRAHEDRON)
+        self.write("b.off", TETRAHEDRON.replace("1", "2"))
+        trace = poses(3, 3, 1.5)
+        self.write("trace.npy", trace)
+        rows = {}
+        for nth, mesh in enumerate(('"./a.off,./b.off"', '"./a.off, ./b.off"', '" ./a.off ,\t./b.off "', '["./a.off", "./b.off"]')):
+            for where in (f"[parameters]\nmesh = {mesh}\n", f'[[axis]]\nname = "mesh"\nvalues = [{mesh}]\n',
+                          f'[[axis]]\nname = "way"\n[[axis.value]]\nname = "a"\nmesh = {mesh}\n'):
+                more = "" if where.startswith("[par") else "[parameters]\n"
+                self.write("x.toml", 'name = "x"\n' + (where + more if not more else more) +
+                           'scene = "recorded"\ntrace = "trace.npy"\nframes = 3\nobjects = 3\npeer = "none"\n' + (where if more else ""))
+                record = f"record-{nth}-{len(rows)}"
+                done = self.run_bvlab("run", "x.toml", "--record", record)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                lines = (self.folder / record / "x.csv").read_text().splitlines()
+                row = dict(zip(lines[0].split(","), next(csv.reader(lines[1:]))))
+                rows[record] = row["polygons"], row["hits"], row["pairs"], row["peer"]
+        self.assertEqual(len(set(rows.values())), 1, rows)
+        self.assertEqual(self.replay(["a.off", "b.off"], trace, "touching").sum(), int(next(iter(rows.values()))[1]))
 
     def test_skipped_work_is_told(self):
         """Of what a strategy need not do, by counting what it did and what recursion does."""

@@ -3,11 +3,14 @@
 
 import csv
 import json
+import signal
+import subprocess
+import time
 import unittest
 
 import numpy as np
 
-from program import ProgramTest, poses
+from program import BVLAB, ProgramTest, poses
 
 KEYS = {"n_v", "n_p", "seconds"}
 STRATEGIES = ["recursive", "recursive-both", "witness", "separation-list", "deferred", "by-cost", "raise", "margins", "adaptive"]
@@ -147,6 +150,28 @@ class Predict(ProgramTest):
         self.assertEqual((told["fastest"], told["windows"]), (None, 3))
         self.assertIn("unknown: 3 of the 4 windows that are needed", told["verdict"])
         self.assertEqual(len(told["candidates"].split(", ")), len(STRATEGIES))
+
+    def test_nobody_is_named_where_there_is_nothing_to_tell(self):
+        for frames, objects, why in ((0, 3, "there are no frames"), (1, 3, "of one frame, every strategy starts from the roots"),
+                                     (5, 1, "there are no pairs of bodies"), (5, 0, "there are no pairs of bodies")):
+            self.write("trace.npy", wandering(frames, objects, 0.01, 5))
+            told = self.predicted("contacts")
+            self.assertEqual((told["fastest"], told["verdict"]), (None, f"unknown: {why}"), (frames, objects))
+            self.assertEqual(len(told["candidates"].split(", ")), len(STRATEGIES))
+        self.write("trace.npy", wandering(1, 3, 0.01, 5))
+        self.assertEqual(self.predicted("contacts")["strategies"]["margins"]["n_p"], self.counted("margins", "contacts")["n_p"])
+
+    def test_ctrl_c_ends_it(self):
+        self.write("trace.npy", wandering(100000, 6, 0.001, 5))
+        with subprocess.Popen([BVLAB, "predict", "trace.npy", "--mesh", self.mesh, "--json", "never.json"], cwd=self.folder,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as running:
+            time.sleep(2)
+            self.assertIsNone(running.poll())
+            running.send_signal(signal.SIGINT)
+            start = time.monotonic()
+            self.assertNotEqual(running.wait(timeout=10), 0)
+            self.assertLess(time.monotonic() - start, 1)  # a tenth of a second, were nothing else running
+        self.assertFalse((self.folder / "never.json").exists())
 
     def test_who_is_named_is_told_from_the_next(self):
         """Nothing moves: whatever keeps something does far better than what does not, and is told from it."""

@@ -339,6 +339,7 @@ class Values(ProgramTest):
         for volume in names_of("volumes"):
             if volume in ("sphere", "aabb") or volume.startswith("kdop"):
                 self.refuse(*self.replay, "--volume", volume, "--fit", "tight", mentions=["--fit tight", volume])
+                self.refuse("predict", *self.replay[1:], "--volume", volume, "--fit", "tight", mentions=["--fit tight", volume])
 
     def test_whole_numbers(self):
         wrong = ("0", "-1", "-4294967295", "-18446744073709551615", *NOT_NUMBERS)
@@ -466,6 +467,10 @@ class Definitions(ProgramTest):
         self.refuse_definition(axis("name = 'seed'\n"), "line 7", "values")
         self.refuse_definition(axis("name = 'seed'\nvalues = []\n"), "seed", "no values")
         self.refuse_definition(axis("name = 'seed'\nvalues = [[1]]\n"), "line 9", "seed")
+        for meshes, mention in (("[[]]", "the list is empty"), ("[['a.off', 3]]", "a mesh in a list must be a string"),
+                                ("[['a.off,b.off']]", "without commas"), ("[['a.off', ' ']]", "one mesh"),
+                                ("[['a.off', 'b.off'], 'a.off,b.off']", "twice")):
+            self.refuse_definition(axis(f"name = 'mesh'\nvalues = {meshes}\n"), "line 9", mention)
         self.refuse_definition(axis("name = 'frob'\nvalues = [1]\n"), "line 8", "frob", "seed")
         self.refuse_definition(axis("name = 'seed'\nvalues = [1, 1]\n"), "line 9", "seed", "twice")
         self.refuse_definition(axis("name = 'seed'\nvalues = [1]\n") + "[[axis]]\nname = 'seed'\n"
@@ -475,7 +480,7 @@ class Definitions(ProgramTest):
         way = "name = 'way'\n[[axis.value]]\nname = 'a'\nseed = 1\n"
         for other in ("name = 'seed'\nvalues = [2]\n", way.replace("'way'", "'road'")):
             self.refuse_definition(axis(way) + "[[axis]]\n" + other, "line 12", "sets 'seed'", "'way'")
-        for name in ("time_ns", "differing", "repetition", "pairs", "kept", "n_v"):
+        for name in ("time_ns", "differing", "repetition", "pairs", "kept", "n_v", "later_ns", "later_pairs", "survival"):
             self.refuse_definition(axis(way.replace("way", name)), f"axis '{name}'", "a column of that name")
         self.refuse_definition(axis(way.replace("way", "")), "line 8", "name is empty")
         self.refuse_definition(axis(way.replace("'way'", '"a\\nb"')), "line 8", "control character")
