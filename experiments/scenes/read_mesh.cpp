@@ -13,6 +13,11 @@
 namespace bvlab {
 namespace {
 
+void require_scale(const ReadOptions& options) {
+  if (!(options.scale > 0) || !std::isfinite(options.scale))
+    throw Unusable("scale", "must be finite and above 0");
+}
+
 TriangleMesh checked(TriangleMesh mesh, const std::string& name, const ReadOptions& options) {
   if (mesh.triangles.empty()) throw Unusable(name, "has no triangles");
   return scaled_mesh(std::move(mesh), name, options);
@@ -21,6 +26,7 @@ TriangleMesh checked(TriangleMesh mesh, const std::string& name, const ReadOptio
 }  // namespace
 
 TriangleMesh scaled_mesh(TriangleMesh mesh, const std::string& name, const ReadOptions& options) {
+  require_scale(options);
   if (options.scale == 1) return mesh;
   for (auto& vertex : mesh.vertices) {
     vertex *= options.scale;
@@ -37,8 +43,7 @@ ParsedMesh parsed_mesh(std::string_view bytes, const std::string& name, const Me
 }
 
 std::string bytes_of(const std::filesystem::path& path, const ReadOptions& options) {
-  if (!(options.scale > 0) || !std::isfinite(options.scale))
-    throw Unusable("scale", "must be finite and above 0");
+  require_scale(options);
   std::string bytes = read_whole(path, options.on_signal);
   if (bytes.empty()) throw Unusable(path.string(), "is empty");
   return bytes;
