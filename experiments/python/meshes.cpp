@@ -231,8 +231,9 @@ are legal. ValueError: another shape or type, NaN, infinity, an index out of ran
       });
   module.def("_places_of", &places_of, py::arg("meshes"),
              "The address from which each mesh's vertices are read, for tests.");
-  module.def("read", &read, py::arg("path"), py::kw_only(), py::arg("scale") = 1.0,
-             R"(The mesh in a file: OFF, OBJ, PLY and STL to the last digit, others as assimp reads them.
+  module.def(
+      "read", &read, py::arg("path"), py::kw_only(), py::arg("scale") = 1.0,
+      R"(The mesh in a file: OFF, OBJ, PLY and STL to the last digit, others as assimp reads them.
 
 The transformations of a scene's nodes are applied. Coordinates are used as they stand, whatever
 unit and axes the file names, and multiplied by `scale`.

@@ -11,8 +11,8 @@
 #include "experiments/scenes/convex_hull.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/read_mesh.hpp"
-#include "experiments/scenes/text_scanner.hpp"
 #include "experiments/scenes/simplify_mesh.hpp"
+#include "experiments/scenes/text_scanner.hpp"
 
 namespace bvlab {
 namespace {

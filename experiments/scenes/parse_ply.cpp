@@ -24,13 +24,12 @@ std::size_t size_of(Type type) {
 
 std::optional<Type> type_of(std::string_view word) {
   constexpr std::pair<std::string_view, Type> names[] = {
-      {"char", Type::int8},      {"int8", Type::int8},       {"uchar", Type::uint8},
-      {"uint8", Type::uint8},    {"short", Type::int16},     {"int16", Type::int16},
-      {"ushort", Type::uint16},  {"uint16", Type::uint16},   {"int", Type::int32},
-      {"int32", Type::int32},    {"uint", Type::uint32},     {"uint32", Type::uint32},
-      {"int64", Type::int64},    {"uint64", Type::uint64},
-      {"float", Type::float32},  {"float32", Type::float32}, {"double", Type::float64},
-      {"float64", Type::float64}};
+      {"char", Type::int8},       {"int8", Type::int8},      {"uchar", Type::uint8},
+      {"uint8", Type::uint8},     {"short", Type::int16},    {"int16", Type::int16},
+      {"ushort", Type::uint16},   {"uint16", Type::uint16},  {"int", Type::int32},
+      {"int32", Type::int32},     {"uint", Type::uint32},    {"uint32", Type::uint32},
+      {"int64", Type::int64},     {"uint64", Type::uint64},  {"float", Type::float32},
+      {"float32", Type::float32}, {"double", Type::float64}, {"float64", Type::float64}};
   for (const auto& [name, type] : names)
     if (name == word) return type;
   return std::nullopt;
@@ -261,8 +260,7 @@ class Reader {
     throw Unusable(name_, place(element, number) + ": " + what);
   }
   std::string place(const PlyElement& element, std::uint64_t number) {
-    return values_.is_text() ? values_.text().place()
-                             : element.name + " " + std::to_string(number);
+    return values_.is_text() ? values_.text().place() : element.name + " " + std::to_string(number);
   }
 
   /// Before anything is read or room is made for it: whether the file is as long as its header
@@ -282,7 +280,8 @@ class Reader {
   void check_end(const PlyElement& element) {
     std::uint64_t held = element.count;
     if (values_.is_text()) {
-      if (!values_.text().at_line_end()) values_.text().fault("more values than the header promises");
+      if (!values_.text().at_line_end())
+        values_.text().fault("more values than the header promises");
       held += values_.text().lines_left();
     } else {
       const std::size_t left = values_.bytes_left();
@@ -317,8 +316,7 @@ class Reader {
     begin(element, number);
     Vec3<double> point = Vec3<double>::Zero();
     const bool is_vertex = element.name == "vertex", is_strip = element.name == "tristrips";
-    const Property* corners =
-        is_strip || element.name == "face" ? corner_list(element) : nullptr;
+    const Property* corners = is_strip || element.name == "face" ? corner_list(element) : nullptr;
     for (const Property& property : element.properties) {
       const int axis = is_vertex ? property.axis() : 3;
       if (axis < 3) {
@@ -329,8 +327,10 @@ class Reader {
       } else if (property.count) {
         read_list(element, number, property, &property == corners);
         if (&property != corners) continue;
-        if (is_strip) append_strip(element, number);
-        else append_face(element, number);
+        if (is_strip)
+          append_strip(element, number);
+        else
+          append_face(element, number);
       } else if (!values_.pass(property.type, 1)) {
         truncated(element, number);
       }
@@ -355,8 +355,8 @@ class Reader {
     for (; left > 0; --left) {
       const auto entry = values_.next(property.type);
       if (!entry) truncated(element, number);
-      const bool is_vertex = *entry >= 0 && *entry < static_cast<double>(vertices_) &&
-                             *entry == std::floor(*entry);
+      const bool is_vertex =
+          *entry >= 0 && *entry < static_cast<double>(vertices_) && *entry == std::floor(*entry);
       if (!is_vertex && !(element.name == "tristrips" && ends_strip(*entry, property.type))) {
         char digits[32];
         std::snprintf(digits, sizeof digits, "%.17g", *entry);
@@ -371,7 +371,8 @@ class Reader {
   /// -1, also where it was written as a type without sign.
   static bool ends_strip(double entry, Type type) {
     return entry == -1 || (type == Type::uint8 && entry == 0xff) ||
-           (type == Type::uint16 && entry == 0xffff) || (type == Type::uint32 && entry == 0xffffffff);
+           (type == Type::uint16 && entry == 0xffff) ||
+           (type == Type::uint32 && entry == 0xffffffff);
   }
 
   void append_face(const PlyElement& element, std::uint64_t number) {
@@ -417,11 +418,10 @@ class Reader {
 
 /// What follows the line "end_header": where lines end with CR alone, a LF after it is data.
 std::string_view after_header(std::string_view bytes, const TextScanner& scanner) {
-  const std::string_view rest = scanner.rest();
-  const auto at = rest.empty() ? bytes.size() : static_cast<std::size_t>(rest.data() - bytes.data());
+  const auto at = static_cast<std::size_t>(scanner.rest().data() - bytes.data());
   const std::size_t first_end = std::min(bytes.find_first_of("\r\n"), bytes.size());
-  const bool ends_with_cr = bytes.substr(first_end).starts_with('\r') &&
-                            !bytes.substr(first_end).starts_with("\r\n");
+  const bool ends_with_cr =
+      bytes.substr(first_end).starts_with('\r') && !bytes.substr(first_end).starts_with("\r\n");
   return bytes.substr(ends_with_cr && at > 0 && bytes[at - 1] == '\n' ? at - 1 : at);
 }
 
@@ -438,7 +438,8 @@ ParsedMesh parse_ply(std::string_view bytes, const std::string& name) {
   for (const PlyElement& element : header.elements) {
     if ((element.name == "face" || element.name == "tristrips") && element.count > 0 &&
         !corner_list(element))
-      throw Unusable(name, "element " + element.name + " has no list vertex_indices or vertex_index");
+      throw Unusable(name,
+                     "element " + element.name + " has no list vertex_indices or vertex_index");
     if (element.name != "vertex") continue;
     if (std::exchange(vertices, element.count) != 0) throw Unusable(name, "two elements vertex");
     for (const Property& property : element.properties) has_position[property.axis()] = true;

@@ -45,8 +45,8 @@ std::vector<std::size_t> places_of_records(std::string_view bytes, std::size_t p
   }
   if (with_attributes.size() == promised && at == bytes.size()) return with_attributes;
   if (held > promised)
-    throw Unusable(name, "holds " + std::to_string(held) + " triangles, where the header promises " +
-                             std::to_string(promised));
+    throw Unusable(name, "holds " + std::to_string(held) +
+                             " triangles, where the header promises " + std::to_string(promised));
   const std::size_t beyond = bytes.size() - header_bytes - promised * record_bytes;
   if (with_attributes.size() == promised && with_attributes != plain && at <= bytes.size())
     throw Unusable(name, "holds " + std::to_string(beyond) + " bytes beyond " +

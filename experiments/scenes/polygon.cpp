@@ -129,7 +129,9 @@ class Ring {
     for (int k = 0; k < 3; ++k) {
       const auto a = triangle[k], b = triangle[(k + 1) % 3], c = triangle[(k + 2) % 3];
       if (!is_same(other, a)) continue;
-      const auto enters = [&](std::uint32_t to) { return turn(a, b, to) > 0 && turn(a, c, to) < 0; };
+      const auto enters = [&](std::uint32_t to) {
+        return turn(a, b, to) > 0 && turn(a, c, to) < 0;
+      };
       return enters(next_[other]) || enters(previous_[other]);
     }
     const auto [a, b, c] = triangle;

@@ -2,8 +2,8 @@
 /// Meshes from files, as they stand: nothing moved, scaled, merged, dropped or put in order.
 ///
 /// OFF, OBJ, PLY and STL are read here, coordinates to the last digit of float64, in UTF-8 or
-/// UTF-16 and with any ends of lines. Whatever else the installed assimp knows (glTF, DAE, 3MF, ...;
-/// WRL only where it has a reader of that) is read by assimp, whose coordinates are float32.
+/// UTF-16 and with any ends of lines. Whatever else the installed assimp knows (glTF, DAE, 3MF,
+/// ...; WRL only where it has a reader of that) is read by assimp, whose coordinates are float32.
 ///
 /// Applied are the transformations of a scene's nodes, in float64; its meshes follow each other in
 /// the order of the nodes, parents first. Not applied are the unit and the axes that a file says
@@ -49,8 +49,8 @@ TriangleMesh read_mesh(const std::filesystem::path& path, const ReadOptions& opt
 TriangleMesh parse_mesh(std::string_view bytes, const std::string& name,
                         const ReadOptions& options = {});
 
-/// A part of a file: a node of a scene (glTF, DAE, 3MF, ...) with all its meshes, an object or group
-/// of an OBJ, a solid of an STL.
+/// A part of a file: a node of a scene (glTF, DAE, 3MF, ...) with all its meshes, an object or
+/// group of an OBJ, a solid of an STL.
 struct MeshPart {
   std::string name;                          ///< empty where the file has none
   std::shared_ptr<const TriangleMesh> mesh;  ///< in the part's frame; nodes alike share one

@@ -38,8 +38,8 @@ Vec3<double> image(const Transformation& t, const Vec3<double>& v) {
 Transformation own_root(const Transformation& root, std::string_view importer) {
   // All that their roots have is what was added.
   for (const std::string_view name :
-       {"Collada", "Discreet 3DS", "Autodesk FBX", "Drawing Interchange Format", "ASE ",
-        "Cinema4D", "Inter-Quake", "Quake", "Doom 3", "Return To Castle Wolfenstein"})
+       {"Collada", "Discreet 3DS", "Autodesk FBX", "Drawing Interchange Format", "ASE ", "Cinema4D",
+        "Inter-Quake", "Quake", "Doom 3", "Return To Castle Wolfenstein"})
     if (importer.starts_with(name)) return identity;
   if (!importer.starts_with("Industry Foundation Classes")) return root;
   // Metres, and a quarter of a turn about x, before the file's own placement.
@@ -67,8 +67,8 @@ class Gatherer {
     for (unsigned i = 0; node.mMeshes && i < node.mNumMeshes; ++i) {
       const unsigned number = node.mMeshes[i];
       if (number >= scene_.mNumMeshes)
-        throw Unusable(name_, "node '" + found.name + "': mesh " + std::to_string(number) +
-                                  " does not exist");
+        throw Unusable(
+            name_, "node '" + found.name + "': mesh " + std::to_string(number) + " does not exist");
       const aiMesh* mesh = scene_.mMeshes[number];
       // Some of assimp's readers leave arrays out where they found nothing to put in.
       if (!mesh || !mesh->mVertices || !mesh->mFaces) continue;

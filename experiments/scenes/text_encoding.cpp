@@ -31,8 +31,7 @@ void append_utf8(std::string& text, std::uint32_t code) {
 enum class HighByte : std::size_t { first = 0, second = 1 };
 
 std::string from_utf16(std::string_view bytes, HighByte high, const std::string& name) {
-  if (bytes.size() % 2 != 0)
-    throw Unusable(name, "truncated: ends within a character of UTF-16");
+  if (bytes.size() % 2 != 0) throw Unusable(name, "truncated: ends within a character of UTF-16");
   const auto unit = [&](std::size_t at) {
     const auto h = static_cast<std::size_t>(high);
     return std::uint32_t{static_cast<unsigned char>(bytes[at + h])} << 8 |
@@ -42,8 +41,8 @@ std::string from_utf16(std::string_view bytes, HighByte high, const std::string&
   text.reserve(bytes.size() / 2);
   for (std::size_t at = 0; at < bytes.size(); at += 2) {
     std::uint32_t code = unit(at);
-    const bool is_pair = (code & 0xfc00) == 0xd800 && at + 2 < bytes.size() &&
-                         (unit(at + 2) & 0xfc00) == 0xdc00;
+    const bool is_pair =
+        (code & 0xfc00) == 0xd800 && at + 2 < bytes.size() && (unit(at + 2) & 0xfc00) == 0xdc00;
     if (is_pair) code = 0x10000 + ((code & 0x3ff) << 10) + (unit(at += 2) & 0x3ff);
     append_utf8(text, code);
   }

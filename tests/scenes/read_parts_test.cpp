@@ -44,8 +44,8 @@ TEST(ReadParts, AxesAndUnitsAreNotApplied) {
       EXPECT_EQ(lo, Vec3<double>(0, 0, 0)) << asset;
       EXPECT_EQ(hi, Vec3<double>(1, 2, 3)) << asset;
       // What the file's nodes do is.
-      const auto moved = parse_mesh(
-          dae(asset, "<translate>10 20 30</translate><scale>2 2 2</scale>"), "a.dae");
+      const auto moved =
+          parse_mesh(dae(asset, "<translate>10 20 30</translate><scale>2 2 2</scale>"), "a.dae");
       EXPECT_EQ(box_of(moved).first, Vec3<double>(10, 20, 30)) << asset;
       EXPECT_EQ(box_of(moved).second, Vec3<double>(12, 24, 36)) << asset;
     }
@@ -54,7 +54,8 @@ TEST(ReadParts, AxesAndUnitsAreNotApplied) {
 /// glTF with a triangle in its buffer; `nodes` show it.
 std::string gltf(const std::string& roots, const std::string& nodes) {
   return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": )" + roots +
-         R"(}], "nodes": )" + nodes + R"(,
+         R"(}], "nodes": )" + nodes +
+         R"(,
     "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
     "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
     "bufferViews": [{"buffer": 0, "byteLength": 36}],
@@ -70,9 +71,9 @@ void expect_whole(const std::vector<MeshPart>& parts, const TriangleMesh& mesh) 
       ASSERT_LT(triangle, mesh.triangles.size());
       const auto posed = part.pose(part.mesh->corners(i)), whole = mesh.corners(triangle);
       for (int k = 0; k < 3; ++k) EXPECT_LT((posed[k] - whole[k]).norm(), 1e-5) << part.name;
-      EXPECT_LT((part.pose.rotation.transpose() * part.pose.rotation - Mat3<double>::Identity())
-                    .norm(),
-                1e-14);
+      EXPECT_LT(
+          (part.pose.rotation.transpose() * part.pose.rotation - Mat3<double>::Identity()).norm(),
+          1e-14);
       EXPECT_GT(part.pose.rotation.determinant(), 0);
     }
   EXPECT_EQ(triangle, mesh.triangles.size());
@@ -100,8 +101,8 @@ TEST(ReadParts, NodesOfAScene) {
   EXPECT_EQ(smaller[1].pose.translation, Vec3<double>(5, 0, 0));
   EXPECT_EQ(smaller[0].mesh, smaller[1].mesh);
   expect_whole(smaller, parse_mesh(text, "a.gltf", scaled));
-  const auto of_dae = parse_parts(dae("<up_axis>Z_UP</up_axis>", "<translate>1 2 3</translate>"),
-                                  "a.dae");
+  const auto of_dae =
+      parse_parts(dae("<up_axis>Z_UP</up_axis>", "<translate>1 2 3</translate>"), "a.dae");
   ASSERT_EQ(of_dae.size(), 1u);
   EXPECT_EQ(of_dae[0].name, "part");
   EXPECT_EQ(of_dae[0].pose.translation, Vec3<double>(1, 2, 3));
@@ -126,10 +127,10 @@ TEST(ReadParts, ObjectsGroupsAndSolids) {
   EXPECT_EQ(objects[0].name, "a/x");
   EXPECT_EQ(objects[2].name, "b");
   const std::string facet =
-      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
-  const auto solids = parse_parts("solid a b\n" + facet + "endsolid a b\nsolid c\n" + facet + facet +
-                                      "endsolid c\n",
-                                  "a.stl");
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+      "0\nendloop\nendfacet\n";
+  const auto solids = parse_parts(
+      "solid a b\n" + facet + "endsolid a b\nsolid c\n" + facet + facet + "endsolid c\n", "a.stl");
   ASSERT_EQ(solids.size(), 2u);
   EXPECT_EQ(solids[0].name, "a b");
   EXPECT_EQ(solids[1].mesh->triangles.size(), 2u);

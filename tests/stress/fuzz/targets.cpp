@@ -144,7 +144,8 @@ std::size_t mesh_and_parts(std::string_view bytes, const std::string& name) {
     std::size_t in_parts = 0;
     for (const MeshPart& part : parse_parts(bytes, name, quiet)) {
       check(*part.mesh);
-      demand(part.pose.translation.allFinite() && part.pose.rotation.allFinite(), "poses are finite");
+      demand(part.pose.translation.allFinite() && part.pose.rotation.allFinite(),
+             "poses are finite");
       in_parts += part.mesh->triangles.size();
     }
     demand(in_parts == mesh.triangles.size(), "parts have the triangles of the mesh");
