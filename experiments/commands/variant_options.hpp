@@ -23,7 +23,10 @@ inline void add_scale_option(CLI::App& command, double& scale) {
 
 /// --mesh and --scale.
 inline void add_mesh_options(CLI::App& command, std::vector<std::string>& files, double& scale) {
-  command.add_option("--mesh", files, "mesh file; object i uses mesh i mod their number")
+  command
+      .add_option("--mesh", files,
+                  "mesh file; object i uses mesh i mod their number; the transformations of a "
+                  "scene's nodes are applied, its unit and axes are not")
       ->required();
   add_scale_option(command, scale);
 }

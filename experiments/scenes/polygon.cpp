@@ -148,11 +148,12 @@ class Ring {
 bool cut_ears(TriangleMesh& mesh, Corners corners, Projection projection) {
   Ring ring(mesh, corners, projection);
   bool is_covered_once = true;
+  int patience = 64;  // with outlines that have no ear; after that any cut will do
   std::uint32_t at = 1;
   for (std::size_t left = corners.size(); left > 2; --left) {
     std::size_t looked_at = 0;
-    while (looked_at < left && !ring.is_ear(at)) at = ring.next(at), ++looked_at;
-    if (looked_at == left) at = ring.flattest(at);
+    while (patience > 0 && looked_at < left && !ring.is_ear(at)) at = ring.next(at), ++looked_at;
+    if (looked_at == left) at = ring.flattest(at), --patience;
     is_covered_once = is_covered_once && ring.turn(at) >= 0;
     mesh.triangles.push_back({corners[ring.previous(at)], corners[at], corners[ring.next(at)]});
     const std::uint32_t after = ring.next(at);
@@ -206,7 +207,7 @@ class LeastArea {
 }  // namespace
 
 void append_polygon(TriangleMesh& mesh, Corners corners) {
-  constexpr std::size_t most_crossing = 128;
+  constexpr std::size_t most_crossing = 64;
   if (corners.size() < 3) return;
   if (corners.size() == 3) {
     mesh.triangles.push_back({corners[0], corners[1], corners[2]});

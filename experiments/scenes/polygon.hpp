@@ -16,7 +16,7 @@ namespace bvlab {
 /// flat and does not cross itself is covered once: it may be concave, touch itself, have corners
 /// on a straight line, repeated ones, spikes, and holes that are joined to its outline by an edge
 /// there and back. What is cut off spikes and straight lines are triangles without area. One that
-/// crosses itself has no such cut: up to 128 corners, the one of least area is taken.
+/// crosses itself has no such cut: up to 64 corners, the one of least area is taken.
 ///
 /// Time n for a convex polygon, n^2 r for one with r concave corners, n^3 for one that crosses
 /// itself. Signs are exact.
