@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "hierarchies/geometry/predicates.hpp"
 
@@ -126,7 +127,7 @@ class Ring {
   /// Whether the outline enters the triangle at another corner. Where that one stands on one of the
   /// triangle's corners, the edges at it tell.
   bool reaches_into(std::uint32_t other, const std::array<std::uint32_t, 3>& triangle) const {
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
       const auto a = triangle[k], b = triangle[(k + 1) % 3], c = triangle[(k + 2) % 3];
       if (!is_same(other, a)) continue;
       const auto enters = [&](std::uint32_t to) {
