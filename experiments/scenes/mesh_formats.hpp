@@ -63,7 +63,7 @@ struct SceneNode {
 };
 
 /// A scene as assimp reads it: nodes with meshes, parents first.
-struct Scene {
+struct SceneGraph {
   std::vector<SceneNode> nodes;
   std::vector<TriangleMesh> meshes;  ///< in their nodes' frames; those that no node has are empty
 
@@ -78,9 +78,9 @@ struct Scene {
 enum class Conversion { none, of_assimp };
 
 /// By assimp, from a file (which may refer to others beside it) and from memory.
-Scene read_with_assimp(const std::filesystem::path& path);
-Scene parse_with_assimp(std::string_view bytes, const std::string& name,
-                        Conversion conversion = Conversion::none);
+SceneGraph read_with_assimp(const std::filesystem::path& path);
+SceneGraph parse_with_assimp(std::string_view bytes, const std::string& name,
+                             Conversion conversion = Conversion::none);
 
 /// The parser of a file of that name; nullptr where assimp is to read it.
 const MeshFormat* own_format(const std::string& name);
@@ -90,7 +90,7 @@ ParsedMesh parsed_mesh(std::string_view bytes, const std::string& name, const Me
 /// The bytes of a file, of which there are some. Checks the options, too.
 std::string bytes_of(const std::filesystem::path& path, const ReadOptions& options);
 /// The scene in a file whose bytes are these.
-Scene scene_of(const std::filesystem::path& path, std::string_view bytes);
+SceneGraph scene_of(const std::filesystem::path& path, std::string_view bytes);
 /// The mesh multiplied by the options' scale.
 TriangleMesh scaled_mesh(TriangleMesh mesh, const std::string& name, const ReadOptions& options);
 

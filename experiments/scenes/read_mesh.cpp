@@ -49,7 +49,7 @@ std::string bytes_of(const std::filesystem::path& path, const ReadOptions& optio
   return bytes;
 }
 
-Scene scene_of(const std::filesystem::path& path, std::string_view bytes) {
+SceneGraph scene_of(const std::filesystem::path& path, std::string_view bytes) {
   // A pipe is read only once.
   return std::filesystem::is_regular_file(path) ? read_with_assimp(path)
                                                 : parse_with_assimp(bytes, path.string());

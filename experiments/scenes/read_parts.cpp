@@ -82,7 +82,7 @@ Decomposed decomposed(const SceneNode& node, const std::string& name) {
   return result;
 }
 
-std::vector<MeshPart> parts_of(const Scene& scene, const std::string& name) {
+std::vector<MeshPart> parts_of(const SceneGraph& scene, const std::string& name) {
   std::vector<MeshPart> parts;
   using Key = std::pair<std::vector<unsigned>, std::array<double, 9>>;
   std::map<Key, std::shared_ptr<const TriangleMesh>> known;

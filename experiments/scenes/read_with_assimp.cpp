@@ -55,7 +55,7 @@ class Gatherer {
     result_.meshes.resize(scene.mNumMeshes);
   }
 
-  Scene gathered(const Transformation& root) {
+  SceneGraph gathered(const Transformation& root) {
     if (scene_.mRootNode) visit(*scene_.mRootNode, root, 0);
     return std::move(result_);
   }
@@ -109,11 +109,11 @@ class Gatherer {
 
   const aiScene& scene_;
   const std::string& name_;
-  Scene result_;
+  SceneGraph result_;
 };
 
-Scene gathered(const Assimp::Importer& importer, const aiScene* scene, const std::string& name,
-               Conversion conversion) {
+SceneGraph gathered(const Assimp::Importer& importer, const aiScene* scene, const std::string& name,
+                    Conversion conversion) {
   if (!scene) {
     std::string why = importer.GetErrorString();
     why = why.substr(0, why.find('\n'));
@@ -130,8 +130,8 @@ Scene gathered(const Assimp::Importer& importer, const aiScene* scene, const std
 
 }  // namespace
 
-void Scene::append(TriangleMesh& result, const SceneNode& node, const Transformation& to,
-                   const std::string& name) const {
+void SceneGraph::append(TriangleMesh& result, const SceneNode& node, const Transformation& to,
+                        const std::string& name) const {
   for (const unsigned number : node.meshes) {
     const TriangleMesh& mesh = meshes[number];
     const std::size_t first = result.vertices.size();
@@ -148,20 +148,21 @@ void Scene::append(TriangleMesh& result, const SceneNode& node, const Transforma
   }
 }
 
-TriangleMesh Scene::joined(const std::string& name) const {
+TriangleMesh SceneGraph::joined(const std::string& name) const {
   TriangleMesh result;
   for (const SceneNode& node : nodes) append(result, node, node.to_world, name);
   return result;
 }
 
 // No post-processing: all of assimp's steps may merge, drop or reorder.
-Scene read_with_assimp(const std::filesystem::path& path) {
+SceneGraph read_with_assimp(const std::filesystem::path& path) {
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(path.string(), 0);
   return gathered(importer, scene, path.string(), Conversion::none);
 }
 
-Scene parse_with_assimp(std::string_view bytes, const std::string& name, Conversion conversion) {
+SceneGraph parse_with_assimp(std::string_view bytes, const std::string& name,
+                             Conversion conversion) {
   Assimp::Importer importer;
   const std::string extension = std::filesystem::path(name).extension().string();
   const char* hint = extension.empty() ? "" : extension.c_str() + 1;
