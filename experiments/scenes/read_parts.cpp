@@ -5,7 +5,6 @@
 #include <map>
 
 #include "experiments/files/unusable.hpp"
-#include "experiments/files/whole_file.hpp"
 #include "experiments/scenes/mesh_formats.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 
