@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <assimp/ColladaMetaData.h>
+#include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
 
@@ -49,6 +51,14 @@ Transformation own_root(const Transformation& root, std::string_view importer) {
   return unit > 0 ? Transformation(turn * root / unit) : root;
 }
 
+/// The name in the file; of a DAE's node that has none, its id.
+std::string name_of(const aiNode& node) {
+  const std::string name = node.mName.C_Str();
+  if (!name.starts_with("$ColladaAutoName$")) return name;
+  aiString id;
+  return node.mMetaData && node.mMetaData->Get(AI_METADATA_COLLADA_ID, id) ? id.C_Str() : "";
+}
+
 class Gatherer {
  public:
   Gatherer(const aiScene& scene, const std::string& name) : scene_(scene), name_(name) {
@@ -63,7 +73,7 @@ class Gatherer {
  private:
   void visit(const aiNode& node, const Transformation& here, int depth) {
     if (depth > 1000) throw Unusable(name_, "nodes more than 1000 deep");
-    SceneNode found{node.mName.C_Str(), {}, here};
+    SceneNode found{name_of(node), {}, here};
     for (unsigned i = 0; node.mMeshes && i < node.mNumMeshes; ++i) {
       const unsigned number = node.mMeshes[i];
       if (number >= scene_.mNumMeshes)
@@ -157,6 +167,7 @@ TriangleMesh SceneGraph::joined(const std::string& name) const {
 // No post-processing: all of assimp's steps may merge, drop or reorder.
 SceneGraph read_with_assimp(const std::filesystem::path& path) {
   Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
   const aiScene* scene = importer.ReadFile(path.string(), 0);
   return gathered(importer, scene, path.string(), Conversion::none);
 }
@@ -164,6 +175,7 @@ SceneGraph read_with_assimp(const std::filesystem::path& path) {
 SceneGraph parse_with_assimp(std::string_view bytes, const std::string& name,
                              Conversion conversion) {
   Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
   const std::string extension = std::filesystem::path(name).extension().string();
   const char* hint = extension.empty() ? "" : extension.c_str() + 1;
   const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, hint);

@@ -349,7 +349,7 @@ TEST(ReadFaults, BinaryPlySizes) {
 TEST(ReadFaults, BinaryStl) {
   for (const std::string header : {"x", "solid", "solid made by x", "SOLID", "\xef\xbb\xbfsolid"}) {
     expect_cube(binary_stl(12, header), "a.stl", header);
-    for (const std::string end : {"\r\n"s, "\0\0"s, "ab"s, std::string(49, 'x')}) {
+    for (const std::string& end : {"\r\n"s, "\0\0"s, "ab"s, std::string(49, 'x')}) {
       const Outcome outcome = read(binary_stl(12, header) + end, "a.stl");
       EXPECT_EQ(outcome.refusal, "") << header;
       EXPECT_EQ(outcome.said, "a.stl: " + std::to_string(end.size()) +
@@ -367,7 +367,7 @@ TEST(ReadFaults, BinaryStl) {
     EXPECT_EQ(refusal(binary_stl(12, header).substr(0, 600), "a.stl"),
               "a.stl: truncated: holds 10 of 12 triangles");
     // Attributes after each triangle, as long as it says; colours instead of a length.
-    for (const std::string attributes : {"abcd"s, std::string(50, 'x'), std::string(100, '\0')})
+    for (const std::string& attributes : {"abcd"s, std::string(50, 'x'), std::string(100, '\0')})
       expect_cube(binary_stl(12, header, attributes, static_cast<std::uint16_t>(attributes.size())),
                   "a.stl", "attributes");
     expect_cube(binary_stl(12, header, "", 0x801f), "a.stl", "colours");

@@ -106,6 +106,9 @@ TEST(ReadParts, NodesOfAScene) {
   ASSERT_EQ(of_dae.size(), 1u);
   EXPECT_EQ(of_dae[0].name, "part");
   EXPECT_EQ(of_dae[0].pose.translation, Vec3<double>(1, 2, 3));
+  std::string without_a_name = dae("");
+  without_a_name.replace(without_a_name.find(" name=\"part\""), 12, "");
+  EXPECT_EQ(parse_parts(without_a_name, "a.dae").at(0).name, "n");
 }
 
 TEST(ReadParts, ObjectsGroupsAndSolids) {
