@@ -261,12 +261,12 @@ TEST(ReadFaults, PlyRowsOfAnotherLength) {
 
 /// Rows of the cube as binary PLY; `Index` is the type of a strip's or face's entries.
 template <class Index>
-std::string binary_ply(const std::string& list, bool big,
+std::string binary_ply(const std::string& types, bool big,
                        const std::vector<std::vector<Index>>& rows,
                        const std::string& element = "face") {
   std::string bytes = "ply\nformat binary_"s + (big ? "big" : "little") +
                       "_endian 1.0\nelement vertex 8\n" + xyz + "element " + element + " " +
-                      std::to_string(rows.size()) + "\nproperty list " + list +
+                      std::to_string(rows.size()) + "\nproperty list " + types +
                       " vertex_indices\nend_header\n";
   for (const auto& v : cube().vertices)
     for (int d = 0; d < 3; ++d) put(bytes, static_cast<float>(v[d]), big);
