@@ -9,6 +9,7 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
 #include "experiments/scenes/mesh_formats.hpp"
+#include "experiments/scenes/text_encoding.hpp"
 
 namespace bvlab {
 namespace {
@@ -50,9 +51,9 @@ std::string bytes_of(const std::filesystem::path& path, const ReadOptions& optio
 }
 
 SceneGraph scene_of(const std::filesystem::path& path, std::string_view bytes) {
-  // A pipe is read only once.
-  return std::filesystem::is_regular_file(path) ? read_with_assimp(path)
-                                                : parse_with_assimp(bytes, path.string());
+  // A pipe is read only once; of texts with a byte-order mark assimp does not read all.
+  const bool is_file = std::filesystem::is_regular_file(path) && !has_mark(bytes);
+  return is_file ? read_with_assimp(path) : parse_with_assimp(bytes, path.string());
 }
 
 void ReadOptions::say_on_standard_error(const std::string& line) {

@@ -11,6 +11,7 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/mesh_formats.hpp"
 #include "experiments/scenes/polygon.hpp"
+#include "experiments/scenes/text_encoding.hpp"
 
 namespace bvlab {
 namespace {
@@ -174,6 +175,8 @@ SceneGraph read_with_assimp(const std::filesystem::path& path) {
 
 SceneGraph parse_with_assimp(std::string_view bytes, const std::string& name,
                              Conversion conversion) {
+  std::string room;
+  if (has_mark(bytes)) bytes = as_utf8(bytes, room, name);
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
   const std::string extension = std::filesystem::path(name).extension().string();

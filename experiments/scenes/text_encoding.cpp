@@ -71,4 +71,9 @@ std::string_view as_utf8(std::string_view bytes, std::string& room, const std::s
   return bytes;
 }
 
+bool has_mark(std::string_view bytes) {
+  return bytes.starts_with("\xef\xbb\xbf") || bytes.starts_with("\xff\xfe") ||
+         bytes.starts_with("\xfe\xff");
+}
+
 }  // namespace bvlab

@@ -12,4 +12,7 @@ namespace bvlab {
 /// UTF-32, and for UTF-16 that ends within a character.
 std::string_view as_utf8(std::string_view bytes, std::string& room, const std::string& name);
 
+/// Whether the bytes begin with a byte-order mark.
+bool has_mark(std::string_view bytes);
+
 }  // namespace bvlab

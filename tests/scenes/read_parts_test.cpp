@@ -111,6 +111,19 @@ TEST(ReadParts, NodesOfAScene) {
   EXPECT_EQ(parse_parts(without_a_name, "a.dae").at(0).name, "n");
 }
 
+TEST(ReadParts, MarksAndEncodings) {
+  const std::string nodes = gltf("[0]", R"([{"mesh": 0}])"), node = dae("");
+  for (const auto& [name, text] : {std::pair("a.gltf", nodes), std::pair("a.dae", node)}) {
+    std::string little = "\xff\xfe", big = "\xfe\xff";
+    for (const char c : text) {
+      little.append({c, '\0'});
+      big.append({'\0', c});
+    }
+    for (const auto& bytes : {"\xef\xbb\xbf" + text, little, big})
+      EXPECT_EQ(parse_mesh(bytes, name).triangles, parse_mesh(text, name).triangles) << name;
+  }
+}
+
 TEST(ReadParts, ObjectsGroupsAndSolids) {
   const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
   const auto parts = parse_parts(vertices +
