@@ -25,6 +25,7 @@ struct Arguments {
   std::string trace, json, csv;
   Variant variant;
   std::optional<std::size_t> stride, window;
+  double scale = 1;
 };
 
 using Rows = std::vector<Predicted>;
@@ -101,7 +102,7 @@ void run(const Arguments& arguments) {
   require_places(read, written);
   std::vector<TriangleMesh> meshes;
   for (const auto& file : arguments.meshes) {
-    meshes.push_back(read_mesh(file));
+    meshes.push_back(read_mesh(file, {.scale = arguments.scale}));
     say_if_nothing_is_culled(meshes.back(), file);
   }
   const Trace trace = read_trace(arguments.trace);
@@ -141,9 +142,7 @@ void add_predict(CLI::App& app) {
   command
       ->add_option("trace,--trace", arguments->trace, "poses: .npy, float64, (frames, objects, 7)")
       ->required();
-  command
-      ->add_option("--mesh", arguments->meshes, "mesh file; object i uses mesh i mod their number")
-      ->required();
+  add_mesh_options(*command, arguments->meshes, arguments->scale);
   add_tree_options(*command, arguments->variant);
   add_query_options(*command, arguments->variant);
   add_build_options(*command, arguments->variant);

@@ -30,6 +30,7 @@ struct Arguments {
   Variant variant;
   unsigned threads = 1;
   std::optional<std::uint64_t> budget;
+  double scale = 1;
 };
 
 void write_answers(const Arguments& arguments, const Trace& trace, const ReplayResult& result) {
@@ -108,7 +109,7 @@ void run(Arguments arguments) {
   require_threads(arguments.threads);
   std::vector<TriangleMesh> meshes;
   for (const auto& file : arguments.meshes) {
-    meshes.push_back(read_mesh(file));
+    meshes.push_back(read_mesh(file, {.scale = arguments.scale}));
     say_if_nothing_is_culled(meshes.back(), file);
   }
   const Trace trace = read_trace(arguments.trace);
@@ -150,9 +151,7 @@ void add_replay(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "replay", "Answers a query for every pair of bodies in every frame of a trace");
   auto arguments = std::make_shared<Arguments>();
-  command
-      ->add_option("--mesh", arguments->meshes, "mesh file; object i uses mesh i mod their number")
-      ->required();
+  add_mesh_options(*command, arguments->meshes, arguments->scale);
   command->add_option("--trace", arguments->trace, "poses: .npy, float64, (frames, objects, 7)")
       ->required();
   add_tree_options(*command, arguments->variant);

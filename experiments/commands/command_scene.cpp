@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/number.hpp"
+#include "experiments/commands/variant_options.hpp"
 #include "experiments/commands/whole_number.hpp"
 #include "experiments/files/npy.hpp"
 #include "experiments/files/unusable.hpp"
@@ -25,6 +25,7 @@ struct Arguments {
   std::vector<std::string> files, names;
   std::size_t polygons = 500;
   std::string out, meshes;
+  double scale = 1;
 };
 
 template <class S>
@@ -36,7 +37,8 @@ std::string default_meshes() {
 std::vector<NamedMesh> meshes_of(const Arguments& arguments, const std::string& otherwise) {
   std::vector<NamedMesh> meshes;
   for (const auto& file : arguments.files)
-    meshes.push_back({std::filesystem::path(file).stem().string(), read_mesh(file)});
+    meshes.push_back({std::filesystem::path(file).stem().string(),
+                      read_mesh(file, {.scale = arguments.scale})});
   for (const auto& name : arguments.names)
     for (auto& mesh : named_meshes(name, arguments.polygons)) meshes.push_back(std::move(mesh));
   if (meshes.empty()) meshes = named_meshes(otherwise, arguments.polygons);
@@ -138,6 +140,7 @@ void add(CLI::App& parent) {
       ->required();
   command->add_option("--meshes", arguments->meshes, "directory to write the meshes to, as OFF");
   command->add_option("--mesh", arguments->files, "mesh file; object i is mesh i mod their number");
+  add_scale_option(*command, arguments->scale);
   command->add_option("--shape", arguments->names,
                       "built-in mesh, as NAME[:POLYGONS[:SCALE]]; names are bunny, " +
                           formula_mesh_names() +

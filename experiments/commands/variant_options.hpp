@@ -3,11 +3,33 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
 #include "experiments/commands/number.hpp"
 #include "experiments/replay/registry.hpp"
 
 namespace bvlab {
+
+/// --scale, of files that are read.
+inline void add_scale_option(CLI::App& command, double& scale) {
+  command
+      .add_option("--scale", scale,
+                  "coordinates of mesh files are multiplied by it, for files in another unit; "
+                  "otherwise they are used as they stand")
+      ->check(number())
+      ->capture_default_str();
+}
+
+/// --mesh and --scale.
+inline void add_mesh_options(CLI::App& command, std::vector<std::string>& files, double& scale) {
+  command
+      .add_option("--mesh", files,
+                  "mesh file; object i uses mesh i mod their number; the transformations of a "
+                  "scene's nodes are applied, its unit and axes are not")
+      ->required();
+  add_scale_option(command, scale);
+}
 
 /// --volume, --fan-out and --frame.
 inline void add_tree_options(CLI::App& command, Variant& variant) {

@@ -372,7 +372,7 @@ const std::vector<Parameter>& parameters() {
     std::vector<Parameter> all{
         {"scene", std::string(Scenes::at<0>::name), "how bodies move; see `bvlab list scenes`"},
         {"mesh", "bunny",
-         "meshes: NAME[:POLYGONS[:SCALE]] or files, a list or separated by commas; object i has "
+         "meshes: NAME[:POLYGONS[:SCALE]] or FILE[:SCALE], a list or separated by commas; object i has "
          "mesh i mod their number"},
         {"polygons", "500", "triangles of each mesh given by name; of a file's, what it has"}};
     Scenes::for_each(

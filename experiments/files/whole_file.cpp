@@ -11,9 +11,9 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <memory>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "experiments/files/unusable.hpp"
 
@@ -146,22 +146,28 @@ bool is_same_place(const std::filesystem::path& a, const std::filesystem::path& 
 
 }  // namespace
 
-std::string read_whole(const std::filesystem::path& path) {
+std::string read_whole(const std::filesystem::path& path, const std::function<void()>& on_signal) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) throw Unusable(path.string(), "is a directory");
   // Some have no end.
   if (std::filesystem::is_character_file(path, ignored))
     throw Unusable(path.string(), "is a device");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             std::fclose);
-  if (!file) throw Unusable(path.string(), std::strerror(errno));
+  // A pipe is waited for, to be opened and to be read.
+  const auto going_on = [&](const auto& call) {
+    for (;;) {
+      const auto result = call();
+      if (result >= 0) return result;
+      if (errno != EINTR) throw Unusable(path.string(), std::strerror(errno));
+      on_signal();
+    }
+  };
+  const Descriptor file(going_on([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); }));
   std::string bytes;
   if (const auto size = std::filesystem::file_size(path, ignored); !ignored)
     bytes.reserve(size + 1);
-  char block[1 << 16];
-  while (const std::size_t n = std::fread(block, 1, sizeof block, file.get()))
-    bytes.append(block, n);
-  if (std::ferror(file.get())) throw Unusable(path.string(), "cannot be read");
+  std::vector<char> block(1 << 16);
+  while (const ssize_t n = going_on([&] { return ::read(file.get(), block.data(), block.size()); }))
+    bytes.append(block.data(), static_cast<std::size_t>(n));
   return bytes;
 }
 

@@ -4,14 +4,17 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace bvlab {
 
-/// All bytes of a file. Throws Unusable naming the file and the system's reason.
-std::string read_whole(const std::filesystem::path& path);
+/// All bytes of a file. Throws Unusable naming the file and the system's reason. Where a signal
+/// arrives while a pipe is waited for, `on_signal` is called, which may throw.
+std::string read_whole(
+    const std::filesystem::path& path, const std::function<void()>& on_signal = [] {});
 
 /// Replaces `path` by `parts`, one after the other: written without a name (or, where the file
 /// system knows no such files, beside its place under another name), flushed to the disk, then

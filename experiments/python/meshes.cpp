@@ -4,12 +4,15 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
 
 #include "experiments/files/unusable.hpp"
+#include "experiments/python/signals.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 
@@ -66,9 +69,51 @@ std::shared_ptr<Mesh> shared(TriangleMesh&& mesh) {
   return std::make_shared<Mesh>(std::make_shared<const TriangleMesh>(std::move(mesh)));
 }
 
-std::shared_ptr<Mesh> read(const std::filesystem::path& path) {
-  const py::gil_scoped_release released;
-  return shared(read_mesh(path));
+/// Reads by `read_file` without the lock of the interpreter: Ctrl-C ends waiting for a pipe, and
+/// what is to be said of a file is a warning.
+template <class Read>
+auto reading(double scale, const Read& read_file) {
+  std::vector<std::string> said;
+  auto result = released([&] {
+    ReadOptions options;
+    options.scale = scale;
+    options.say = [&](const std::string& line) { said.push_back(line); };
+    options.on_signal = [] {
+      const py::gil_scoped_acquire held;
+      if (PyErr_CheckSignals() != 0) throw Interrupted();
+    };
+    return read_file(options);
+  });
+  for (const auto& line : said)
+    if (PyErr_WarnEx(PyExc_UserWarning, line.c_str(), 1) != 0) throw py::error_already_set();
+  return result;
+}
+
+std::shared_ptr<Mesh> read(const std::filesystem::path& path, double scale) {
+  return shared(
+      reading(scale, [&](const ReadOptions& options) { return read_mesh(path, options); }));
+}
+
+/// Name, mesh, and pose as a row of a trace; nodes alike share one mesh.
+py::list read_all_parts(const std::filesystem::path& path, double scale) {
+  const auto parts =
+      reading(scale, [&](const ReadOptions& options) { return read_parts(path, options); });
+  std::unordered_map<const TriangleMesh*, std::shared_ptr<Mesh>> known;
+  py::list all;
+  for (const MeshPart& part : parts) {
+    auto& mesh = known[part.mesh.get()];
+    if (!mesh) mesh = std::make_shared<Mesh>(part.mesh);
+    const Vec3<double>& t = part.pose.translation;
+    const Eigen::Quaterniond q(part.pose.rotation);
+    py::array_t<double> pose(7);
+    std::copy_n(std::array{t[0], t[1], t[2], q.w(), q.x(), q.y(), q.z()}.begin(), 7,
+                pose.mutable_data());
+    // Names in files may be in any encoding.
+    const py::object name = py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(
+        part.name.data(), static_cast<py::ssize_t>(part.name.size()), "replace"));
+    all.append(py::make_tuple(mesh, name, pose));
+  }
+  return all;
 }
 
 std::shared_ptr<Mesh> named(const std::string& name, std::size_t polygons) {
@@ -200,10 +245,15 @@ are legal. ValueError: another shape or type, NaN, infinity, an index out of ran
       });
   module.def("_places_of", &places_of, py::arg("meshes"),
              "The address from which each mesh's vertices are read, for tests.");
-  module.def("read", &read, py::arg("path"),
-             R"(The mesh in a file that assimp reads (OFF, OBJ, PLY and STL to the last digit).
+  module.def(
+      "read", &read, py::arg("path"), py::kw_only(), py::arg("scale") = 1.0,
+      R"(The mesh in a file: OFF, OBJ, PLY and STL to the last digit, others as assimp reads them.
 
-ValueError: missing, truncated, or no mesh; names the file, what is wrong, and where.)");
+The transformations of a scene's nodes are applied. Coordinates are used as they stand, whatever
+unit and axes the file names, and multiplied by `scale`.
+ValueError: missing, truncated, or no mesh; names the file, what is wrong, and where. UserWarning:
+what was passed over.)");
+  module.def("_read_parts", &read_all_parts, py::arg("path"), py::arg("scale"));
   module.def("named_mesh", &named, py::arg("name"), py::arg("polygons") = 500,
              R"(A mesh by name, as definitions name them: "bunny", "torus", "bunny-hull".
 

@@ -6,31 +6,92 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "experiments/scenes/read_mesh.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
 namespace bvlab {
 
-/// OFF, COFF, NOFF, CNOFF, STOFF ...: text, three coordinates a vertex, one vertex or face a line.
-TriangleMesh parse_off(std::string_view bytes, const std::string& name);
-/// Wavefront: `v` and `f`; all else is passed over.
-TriangleMesh parse_obj(std::string_view bytes, const std::string& name);
+/// What a file holds.
+struct ParsedMesh {
+  /// Triangles from `first` on, up to the next part's, bear the name.
+  struct Part {
+    std::string name;
+    std::size_t first;
+  };
 
-/// PLY, text and binary: elements `vertex` (x, y, z) and `face` (vertex_indices or vertex_index).
-TriangleMesh parse_ply(std::string_view bytes, const std::string& name);
+  TriangleMesh mesh;
+  std::vector<Part> parts;  ///< in order of `first`; none where the file has no names
+  std::string note;         ///< what is to be said of it, if anything
+
+  /// A face that makes no triangle; `where` says which.
+  void leave_out(const std::string& where) {
+    if (left_out++ == 0) first_left_out = where;
+    note = first_left_out + ": a face of fewer than three corners is left out" +
+           (left_out > 1 ? " (" + std::to_string(left_out) + " in all)" : "") +
+           "; triangles are numbered without it";
+  }
+  std::size_t left_out = 0;
+  std::string first_left_out;
+};
+
+/// OFF, COFF, NOFF, CNOFF, STOFF ...: text, three coordinates a vertex, one vertex or face a line.
+ParsedMesh parse_off(std::string_view bytes, const std::string& name);
+/// Wavefront: `v`, `f`, `o` and `g`; attributes, points, lines and free forms are passed over.
+ParsedMesh parse_obj(std::string_view bytes, const std::string& name);
+/// PLY, text and binary: elements `vertex` (x, y, z), `face` and `tristrips` (vertex_indices or
+/// vertex_index).
+ParsedMesh parse_ply(std::string_view bytes, const std::string& name);
 /// STL, text and binary.
-TriangleMesh parse_stl(std::string_view bytes, const std::string& name);
+ParsedMesh parse_stl(std::string_view bytes, const std::string& name);
 
 struct MeshFormat {
   std::string_view extension;
-  TriangleMesh (*parse)(std::string_view bytes, const std::string& name);
+  ParsedMesh (*parse)(std::string_view bytes, const std::string& name);
 };
 inline constexpr MeshFormat own_formats[] = {
     {".off", parse_off}, {".obj", parse_obj}, {".ply", parse_ply}, {".stl", parse_stl}};
 
+/// A node of a scene, with all its meshes.
+struct SceneNode {
+  using Transformation = Eigen::Matrix<double, 3, 4>;
+
+  std::string name;
+  std::vector<unsigned> meshes;  ///< their numbers in the scene
+  Transformation to_world;
+};
+
+/// A scene as assimp reads it: nodes with meshes, parents first.
+struct SceneGraph {
+  std::vector<SceneNode> nodes;
+  std::vector<TriangleMesh> meshes;  ///< in their nodes' frames; those that no node has are empty
+
+  /// All nodes in the world's frame, one after the other. Throws Unusable.
+  TriangleMesh joined(const std::string& name) const;
+  /// Appends a node's meshes, transformed by `to`.
+  void append(TriangleMesh& result, const SceneNode& node, const SceneNode::Transformation& to,
+              const std::string& name) const;
+};
+
+/// What assimp adds at the root to turn a file's axes and unit into its own.
+enum class Conversion { none, of_assimp };
+
 /// By assimp, from a file (which may refer to others beside it) and from memory.
-TriangleMesh read_with_assimp(const std::filesystem::path& path);
-TriangleMesh parse_with_assimp(std::string_view bytes, const std::string& name,
-                               const std::string& extension);
+SceneGraph read_with_assimp(const std::filesystem::path& path);
+SceneGraph parse_with_assimp(std::string_view bytes, const std::string& name,
+                             Conversion conversion = Conversion::none);
+
+/// The parser of a file of that name; nullptr where assimp is to read it.
+const MeshFormat* own_format(const std::string& name);
+/// By that parser; says what there is to be said.
+ParsedMesh parsed_mesh(std::string_view bytes, const std::string& name, const MeshFormat& format,
+                       const ReadOptions& options);
+/// The bytes of a file, of which there are some. Checks the options, too.
+std::string bytes_of(const std::filesystem::path& path, const ReadOptions& options);
+/// The scene in a file whose bytes are these.
+SceneGraph scene_of(const std::filesystem::path& path, std::string_view bytes);
+/// The mesh multiplied by the options' scale.
+TriangleMesh scaled_mesh(TriangleMesh mesh, const std::string& name, const ReadOptions& options);
 
 }  // namespace bvlab

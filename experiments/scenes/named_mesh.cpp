@@ -12,6 +12,7 @@
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 #include "experiments/scenes/simplify_mesh.hpp"
+#include "experiments/scenes/text_scanner.hpp"
 
 namespace bvlab {
 namespace {
@@ -46,14 +47,27 @@ bool is_file(const std::string& text) {
   return text.find('/') != text.npos || text.substr(0, text.find(':')).find('.') != text.npos;
 }
 
+/// FILE or FILE:SCALE. A file's name may have colons in it.
+NamedMesh from_file(const std::string& text) {
+  std::string file = text;
+  ReadOptions options;
+  std::error_code none;
+  const auto colon = text.rfind(':');
+  double scale = 1;
+  if (colon != text.npos && !std::filesystem::exists(text, none) &&
+      TextScanner::parse(std::string_view(text).substr(colon + 1), scale)) {
+    file = text.substr(0, colon);
+    options.scale = scale;
+  }
+  NamedMesh result{std::filesystem::path(file).stem().string(), read_mesh(file, options)};
+  say_if_nothing_is_culled(result.mesh, text);
+  return result;
+}
+
 NamedMesh from_text(const std::string& text, std::size_t polygons) {
   const auto parts = parts_of(text, ':');
   if (parts.empty()) throw Unusable("mesh: a name is needed");
-  if (is_file(text)) {
-    NamedMesh result{std::filesystem::path(text).stem().string(), read_mesh(text)};
-    say_if_nothing_is_culled(result.mesh, text);
-    return result;
-  }
+  if (is_file(text)) return from_file(text);
   if (parts.size() > 3) throw Unusable("mesh '" + text + "': must be NAME[:POLYGONS[:SCALE]]");
   if (parts.size() > 1) polygons = number<std::size_t>(parts[1], text);
   NamedMesh result = named_mesh(parts[0], polygons);

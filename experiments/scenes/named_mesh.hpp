@@ -27,10 +27,10 @@ std::filesystem::path mesh_directory();
 NamedMesh named_mesh(const std::string& name, std::size_t polygons,
                      const std::filesystem::path& directory = mesh_directory());
 
-/// Several meshes from one text: each a file (it holds a '/' or a '.'), `NAME`, `NAME:POLYGONS` or
-/// `NAME:POLYGONS:SCALE`, with commas between, and blanks around them as one likes; `polygons`
-/// where none are given. Vertices are multiplied by the scale. A text that is a file's name as it
-/// stands is that file, commas and all.
+/// Several meshes from one text: each a file (it holds a '/' or a '.'), `FILE:SCALE`, `NAME`,
+/// `NAME:POLYGONS` or `NAME:POLYGONS:SCALE`, with commas between, and blanks around them as one
+/// likes; `polygons` where none are given. Vertices are multiplied by the scale. A text that is a
+/// file's name as it stands is that file, commas and all.
 std::vector<NamedMesh> named_meshes(const std::string& list, std::size_t polygons);
 
 /// Whether a file is among them, which has as many triangles as it has.

@@ -4,6 +4,7 @@
 
 #include "experiments/scenes/mesh_formats.hpp"
 #include "experiments/scenes/polygon.hpp"
+#include "experiments/scenes/text_encoding.hpp"
 #include "experiments/scenes/text_scanner.hpp"
 
 namespace bvlab {
@@ -14,20 +15,6 @@ struct Face {
   std::size_t first, size;  // in the list of all corners
   std::size_t line;
 };
-
-/// Line continuations are for whoever reads lines: a backslash and the end of its line are blanks.
-/// (A copy is made only where there are any.)
-std::string without_continuations(std::string_view bytes) {
-  std::string text(bytes);
-  for (std::size_t at = 0; (at = text.find('\\', at)) != std::string::npos; ++at) {
-    std::size_t end = at + 1;
-    while (end < text.size() && text[end] == '\r') ++end;
-    if (end < text.size() && text[end] == '\n')
-      std::fill(text.begin() + static_cast<std::ptrdiff_t>(at),
-                text.begin() + static_cast<std::ptrdiff_t>(end) + 1, ' ');
-  }
-  return text;
-}
 
 /// The vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn", from 0; negative ones count back from
 /// the last vertex so far.
@@ -42,34 +29,74 @@ std::int64_t vertex_of(const TextScanner& scanner, std::string_view corner, std:
   return static_cast<std::int64_t>(vertices) + number;
 }
 
+/// Whether a line of this keyword can be passed over: it is one of the format or of a vendor, and
+/// none that a vertex or a face may have been meant by.
+bool says_nothing_here(std::string_view keyword) {
+  if (keyword == "vt" || keyword == "vn" || keyword == "vp") return true;
+  const char first = keyword[0];
+  const bool is_letter = ('a' <= first && first <= 'z') || ('A' <= first && first <= 'Z');
+  return is_letter && std::string_view("vVfF").find(first) == std::string_view::npos;
+}
+
+/// The names that faces bear, as the lines come: of an object, of a group, or of both.
+class Names {
+ public:
+  void set_object(std::string_view name) {
+    object_ = name;
+    group_.clear();
+  }
+  void set_group(std::string_view name) { group_ = name; }
+  std::string name() const {
+    return object_ + (object_.empty() || group_.empty() ? "" : "/") + group_;
+  }
+
+ private:
+  std::string object_, group_;
+};
+
 }  // namespace
 
-TriangleMesh parse_obj(std::string_view bytes, const std::string& name) {
-  std::string joined;
-  if (bytes.find('\\') != std::string_view::npos) bytes = joined = without_continuations(bytes);
-  TextScanner scanner(bytes, name);
-  TriangleMesh mesh;
+ParsedMesh parse_obj(std::string_view bytes, const std::string& name) {
+  std::string room;
+  bytes = as_utf8(bytes, room, name);
+  TextScanner scanner(bytes, name, {.comment = '#', .continuation = '\\'});
+  ParsedMesh parsed;
+  TriangleMesh& mesh = parsed.mesh;
   std::vector<Face> faces;
   std::vector<std::int64_t> corners;
+  std::vector<ParsedMesh::Part> named;  // from which face on
+  Names names;
   while (scanner.next_line()) {
     const std::string_view keyword = scanner.word();
     if (keyword == "v") {
       const double x = scanner.coordinate(), y = scanner.coordinate(), z = scanner.coordinate();
       mesh.vertices.push_back({x, y, z});
-    } else if (keyword == "f") {
+    } else if (keyword == "f" || keyword == "fo") {
       Face face{corners.size(), 0, scanner.line_number()};
       while (!scanner.at_line_end())
         corners.push_back(vertex_of(scanner, scanner.word(), mesh.vertices.size()));
       face.size = corners.size() - face.first;
-      if (face.size < 3 && scanner.bytes_left() == 0 && !bytes.ends_with('\n'))
+      if (face.size < 3 && scanner.bytes_left() == 0 && !bytes.ends_with('\n') &&
+          !bytes.ends_with('\r'))
         scanner.fault("truncated: ends within a face");
       faces.push_back(face);
+    } else if (keyword == "o" || keyword == "g") {
+      keyword == "o" ? names.set_object(scanner.name()) : names.set_group(scanner.name());
+      named.push_back({names.name(), faces.size()});
+    } else if (keyword == "call") {
+      scanner.fault("call: other files are not read");
+    } else if (!says_nothing_here(keyword)) {
+      scanner.fault("unknown word " + TextScanner::shown(keyword));
     }
   }
   if (mesh.vertices.size() >= std::numeric_limits<std::uint32_t>::max())
     throw Unusable(name, "has more vertices than 32 bits number");
   std::vector<std::uint32_t> polygon;
+  auto part = named.begin();
   for (const Face& face : faces) {
+    const auto number = static_cast<std::size_t>(&face - faces.data());
+    for (; part != named.end() && part->first <= number; ++part)
+      parsed.parts.push_back({part->name, mesh.triangles.size()});
     polygon.clear();
     for (std::size_t k = 0; k < face.size; ++k) {
       const std::int64_t vertex = corners[face.first + k];
@@ -79,9 +106,10 @@ TriangleMesh parse_obj(std::string_view bytes, const std::string& name) {
                       face.line);
       polygon.push_back(static_cast<std::uint32_t>(vertex));
     }
+    if (face.size < 3) parsed.leave_out(TextScanner::place(face.line));
     append_polygon(mesh, polygon);
   }
-  return mesh;
+  return parsed;
 }
 
 }  // namespace bvlab

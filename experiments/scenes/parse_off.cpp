@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <vector>
 
 #include "experiments/scenes/mesh_formats.hpp"
 #include "experiments/scenes/polygon.hpp"
+#include "experiments/scenes/text_encoding.hpp"
 #include "experiments/scenes/text_scanner.hpp"
 
 namespace bvlab {
 namespace {
 
-/// A count of the file's header, no larger than what can be in the rest of the file.
+/// A count; those of the header may stand on lines of their own.
 std::size_t count(TextScanner& scanner, const char* what) {
+  if (scanner.at_line_end()) scanner.next_line();
   const std::int64_t value = scanner.integer(what);
   if (value < 0 || value >= std::int64_t{std::numeric_limits<std::uint32_t>::max()})
     scanner.fault(std::string(what) + " cannot be " + std::to_string(value));
@@ -22,45 +25,66 @@ std::size_t count(TextScanner& scanner, const char* what) {
                            std::to_string(promised) + " " + what);
 }
 
-/// Passes over the header's keyword, if there is one: [ST][C][N]OFF.
+/// Passes over the header's keyword, if there is one: [ST][C][N]OFF, to which the first count may
+/// be glued.
 void pass_keyword(TextScanner& scanner, const std::string& name) {
   TextScanner ahead = scanner;
-  std::string_view keyword = ahead.word();
+  const std::string_view whole = ahead.word();
   double ignored;
-  if (TextScanner::parse(keyword, ignored)) return;
-  const std::string_view whole = keyword;
-  for (const std::string_view part : {"ST", "C", "N"})
-    if (keyword.starts_with(part)) keyword.remove_prefix(part.size());
-  if (whole == "4OFF" || whole == "nOFF" || whole == "4nOFF")
+  if (TextScanner::parse(whole, ignored)) return;
+  std::string keyword(whole.substr(0, std::min(whole.find("OFF"), whole.find("off"))));
+  const std::size_t length = keyword.size() + 3;
+  if (whole.size() >= length && (keyword == "4" || keyword.ends_with('n')))
     scanner.fault(TextScanner::shown(whole) + ": only three coordinates a vertex are read");
-  if (keyword != "OFF") scanner.fault("not an OFF file: begins with " + TextScanner::shown(whole));
+  for (const std::string_view part : {"ST", "C", "N", "st", "c"})
+    if (const auto at = keyword.find(part); at != keyword.npos) keyword.erase(at, part.size());
+  const std::string_view glued = whole.substr(std::min(length, whole.size()));
+  if (whole.size() < length || !keyword.empty() ||
+      glued.find_first_not_of("0123456789") != glued.npos)
+    scanner.fault("not an OFF file: begins with " + TextScanner::shown(whole));
   if (ahead.line().find("BINARY") != std::string_view::npos)
     scanner.fault("binary OFF is not read, only text");
-  scanner = ahead;
+  scanner.skip(length);
   if (scanner.at_line_end() && !scanner.next_line()) throw Unusable(name, "truncated: no counts");
+}
+
+/// Throws Unusable unless there are as many lines as the header promises.
+void check_lines(const TextScanner& scanner, const std::string& name, std::size_t vertices,
+                 std::size_t faces) {
+  const std::size_t lines = scanner.lines_left();
+  if (lines < vertices) truncated(name, "vertices", lines, vertices);
+  if (lines < vertices + faces) truncated(name, "faces", lines - vertices, faces);
+  if (lines > vertices + faces)
+    throw Unusable(name, "holds " + std::to_string(lines) + " lines of vertices and faces, where " +
+                             "the header promises " + std::to_string(vertices) + " and " +
+                             std::to_string(faces));
 }
 
 }  // namespace
 
-TriangleMesh parse_off(std::string_view bytes, const std::string& name) {
-  TextScanner scanner(bytes, name);
+ParsedMesh parse_off(std::string_view bytes, const std::string& name) {
+  std::string room;
+  TextScanner scanner(as_utf8(bytes, room, name), name);
   if (!scanner.next_line()) throw Unusable(name, "holds nothing");
   pass_keyword(scanner, name);
   const std::size_t vertices = count(scanner, "the number of vertices");
+  const bool one_a_line = scanner.at_line_end();
   const std::size_t faces = count(scanner, "the number of faces");
+  if (one_a_line) count(scanner, "the number of edges");
+  check_lines(scanner, name, vertices, faces);
 
-  TriangleMesh mesh;
-  // A header can promise anything; room is made for what the rest of the file can hold.
-  mesh.vertices.reserve(std::min(vertices, scanner.bytes_left() / 6));
-  mesh.triangles.reserve(std::min(faces, scanner.bytes_left() / 6));
+  ParsedMesh parsed;
+  TriangleMesh& mesh = parsed.mesh;
+  mesh.vertices.reserve(vertices);
+  mesh.triangles.reserve(faces);
   for (std::size_t i = 0; i < vertices; ++i) {
-    if (!scanner.next_line()) truncated(name, "vertices", i, vertices);
+    scanner.next_line();
     const double x = scanner.coordinate(), y = scanner.coordinate(), z = scanner.coordinate();
     mesh.vertices.push_back({x, y, z});
   }
   std::vector<std::uint32_t> corners;
   for (std::size_t i = 0; i < faces; ++i) {
-    if (!scanner.next_line()) truncated(name, "faces", i, faces);
+    scanner.next_line();
     const std::size_t size = count(scanner, "the number of corners");
     corners.clear();
     for (std::size_t k = 0; k < size; ++k) {
@@ -70,11 +94,10 @@ TriangleMesh parse_off(std::string_view bytes, const std::string& name) {
                       std::to_string(vertices) + ", from 0");
       corners.push_back(static_cast<std::uint32_t>(vertex));
     }
+    if (size < 3) parsed.leave_out(scanner.place());
     append_polygon(mesh, corners);
   }
-  if (scanner.next_line())
-    scanner.fault("beyond the vertices and faces that the header promises");
-  return mesh;
+  return parsed;
 }
 
 }  // namespace bvlab

@@ -3,45 +3,84 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
 #include "experiments/scenes/mesh_formats.hpp"
+#include "experiments/scenes/text_encoding.hpp"
 
 namespace bvlab {
 namespace {
 
-std::string extension_of(const std::string& name) {
-  std::string extension = std::filesystem::path(name).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(c < 128 ? std::tolower(c) : c); });
-  return extension;
+void require_scale(const ReadOptions& options) {
+  if (!(options.scale > 0) || !std::isfinite(options.scale))
+    throw Unusable("scale", "must be finite and above 0");
 }
 
-TriangleMesh checked(TriangleMesh mesh, const std::string& name) {
+TriangleMesh checked(TriangleMesh mesh, const std::string& name, const ReadOptions& options) {
   if (mesh.triangles.empty()) throw Unusable(name, "has no triangles");
-  return mesh;
+  return scaled_mesh(std::move(mesh), name, options);
 }
 
 }  // namespace
 
-TriangleMesh parse_mesh(std::string_view bytes, const std::string& name) {
-  if (bytes.empty()) throw Unusable(name, "is empty");
-  const std::string extension = extension_of(name);
-  for (const auto& format : own_formats)
-    if (extension == format.extension) return checked(format.parse(bytes, name), name);
-  return checked(parse_with_assimp(bytes, name, extension), name);
+TriangleMesh scaled_mesh(TriangleMesh mesh, const std::string& name, const ReadOptions& options) {
+  require_scale(options);
+  if (options.scale == 1) return mesh;
+  for (auto& vertex : mesh.vertices) {
+    vertex *= options.scale;
+    if (!vertex.allFinite()) throw Unusable(name, "a coordinate times the scale is not finite");
+  }
+  return mesh;
 }
 
-TriangleMesh read_mesh(const std::filesystem::path& path) {
-  const std::string bytes = read_whole(path);
+ParsedMesh parsed_mesh(std::string_view bytes, const std::string& name, const MeshFormat& format,
+                       const ReadOptions& options) {
+  ParsedMesh parsed = format.parse(bytes, name);
+  if (!parsed.note.empty()) options.say(one_line(name + ": " + parsed.note));
+  return parsed;
+}
+
+std::string bytes_of(const std::filesystem::path& path, const ReadOptions& options) {
+  require_scale(options);
+  std::string bytes = read_whole(path, options.on_signal);
   if (bytes.empty()) throw Unusable(path.string(), "is empty");
-  const std::string extension = extension_of(path.string());
+  return bytes;
+}
+
+SceneGraph scene_of(const std::filesystem::path& path, std::string_view bytes) {
+  // A pipe is read only once; of texts with a byte-order mark assimp does not read all.
+  const bool is_file = std::filesystem::is_regular_file(path) && !has_mark(bytes);
+  return is_file ? read_with_assimp(path) : parse_with_assimp(bytes, path.string());
+}
+
+void ReadOptions::say_on_standard_error(const std::string& line) {
+  std::fprintf(stderr, "bvlab: %s\n", line.c_str());
+}
+
+const MeshFormat* own_format(const std::string& name) {
+  std::string extension = std::filesystem::path(name).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(c < 128 ? std::tolower(c) : c); });
   for (const auto& format : own_formats)
-    if (extension == format.extension)
-      return checked(format.parse(bytes, path.string()), path.string());
-  return checked(read_with_assimp(path), path.string());
+    if (extension == format.extension) return &format;
+  return nullptr;
+}
+
+TriangleMesh parse_mesh(std::string_view bytes, const std::string& name,
+                        const ReadOptions& options) {
+  if (bytes.empty()) throw Unusable(name, "is empty");
+  if (const MeshFormat* format = own_format(name))
+    return checked(parsed_mesh(bytes, name, *format, options).mesh, name, options);
+  return checked(parse_with_assimp(bytes, name).joined(name), name, options);
+}
+
+TriangleMesh read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
+  const std::string bytes = bytes_of(path, options), name = path.string();
+  if (own_format(name)) return parse_mesh(bytes, name, options);
+  return checked(scene_of(path, bytes).joined(name), name, options);
 }
 
 void say_if_nothing_is_culled(const TriangleMesh& mesh, const std::string& name) {

@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <assimp/postprocess.h>
+#include <assimp/ColladaMetaData.h>
+#include <assimp/config.h>
+#include <assimp/importerdesc.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/mesh_formats.hpp"
 #include "experiments/scenes/polygon.hpp"
+#include "experiments/scenes/text_encoding.hpp"
 
 namespace bvlab {
 namespace {
 
-using Transformation = Eigen::Matrix<double, 3, 4>;
+using Transformation = SceneNode::Transformation;
+
+const Transformation identity = Transformation::Identity();
 
 Transformation transformation_of(const aiNode& node) {
   const aiMatrix4x4& m = node.mTransformation;
@@ -27,47 +33,76 @@ Transformation product(const Transformation& parent, const Transformation& child
   return t;
 }
 
+Vec3<double> image(const Transformation& t, const Vec3<double>& v) {
+  return t == identity ? v : Vec3<double>(t.leftCols<3>() * v + t.col(3));
+}
+
+/// What the scene's root would be if nothing had been added to it for the file's axes and unit.
+Transformation own_root(const Transformation& root, std::string_view importer) {
+  // All that their roots have is what was added.
+  for (const std::string_view name :
+       {"Collada", "Discreet 3DS", "Autodesk FBX", "Drawing Interchange Format", "ASE ", "Cinema4D",
+        "Inter-Quake", "Quake", "Doom 3", "Return To Castle Wolfenstein"})
+    if (importer.starts_with(name)) return identity;
+  if (!importer.starts_with("Industry Foundation Classes")) return root;
+  // Metres, and a quarter of a turn about x, before the file's own placement.
+  Mat3<double> turn;
+  turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  const double unit = std::cbrt(root.leftCols<3>().determinant());
+  return unit > 0 ? Transformation(turn * root / unit) : root;
+}
+
+/// The name in the file; of a DAE's node that has none, its id.
+std::string name_of(const aiNode& node) {
+  const std::string name = node.mName.C_Str();
+  if (!name.starts_with("$ColladaAutoName$")) return name;
+  aiString id;
+  return node.mMetaData && node.mMetaData->Get(AI_METADATA_COLLADA_ID, id) ? id.C_Str() : "";
+}
+
 class Gatherer {
  public:
-  Gatherer(const aiScene& scene, const std::string& name) : scene_(scene), name_(name) {}
+  Gatherer(const aiScene& scene, const std::string& name) : scene_(scene), name_(name) {
+    result_.meshes.resize(scene.mNumMeshes);
+  }
 
-  TriangleMesh gathered() {
-    if (scene_.mRootNode) visit(*scene_.mRootNode, Transformation::Identity(), 0);
+  SceneGraph gathered(const Transformation& root) {
+    if (scene_.mRootNode) visit(*scene_.mRootNode, root, 0);
     return std::move(result_);
   }
 
  private:
-  void visit(const aiNode& node, const Transformation& parent, int depth) {
+  void visit(const aiNode& node, const Transformation& here, int depth) {
     if (depth > 1000) throw Unusable(name_, "nodes more than 1000 deep");
-    const Transformation here = product(parent, transformation_of(node));
+    SceneNode found{name_of(node), {}, here};
     for (unsigned i = 0; node.mMeshes && i < node.mNumMeshes; ++i) {
-      if (node.mMeshes[i] >= scene_.mNumMeshes)
-        throw Unusable(name_, "node '" + std::string(node.mName.C_Str()) + "': mesh " +
-                                  std::to_string(node.mMeshes[i]) + " does not exist");
-      if (const aiMesh* mesh = scene_.mMeshes[node.mMeshes[i]])
-        append(*mesh, node.mMeshes[i], here);
+      const unsigned number = node.mMeshes[i];
+      if (number >= scene_.mNumMeshes)
+        throw Unusable(
+            name_, "node '" + found.name + "': mesh " + std::to_string(number) + " does not exist");
+      const aiMesh* mesh = scene_.mMeshes[number];
+      // Some of assimp's readers leave arrays out where they found nothing to put in.
+      if (!mesh || !mesh->mVertices || !mesh->mFaces) continue;
+      if (result_.meshes[number].vertices.empty()) take(*mesh, number);
+      found.meshes.push_back(number);
     }
+    if (!found.meshes.empty()) result_.nodes.push_back(std::move(found));
     for (unsigned i = 0; i < node.mNumChildren; ++i)
-      if (node.mChildren[i]) visit(*node.mChildren[i], here, depth + 1);
+      if (const aiNode* child = node.mChildren[i])
+        visit(*child, product(here, transformation_of(*child)), depth + 1);
   }
 
-  void append(const aiMesh& mesh, unsigned number, const Transformation& here) {
+  void take(const aiMesh& mesh, unsigned number) {
     const auto fault = [&](const std::string& what) {
       throw Unusable(name_, "mesh " + std::to_string(number) + ": " + what);
     };
-    // Some of assimp's readers leave arrays out where they found nothing to put in.
-    if (!mesh.mVertices || !mesh.mFaces) return;
-    const std::size_t first = result_.vertices.size();
-    if (first + mesh.mNumVertices >= std::numeric_limits<std::uint32_t>::max())
-      fault("more vertices than 32 bits number");
-    const bool stands = here == Transformation::Identity();
+    TriangleMesh& result = result_.meshes[number];
+    result.vertices.reserve(mesh.mNumVertices);
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
       const aiVector3D& v = mesh.mVertices[i];
-      Vec3<double> p(v.x, v.y, v.z);
-      if (!stands) p = here.leftCols<3>() * p + here.col(3);
-      if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+      if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
         fault("vertex " + std::to_string(i) + " is not finite");
-      result_.vertices.push_back(p);
+      result.vertices.push_back({v.x, v.y, v.z});
     }
     std::vector<std::uint32_t> corners;
     for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
@@ -77,41 +112,77 @@ class Gatherer {
         if (face.mIndices[k] >= mesh.mNumVertices)
           fault("face " + std::to_string(i) + ": vertex " + std::to_string(face.mIndices[k]) +
                 " does not exist: there are " + std::to_string(mesh.mNumVertices));
-        corners.push_back(static_cast<std::uint32_t>(first) + face.mIndices[k]);
+        corners.push_back(face.mIndices[k]);
       }
-      append_polygon(result_, corners);
+      append_polygon(result, corners);
     }
   }
 
   const aiScene& scene_;
   const std::string& name_;
-  TriangleMesh result_;
+  SceneGraph result_;
 };
 
-TriangleMesh gathered(const Assimp::Importer& importer, const aiScene* scene,
-                      const std::string& name) {
+SceneGraph gathered(const Assimp::Importer& importer, const aiScene* scene, const std::string& name,
+                    Conversion conversion) {
   if (!scene) {
     std::string why = importer.GetErrorString();
     why = why.substr(0, why.find('\n'));
     throw Unusable(name,
                    "not a mesh that assimp reads: " + (why.empty() ? "no reason given" : why));
   }
-  return Gatherer(*scene, name).gathered();
+  Transformation root = scene->mRootNode ? transformation_of(*scene->mRootNode) : identity;
+  const int index = importer.GetPropertyInteger("importerIndex", -1);
+  const aiImporterDesc* by =
+      index < 0 ? nullptr : importer.GetImporterInfo(static_cast<std::size_t>(index));
+  if (conversion == Conversion::none && by && by->mName) root = own_root(root, by->mName);
+  return Gatherer(*scene, name).gathered(root);
 }
 
 }  // namespace
 
-// No post-processing: all of assimp's steps may merge, drop or reorder.
-TriangleMesh read_with_assimp(const std::filesystem::path& path) {
-  Assimp::Importer importer;
-  return gathered(importer, importer.ReadFile(path.string(), 0), path.string());
+void SceneGraph::append(TriangleMesh& result, const SceneNode& node, const Transformation& to,
+                        const std::string& name) const {
+  for (const unsigned number : node.meshes) {
+    const TriangleMesh& mesh = meshes[number];
+    const std::size_t first = result.vertices.size();
+    if (first + mesh.vertices.size() >= std::numeric_limits<std::uint32_t>::max())
+      throw Unusable(name, "has more vertices than 32 bits number");
+    for (const auto& vertex : mesh.vertices) {
+      result.vertices.push_back(image(to, vertex));
+      if (!result.vertices.back().allFinite())
+        throw Unusable(name, "node '" + node.name + "': a vertex is not finite");
+    }
+    const auto shift = static_cast<std::uint32_t>(first);
+    for (const auto& [i, j, k] : mesh.triangles)
+      result.triangles.push_back({i + shift, j + shift, k + shift});
+  }
 }
 
-TriangleMesh parse_with_assimp(std::string_view bytes, const std::string& name,
-                               const std::string& extension) {
+TriangleMesh SceneGraph::joined(const std::string& name) const {
+  TriangleMesh result;
+  for (const SceneNode& node : nodes) append(result, node, node.to_world, name);
+  return result;
+}
+
+// No post-processing: all of assimp's steps may merge, drop or reorder.
+SceneGraph read_with_assimp(const std::filesystem::path& path) {
   Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
+  const aiScene* scene = importer.ReadFile(path.string(), 0);
+  return gathered(importer, scene, path.string(), Conversion::none);
+}
+
+SceneGraph parse_with_assimp(std::string_view bytes, const std::string& name,
+                             Conversion conversion) {
+  std::string room;
+  if (has_mark(bytes)) bytes = as_utf8(bytes, room, name);
+  Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
+  const std::string extension = std::filesystem::path(name).extension().string();
   const char* hint = extension.empty() ? "" : extension.c_str() + 1;
-  return gathered(importer, importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, hint), name);
+  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, hint);
+  return gathered(importer, scene, name, conversion);
 }
 
 }  // namespace bvlab

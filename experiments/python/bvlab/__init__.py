@@ -5,6 +5,7 @@ Does my mesh touch?
 
     import bvlab
     mesh = bvlab.Mesh(vertices, faces)              # (n, 3) real, (m, 3) integer; or bvlab.read("mine.obj")
+    parts = bvlab.read_parts("mine.glb")            # of each node its .mesh, .name and .pose
     world = bvlab.World([mesh, mesh])               # two bodies
     world.move(0, [0, 0, 0, 1, 0, 0, 0])            # x y z qw qx qy qz, object to world
     world.move(1, [2, 0, 0, 1, 0, 0, 0])
@@ -40,13 +41,14 @@ from ._bvlab import Mesh, Result, World, boxes, named_mesh, predict, read, repla
 from ._compiling import compile_in
 from ._names import (builds, configurations, formula_meshes, frames, kernels, methods, parameters, peers, precisions,
                      queries, strategies, studies, study_parameters, volumes)
+from ._parts import Part, read_parts
 from ._poses import pairs_of, poses
 from ._records import figures, record
 from ._running import run
 
-__all__ = ["Mesh", "Result", "World", "boxes", "builds", "compile_in", "configurations", "figures", "formula_meshes",
+__all__ = ["Mesh", "Part", "Result", "World", "boxes", "builds", "compile_in", "configurations", "figures", "formula_meshes",
            "frames", "kernels", "methods", "named_mesh", "pairs_of", "parameters", "peers", "poses", "precisions", "predict", "queries",
-           "read", "record", "replay", "run", "strategies", "studies", "study_parameters", "volumes"]
+           "read", "read_parts", "record", "replay", "run", "strategies", "studies", "study_parameters", "volumes"]
 
 for _each in (Mesh, Result, World, boxes, named_mesh, predict, read, replay):
     _each.__module__ = __name__  # where they are to be found

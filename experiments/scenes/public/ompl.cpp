@@ -6,10 +6,10 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 
+#include "experiments/scenes/mesh_formats.hpp"
 #include "experiments/scenes/places.hpp"
 #include "experiments/scenes/public/motions.hpp"
 #include "experiments/scenes/random.hpp"
-#include "experiments/scenes/read_mesh.hpp"
 #include "experiments/scenes/text_scanner.hpp"
 
 namespace bvlab {
@@ -46,11 +46,15 @@ Vec3<double> middle_of_vertices(const std::string& bytes, const std::string& nam
   return {sum.x, sum.y, sum.z};
 }
 
+/// As assimp gives it to OMPL.app, whose states are in those axes and units.
+NamedMesh given_to_ompl(const PublicFiles& files, const std::string& path) {
+  return {stem(path), parse_with_assimp(files[path], path, Conversion::of_assimp).joined(path)};
+}
+
 /// The robot about its middle, then the environment.
 std::vector<NamedMesh> meshes_of(const PublicFiles& files, const std::string& robot,
                                  const std::string& environment) {
-  std::vector<NamedMesh> meshes{{stem(robot), parse_mesh(files[robot], robot)},
-                                {stem(environment), parse_mesh(files[environment], environment)}};
+  std::vector<NamedMesh> meshes{given_to_ompl(files, robot), given_to_ompl(files, environment)};
   const Vec3<double> middle = middle_of_vertices(files[robot], robot);
   for (auto& vertex : meshes[0].mesh.vertices) vertex -= middle;
   return meshes;

@@ -116,23 +116,57 @@ void definition(std::string_view bytes) {
   });
 }
 
+namespace {
+
+void check(const TriangleMesh& mesh) {
+  demand(!mesh.triangles.empty(), "a mesh has triangles");
+  for (const auto& vertex : mesh.vertices) demand(vertex.allFinite(), "vertices are finite");
+  for (const auto& triangle : mesh.triangles)
+    for (const auto corner : triangle)
+      demand(corner < mesh.vertices.size(), "corners are vertices");
+  const Extent extent = extent_of(mesh);
+  demand(extent.centre.allFinite() && extent.radius >= 0 && extent.leaf_radius >= 0,
+         "the mesh has an extent");
+}
+
+/// The mesh, and its parts, which have the same triangles.
+std::size_t mesh_and_parts(std::string_view bytes, const std::string& name) {
+  ReadOptions quiet;
+  quiet.say = [&](const std::string& line) {
+    demand(line.starts_with(name + ": ") && line.find('\n') == line.npos,
+           "what is said names its file, in one line");
+  };
+  std::size_t size = 0;
+  refusing(name, [&] {
+    const TriangleMesh mesh = parse_mesh(bytes, name, quiet);
+    check(mesh);
+    size = mesh.vertices.size() + mesh.triangles.size();
+    std::size_t in_parts = 0;
+    for (const MeshPart& part : parse_parts(bytes, name, quiet)) {
+      check(*part.mesh);
+      demand(part.pose.translation.allFinite() && part.pose.rotation.allFinite(),
+             "poses are finite");
+      in_parts += part.mesh->triangles.size();
+    }
+    demand(in_parts == mesh.triangles.size(), "parts have the triangles of the mesh");
+  });
+  return size;
+}
+
+}  // namespace
+
 void mesh(std::string_view bytes) {
   if (bytes.empty()) return;
   static const std::string names[] = {"a.off", "a.obj", "a.ply", "a.stl"};
-  const std::string& name = names[static_cast<unsigned char>(bytes[0]) % 4];
-  refusing(name, [&] {
-    const TriangleMesh mesh = parse_mesh(bytes.substr(1), name);
-    demand(!mesh.triangles.empty(), "a mesh has triangles");
-    for (const auto& vertex : mesh.vertices) demand(vertex.allFinite(), "vertices are finite");
-    for (const auto& triangle : mesh.triangles)
-      for (const auto corner : triangle)
-        demand(corner < mesh.vertices.size(), "corners are vertices");
-    demand(mesh.vertices.size() + mesh.triangles.size() <= 2 * bytes.size(),
-           "no more than the file holds");
-    const Extent extent = extent_of(mesh);
-    demand(extent.centre.allFinite() && extent.radius >= 0 && extent.leaf_radius >= 0,
-           "the mesh has an extent");
-  });
+  const std::size_t size =
+      mesh_and_parts(bytes.substr(1), names[static_cast<unsigned char>(bytes[0]) % 4]);
+  demand(size <= 2 * bytes.size(), "no more than the file holds");
+}
+
+void scene(std::string_view bytes) {
+  if (bytes.empty()) return;
+  static const std::string names[] = {"a.dae", "a.gltf"};
+  mesh_and_parts(bytes.substr(1), names[static_cast<unsigned char>(bytes[0]) % 2]);
 }
 
 }  // namespace bvlab::fuzz

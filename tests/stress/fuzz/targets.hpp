@@ -15,12 +15,14 @@ void trace(std::string_view bytes);       ///< poses, and posing by them
 void boxes(std::string_view bytes);       ///< box traces, float32 or float64
 void definition(std::string_view bytes);  ///< experiments, and their cells
 void mesh(std::string_view bytes);        ///< the first byte chooses among off, obj, ply and stl
+void scene(std::string_view bytes);       ///< by assimp: the first byte chooses dae or gltf
 
 struct Named {
   std::string_view name;  ///< of the folder in the corpus, too
   Target target;
 };
 inline constexpr Named targets[] = {
-    {"npy", npy}, {"trace", trace}, {"boxes", boxes}, {"definition", definition}, {"mesh", mesh}};
+    {"npy", npy}, {"trace", trace}, {"boxes", boxes}, {"definition", definition}, {"mesh", mesh},
+    {"scene", scene}};
 
 }  // namespace bvlab::fuzz

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// Files of several parts, and what of a scene is applied: its nodes' transformations, but neither
+/// axes nor unit.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "experiments/files/unusable.hpp"
+#include "experiments/scenes/read_mesh.hpp"
+
+namespace bvlab {
+namespace {
+
+/// The tetrahedron (0,0,0) (1,0,0) (0,2,0) (0,0,3) in a node that `transformation` moves.
+std::string dae(const std::string& asset, const std::string& transformation = "") {
+  return R"(<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>)" +
+         asset + R"(</asset>
+<library_geometries><geometry id="g" name="g"><mesh>
+<source id="p"><float_array id="pa" count="12">0 0 0 1 0 0 0 2 0 0 0 3</float_array>
+<technique_common><accessor source="#pa" count="4" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/>
+<p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n" name="part">)" +
+         transformation + R"(<instance_geometry url="#g"/></node></visual_scene>
+</library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+std::pair<Vec3<double>, Vec3<double>> box_of(const TriangleMesh& mesh) {
+  Vec3<double> lo = mesh.vertices.at(0), hi = lo;
+  for (const auto& v : mesh.vertices) lo = lo.cwiseMin(v), hi = hi.cwiseMax(v);
+  return {lo, hi};
+}
+
+TEST(ReadParts, AxesAndUnitsAreNotApplied) {
+  for (const std::string axis : {"X_UP", "Y_UP", "Z_UP", ""})
+    for (const std::string unit : {"0.001", "1", "0.0254", ""}) {
+      std::string asset;
+      if (!unit.empty()) asset += "<unit meter=\"" + unit + "\" name=\"u\"/>";
+      if (!axis.empty()) asset += "<up_axis>" + axis + "</up_axis>";
+      const auto [lo, hi] = box_of(parse_mesh(dae(asset), "a.dae"));
+      EXPECT_EQ(lo, Vec3<double>(0, 0, 0)) << asset;
+      EXPECT_EQ(hi, Vec3<double>(1, 2, 3)) << asset;
+      // What the file's nodes do is.
+      const auto moved =
+          parse_mesh(dae(asset, "<translate>10 20 30</translate><scale>2 2 2</scale>"), "a.dae");
+      EXPECT_EQ(box_of(moved).first, Vec3<double>(10, 20, 30)) << asset;
+      EXPECT_EQ(box_of(moved).second, Vec3<double>(12, 24, 36)) << asset;
+    }
+}
+
+/// glTF with a triangle in its buffer; `nodes` show it.
+std::string gltf(const std::string& roots, const std::string& nodes) {
+  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": )" + roots +
+         R"(}], "nodes": )" + nodes +
+         R"(,
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,)"
+         R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+}
+
+/// Posed and put together, parts are the mesh.
+void expect_whole(const std::vector<MeshPart>& parts, const TriangleMesh& mesh) {
+  std::size_t triangle = 0;
+  for (const MeshPart& part : parts)
+    for (std::size_t i = 0; i < part.mesh->triangles.size(); ++i, ++triangle) {
+      ASSERT_LT(triangle, mesh.triangles.size());
+      const auto posed = part.pose(part.mesh->corners(i)), whole = mesh.corners(triangle);
+      for (int k = 0; k < 3; ++k) EXPECT_LT((posed[k] - whole[k]).norm(), 1e-5) << part.name;
+      EXPECT_LT(
+          (part.pose.rotation.transpose() * part.pose.rotation - Mat3<double>::Identity()).norm(),
+          1e-14);
+      EXPECT_GT(part.pose.rotation.determinant(), 0);
+    }
+  EXPECT_EQ(triangle, mesh.triangles.size());
+}
+
+TEST(ReadParts, NodesOfAScene) {
+  const std::string text = gltf("[0, 4]", R"([
+    {"name": "base", "mesh": 0, "children": [1, 2, 3]},
+    {"name": "moved", "mesh": 0, "translation": [10, 0, 0]},
+    {"name": "turned", "mesh": 0, "translation": [0, 5, 0], "rotation": [0, 0, 0.6, 0.8]},
+    {"name": "large", "mesh": 0, "scale": [2, 3, -4], "rotation": [0.6, 0, 0, 0.8]},
+    {"name": "empty"}])");
+  const auto parts = parse_parts(text, "a.gltf");
+  ASSERT_EQ(parts.size(), 4u);
+  const char* names[] = {"base", "moved", "turned", "large"};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(parts[i].name, names[i]);
+  expect_whole(parts, parse_mesh(text, "a.gltf"));
+  // Nodes alike share their mesh; a pose is a rotation and a translation, the rest is in the mesh.
+  EXPECT_EQ(parts[0].mesh, parts[1].mesh);
+  EXPECT_EQ(parts[0].mesh, parts[2].mesh);
+  EXPECT_NE(parts[0].mesh, parts[3].mesh);
+  EXPECT_EQ(parts[1].pose.translation, Vec3<double>(10, 0, 0));
+  const ReadOptions scaled{.scale = 0.5};
+  const auto smaller = parse_parts(text, "a.gltf", scaled);
+  EXPECT_EQ(smaller[1].pose.translation, Vec3<double>(5, 0, 0));
+  EXPECT_EQ(smaller[0].mesh, smaller[1].mesh);
+  expect_whole(smaller, parse_mesh(text, "a.gltf", scaled));
+  const auto of_dae =
+      parse_parts(dae("<up_axis>Z_UP</up_axis>", "<translate>1 2 3</translate>"), "a.dae");
+  ASSERT_EQ(of_dae.size(), 1u);
+  EXPECT_EQ(of_dae[0].name, "part");
+  EXPECT_EQ(of_dae[0].pose.translation, Vec3<double>(1, 2, 3));
+  std::string without_a_name = dae("");
+  without_a_name.replace(without_a_name.find(" name=\"part\""), 12, "");
+  EXPECT_EQ(parse_parts(without_a_name, "a.dae").at(0).name, "n");
+}
+
+TEST(ReadParts, MarksAndEncodings) {
+  const std::string nodes = gltf("[0]", R"([{"mesh": 0}])"), node = dae("");
+  for (const auto& [name, text] : {std::pair("a.gltf", nodes), std::pair("a.dae", node)}) {
+    std::string little = "\xff\xfe", big = "\xfe\xff";
+    for (const char c : text) {
+      little.append({c, '\0'});
+      big.append({'\0', c});
+    }
+    for (const auto& bytes : {"\xef\xbb\xbf" + text, little, big})
+      EXPECT_EQ(parse_mesh(bytes, name).triangles, parse_mesh(text, name).triangles) << name;
+  }
+}
+
+TEST(ReadParts, ObjectsGroupsAndSolids) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+  const auto parts = parse_parts(vertices +
+                                     "f 1 2 3\ng left side\nf 2 3 4\ng part#1 # a comment\n"
+                                     "f 1 3 4\ng left side\nf 1 2 3 4\ng empty\n",
+                                 "a.obj");
+  ASSERT_EQ(parts.size(), 3u);
+  EXPECT_EQ(parts[0].name, "");
+  EXPECT_EQ(parts[1].name, "left side");
+  EXPECT_EQ(parts[2].name, "part#1");
+  EXPECT_EQ(parts[1].mesh->triangles.size(), 3u);
+  EXPECT_EQ(parts[2].mesh->vertices.size(), 3u);
+  EXPECT_EQ(parts[2].mesh->vertices[2], Vec3<double>(0, 0, 1));
+  const auto objects =
+      parse_parts(vertices + "o a\ng x\nf 1 2 3\ng y\nf 2 3 4\no b\nf 1 3 4\n", "a.obj");
+  ASSERT_EQ(objects.size(), 3u);
+  EXPECT_EQ(objects[0].name, "a/x");
+  EXPECT_EQ(objects[2].name, "b");
+  const std::string facet =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+      "0\nendloop\nendfacet\n";
+  const auto solids = parse_parts(
+      "solid a b\n" + facet + "endsolid a b\nsolid c\n" + facet + facet + "endsolid c\n", "a.stl");
+  ASSERT_EQ(solids.size(), 2u);
+  EXPECT_EQ(solids[0].name, "a b");
+  EXPECT_EQ(solids[1].mesh->triangles.size(), 2u);
+  EXPECT_EQ(parse_parts("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "a.off").size(), 1u);
+}
+
+TEST(ReadParts, ScaleIsChecked) {
+  const std::string off = "OFF\n3 1 0\n0 0 0\n1e300 0 0\n0 1 0\n3 0 1 2\n";
+  EXPECT_EQ(parse_mesh(off, "a.off", {.scale = 0.001}).vertices[2], Vec3<double>(0, 0.001, 0));
+  for (const double scale : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), 1e10})
+    EXPECT_THROW(parse_mesh(off, "a.off", {.scale = scale}), Unusable) << scale;
+}
+
+}  // namespace
+}  // namespace bvlab
