@@ -22,6 +22,7 @@
 
 #include "traversal/answers_in_order.hpp"
 #include "traversal/near_pairs.hpp"
+#include "traversal/pair_choice.hpp"
 #include "traversal/queries/contacts.hpp"
 
 namespace bvlab {
@@ -42,6 +43,9 @@ class WorldOf {
       : pairs_(std::move(pairs)),
         near_(pairs_.size(), threads,
               [this](std::size_t i) -> const TriangleMesh& { return pairs_.mesh(i); }) {}
+
+  /// Only these pairs are queried. To be called before the first update.
+  void choose(const PairChoice& choice) { near_.choose(PairFilter(choice)); }
 
   /// Sets a body's pose. A body that was never moved is not in the scene.
   void move(std::uint32_t object, const Pose& pose) { near_.move(object, pose); }
@@ -80,7 +84,7 @@ class WorldOf {
     near_.settle();
   }
 
-  /// The number of pairs whose boxes overlap.
+  /// The number of chosen pairs whose boxes overlap.
   std::size_t near() const { return near_.size(); }
   /// The number of pairs that the last update queried.
   std::size_t queried() const { return queried_; }

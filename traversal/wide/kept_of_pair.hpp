@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "traversal/lasting_answer.hpp"
+#include "traversal/queries/candidate.hpp"
 #include "traversal/wide/gap_measure.hpp"
 
 namespace bvlab {
@@ -22,8 +23,8 @@ struct PairAnswer {
 /// All else that is kept, read where the answer has expired by PairAnswer::until.
 struct KeptOfPair {
   LastingAnswer lasting;
-  double distance = 0;  ///< the last answer, where a distance is sought
-  NodePair touched{};   ///< GapMeasure::touched of the last traversal that had one
+  NearestTriangles nearest;  ///< the last answer, where a distance is sought
+  NodePair touched{};        ///< GapMeasure::touched of the last traversal that had one
   WideFront front;
   FrontPause pause;
   std::optional<Crossing> crossing;

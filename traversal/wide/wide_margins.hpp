@@ -146,8 +146,8 @@ class WideMargins {
   /// Gives a query the last answer.
   template <class Query>
   void repeat(std::size_t p, Query& query) const {
-    if constexpr (requires { query.repeat(0.0); })
-      query.repeat(kept_[p].distance);
+    if constexpr (requires { query.nearest(); })
+      query.repeat(kept_[p].nearest);
     else if (answers_[p].touching)
       query.known(kept_[p].touched.a, kept_[p].touched.b);
   }
@@ -156,7 +156,7 @@ class WideMargins {
   template <class Query>
   void remember(std::size_t p, const ObjectPair& pair, const Query& query, const NoRecord&) {
     answers_[p] = {unknown, bodies_.epochs(pair), false};
-    kept_[p].distance = query.distance();
+    kept_[p].nearest = query.nearest();
   }
   template <class Query, class S>
   void remember(std::size_t p, const ObjectPair& pair, const Query& query,
