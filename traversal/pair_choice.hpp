@@ -16,11 +16,11 @@ namespace bvlab {
 
 /// A pair (j, i) is the pair (i, j).
 struct PairChoice {
-  std::optional<std::vector<ObjectPair>> only;  ///< the pairs asked for; nothing: all
-  std::vector<ObjectPair> without;              ///< pairs left out
+  std::optional<std::vector<ObjectPair>> only{};  ///< the pairs asked for; nothing: all
+  std::vector<ObjectPair> without{};              ///< pairs left out
   /// The group of each body, where there are groups: pairs within one are left out. Bodies of a
   /// negative number, or beyond the end, are in no group.
-  std::vector<std::int64_t> groups;
+  std::vector<std::int64_t> groups{};
 };
 
 /// Whether a pair is among the chosen. O(log k), k the pairs listed.

@@ -98,7 +98,9 @@ void run(const S& scene, const Arguments& arguments) {
     meshes.push_back(std::move(mesh));
   }
   require_places_of_meshes(arguments.meshes, names, read, written[0]);
-  const auto trace = scene.generate(extents, touches_any(meshes, scene.objects));
+  // Trees are made for scenes that ask.
+  const auto touches = HasOwnMeshes<S> ? TouchesAny() : touches_any(meshes, scene.objects);
+  const auto trace = scene.generate(extents, touches);
   write_meshes(arguments.meshes, names, meshes);
   write_npy<double>(arguments.out, trace.shape, trace.data);
 }

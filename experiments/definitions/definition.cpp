@@ -341,7 +341,8 @@ void set(Settings& settings, const Settings& to) {
 /// Parameters that are columns only where a definition sets them: records from before there were
 /// these can be continued.
 bool is_column_where_set(std::string_view name) {
-  return name == "joints" || name == "pairs" || name == "without" || name == "groups";
+  return name == "joints" || name == "asked_pairs" || name == "without_pairs" ||
+          name == "groups";
 }
 
 }  // namespace
@@ -365,9 +366,9 @@ const std::vector<Parameter>& parameters() {
     Scenes::for_each(
         [&]<class S>(std::type_identity<S>) { S{}.visit_options(AddingParameter{all}); });
     for (const auto& each : std::initializer_list<Parameter>{
-             {"pairs", "",
+             {"asked_pairs", "",
               "file of the pairs asked about: `.npy`, uint32 or int64, shape (k, 2)"},
-             {"without", "", "file of pairs left out, as `pairs`"},
+             {"without_pairs", "", "file of pairs left out, as `asked_pairs`"},
              {"groups", "",
               "file of the group of each body: `.npy`, shape (objects,); pairs within one are left "
               "out"},

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/python/pair_arrays.hpp"
 
+#include <optional>
+#include <utility>
+
 namespace bvlab {
 namespace {
 
@@ -35,9 +38,9 @@ py::array_t<std::uint32_t> rows_of(std::vector<ObjectPair>&& pairs) {
 
 py::array records_of(std::vector<NearestPair>&& nearest, std::vector<py::ssize_t> shape) {
   const auto bytes = static_cast<py::ssize_t>(nearest.size() * sizeof(NearestPair));
-  const py::array records = viewed(taken<std::uint8_t>(std::move(nearest), {bytes}),
+  py::array records = viewed(taken<std::uint8_t>(std::move(nearest), {bytes}),
                                    "[('triangles', '<u4', (2,)), ('points', '<f8', (2, 3))]");
-  return records.attr("reshape")(py::tuple(py::cast(shape)));
+  return records.reshape(std::move(shape));
 }
 
 }  // namespace bvlab

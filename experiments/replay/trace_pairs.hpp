@@ -83,7 +83,7 @@ class TracePairs {
     if (broad_phase == BroadPhase::on) {
       near_.emplace(pairs_.size(), threads,
                     [this](std::size_t i) -> const TriangleMesh& { return pairs_.mesh(i); });
-      if (trace.chosen) near_->choose(PairFilter({.only = *trace.chosen}));
+      if (trace.chosen) near_->choose(PairFilter(PairChoice{.only = *trace.chosen}));
       return;
     }
     const std::vector<ObjectPair> all = object_pairs(trace);

@@ -22,9 +22,9 @@ struct NamedNumbers {
 };
 /// What is not there says nothing.
 struct PairArrays {
-  std::optional<NamedNumbers> pairs;    ///< (k, 2): the pairs asked for
-  std::optional<NamedNumbers> without;  ///< (k, 2): pairs left out
-  std::optional<NamedNumbers> groups;   ///< (objects,): pairs within a group are left out
+  std::optional<NamedNumbers> pairs{};    ///< (k, 2): the pairs asked for
+  std::optional<NamedNumbers> without{};  ///< (k, 2): pairs left out
+  std::optional<NamedNumbers> groups{};   ///< (objects,): pairs within a group are left out
 
   bool say_nothing() const { return !pairs && !without && !groups; }
 };

@@ -213,14 +213,16 @@ Prepared prepared_motion(const Cell& cell) {
     std::vector<Extent> extents;
     extents.reserve(ready.meshes.size());
     for (const auto& mesh : ready.meshes) extents.push_back(extent_of(mesh));
-    auto array = scene.generate(extents, touches_any(ready.meshes, scene.objects));
+    auto array = scene.generate(extents, HasOwnMeshes<S>
+                                             ? TouchesAny()
+                                             : touches_any(ready.meshes, scene.objects));
     ready.trace = {array.shape[0], array.shape[1], std::move(array.data)};
   });
   return ready;
 }
 
 PairArrays pair_arrays_of(const Cell& cell) {
-  return read_pair_arrays({cell["pairs"], cell["without"], cell["groups"]});
+  return read_pair_arrays({cell["asked_pairs"], cell["without_pairs"], cell["groups"]});
 }
 
 }  // namespace

@@ -20,6 +20,7 @@
 namespace bvlab {
 namespace {
 
+using List = std::vector<ObjectPair>;
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
 Pairs rows(const std::vector<ObjectPair>& pairs) {
@@ -31,13 +32,14 @@ Pairs rows(const std::vector<ObjectPair>& pairs) {
 TEST(PairChoice, ListsWhatIsAskedForWithoutWhatIsLeftOut) {
   EXPECT_EQ(rows(chosen_pairs({}, 3)), (Pairs{{0, 1}, {0, 2}, {1, 2}}));
   EXPECT_TRUE(chosen_pairs({}, 1).empty());
-  EXPECT_EQ(rows(chosen_pairs({.only = {{{3, 1}, {0, 2}}}}, 4)), (Pairs{{1, 3}, {0, 2}}));
-  EXPECT_EQ(rows(chosen_pairs({.without = {{2, 0}}}, 3)), (Pairs{{0, 1}, {1, 2}}));
+  EXPECT_EQ(rows(chosen_pairs({.only = List{{3, 1}, {0, 2}}}, 4)), (Pairs{{1, 3}, {0, 2}}));
+  EXPECT_EQ(rows(chosen_pairs({.without = List{{2, 0}}}, 3)), (Pairs{{0, 1}, {1, 2}}));
   EXPECT_EQ(rows(chosen_pairs({.groups = {5, -1, 5, -1}}, 4)),
             (Pairs{{0, 1}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}));
-  EXPECT_EQ(rows(chosen_pairs({.only = {{{0, 1}, {0, 2}, {1, 2}}}, .without = {{1, 2}}, .groups = {0, 0, 1}}, 3)),
-            (Pairs{{0, 2}}));
-  EXPECT_TRUE(chosen_pairs({.only = std::vector<ObjectPair>{}}, 4).empty());
+  const PairChoice all_three{
+      .only = List{{0, 1}, {0, 2}, {1, 2}}, .without = List{{1, 2}}, .groups = {0, 0, 1}};
+  EXPECT_EQ(rows(chosen_pairs(all_three, 3)), (Pairs{{0, 2}}));
+  EXPECT_TRUE(chosen_pairs({.only = List{}}, 4).empty());
 }
 
 TEST(PairChoice, RefusesWithTheRow) {
@@ -166,8 +168,8 @@ TEST(ChosenPairs, HaveTheAnswersOfAllPairs) {
     return static_cast<std::size_t>(std::find_if(all.begin(), all.end(), same) - all.begin());
   };
   for (const PairChoice& choice :
-       {PairChoice{.only = {{{7, 2}, {0, 1}, {3, 9}, {4, 5}}}},
-        PairChoice{.groups = {0, 0, 0, 1, 1, 1, -1, -1, 2, 2}}, PairChoice{.without = {{1, 2}}}})
+       {PairChoice{.only = List{{7, 2}, {0, 1}, {3, 9}, {4, 5}}},
+        PairChoice{.groups = {0, 0, 0, 1, 1, 1, -1, -1, 2, 2}}, PairChoice{.without = List{{1, 2}}}})
     for (const char* query : {"touching", "contacts", "distance"}) {
       Variant from_roots;
       from_roots.query = query;
@@ -203,7 +205,7 @@ TEST(ChosenPairs, HaveTheAnswersOfAllPairs) {
 
 TEST(ChosenPairs, AreAllThatAWorldQueries) {
   const Stage stage = walking(14, 4);
-  const PairChoice choice{.without = {{0, 1}, {2, 3}}, .groups = {0, 1, 2, 3, 4, 4, 4, 4, 0}};
+  const PairChoice choice{.without = List{{0, 1}, {2, 3}}, .groups = {0, 1, 2, 3, 4, 4, 4, 4, 0}};
   Variant variant;
   const auto all = make_world(stage.meshes, stage.trace.objects, variant),
              some = make_world(stage.meshes, stage.trace.objects, variant);

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`bvlab replay`: --nearest, --pairs, --without, --groups and --broad-phase on the command line; `bvlab scene parts`."""
 
+import csv
 import json
 import os
 import subprocess
@@ -114,6 +115,33 @@ class PairsOfAReplay(unittest.TestCase):
             self.assertIsNone(json.loads((self.folder / "totals.json").read_text())["near"])
             np.testing.assert_array_equal(self.answers(query, "--broad-phase", "on"), whole)
             self.assertEqual(json.loads((self.folder / "totals.json").read_text())["near"], 6)
+
+    def test_a_run_asks_about_chosen_pairs(self):
+        pairs = self.array("asked.npy", [[3, 1], [0, 1], [2, 3]], np.uint32)
+        definition = self.folder / "chosen.toml"
+        definition.write_text(f"""
+name = "chosen"
+[parameters]
+scene = "recorded"
+trace = "{self.folder / 'poses.npy'}"
+mesh = "{self.folder / 'cube.off'}"
+objects = 5
+frames = 2
+asked_pairs = "{pairs}"
+[[axis]]
+name = "strategy"
+values = ["recursive", "margins"]
+""")
+        done = run("run", definition, "--record", self.folder / "record", "--counts")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.folder / "record" / "chosen.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([(row["asked_pairs"], row["pairs"], row["hits"]) for row in rows], [(str(pairs), "6", "4")] * 2)
+        self.assertNotIn("joints", rows[0])
+        definition.write_text(definition.read_text().replace("asked.npy", "nowhere.npy"))
+        done = run("run", definition, "--record", self.folder / "other", "--counts")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("nowhere.npy", done.stderr)
 
     def test_parts_stand_in_their_order(self):
         folder, trace = self.folder / "parts", self.folder / "parts.npy"
