@@ -5,8 +5,8 @@
 /// Points are computed in double-double and rounded. So each lies on its triangle, and the two are
 /// as far apart as the query says, up to the rounding of their coordinates and the error bound of
 /// triangle_distance.hpp: with M the largest coordinate of the two triangles in the world, a point
-/// is off its triangle by at most 2^-52 M, and the distance of the points differs from the query's
-/// by at most 2^-51 M + 1e-14 of it. Surfaces that touch have one common point.
+/// is off its triangle by at most 2^-51 M, and the distance of the points differs from the query's
+/// by at most 2^-50 M + 1e-14 of it. Surfaces that touch have one common point.
 #pragma once
 
 #include <array>

@@ -28,7 +28,7 @@ inline void expect_nearest(const NearestPair& pair, double answer, const Triangl
   const Triangle a = a_in_world(mesh_a.corners(pair.triangles[0])),
                  b = b_in_world(mesh_b.corners(pair.triangles[1]));
   ASSERT_EQ(distance(a, b).distance, answer) << where;
-  const double rounding = 0x1p-52 * largest_coordinate(a, b);
+  const double rounding = 0x1p-51 * largest_coordinate(a, b);
   const auto& [on_a, on_b] = pair.points;
   ASSERT_LE(distance(a, {on_a, on_a, on_a}).distance, rounding) << where;
   ASSERT_LE(distance(b, {on_b, on_b, on_b}).distance, rounding) << where;
