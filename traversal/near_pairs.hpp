@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Tracks the pairs of bodies that are near each other: a broad phase over boxes around the bodies,
-/// and a slot for each chosen pair whose boxes overlap. A pair keeps its slot from the frame in which its
-/// boxes begin to overlap to the frame in which they part; slots are reused.
+/// and a slot for each chosen pair whose boxes overlap. A pair keeps its slot from the frame in
+/// which its boxes begin to overlap to the frame in which they part; slots are reused.
 ///
 /// A frame costs the broad phase and O(m + q), for m bodies that moved and q pairs that involve
 /// them; O(slots) where over a quarter of the bodies moved. A body is in the scene from its first

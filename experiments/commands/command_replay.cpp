@@ -144,8 +144,7 @@ void run(Arguments arguments) {
   const BroadPhase broad_phase = broad_phase_from(arguments.broad_phase);
   Chosen chosen;
   if (arguments.configuration) {
-    chosen = configured(arguments.variant, *arguments.configuration, meshes, &trace,
-                        broad_phase);
+    chosen = configured(arguments.variant, *arguments.configuration, meshes, &trace, broad_phase);
     arguments.variant = chosen.variant;
   }
   const Count count = arguments.count == "on" ? Count::on : Count::off;

@@ -45,8 +45,8 @@ std::vector<NamedMesh> meshes_of(const S& scene, const Arguments& arguments) {
   return meshes;
 }
 
-/// 0-bunny.off, 1-torus.off ...: in the order in which replay takes them, and in which a shell lists
-/// them.
+/// 0-bunny.off, 1-torus.off ...: in the order in which replay takes them, and in which a shell
+/// lists them.
 std::vector<std::filesystem::path> places_of_meshes(const std::string& directory,
                                                     const std::vector<std::string>& names) {
   std::vector<std::filesystem::path> places;

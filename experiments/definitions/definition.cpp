@@ -341,8 +341,7 @@ void set(Settings& settings, const Settings& to) {
 /// Parameters that are columns only where a definition sets them: records from before there were
 /// these can be continued.
 bool is_column_where_set(std::string_view name) {
-  return name == "joints" || name == "asked_pairs" || name == "without_pairs" ||
-          name == "groups";
+  return name == "joints" || name == "asked_pairs" || name == "without_pairs" || name == "groups";
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include "experiments/python/arrays.hpp"
 #include "experiments/python/meshes.hpp"
 #include "experiments/python/module.hpp"
-#include "experiments/python/signals.hpp"
 #include "experiments/python/pair_arrays.hpp"
+#include "experiments/python/signals.hpp"
 #include "experiments/python/variants.hpp"
 #include "experiments/replay/coherence.hpp"
 #include "experiments/replay/configurations.hpp"
@@ -93,8 +93,8 @@ std::shared_ptr<Result> play(const py::object& given_meshes, const py::object& g
     require_finite_corners(trace, "poses", meshes.span());
     Chosen chosen{variant, ""};
     if (words.configuration)
-      chosen = configured(variant, *words.configuration, meshes.span(), &trace,
-                          options.broad_phase);
+      chosen =
+          configured(variant, *words.configuration, meshes.span(), &trace, options.broad_phase);
     variant = chosen.variant;
     ReplayResult played = replay(meshes.span(), trace, variant, options);
     Totals of_it = totals_of(played, meshes.span(), trace, variant, options);
@@ -105,9 +105,8 @@ std::shared_ptr<Result> play(const py::object& given_meshes, const py::object& g
   auto all = std::make_shared<Result>(py::none(), dictionary(totals));
   if (wanted.answers) all->answers = answers_of(result, trace, variant.query);
   if (wanted.nearest)
-    all->nearest = records_of(std::move(result.nearest),
-                              {static_cast<py::ssize_t>(trace.frames),
-                               static_cast<py::ssize_t>(trace.pairs())});
+    all->nearest = records_of(std::move(result.nearest), {static_cast<py::ssize_t>(trace.frames),
+                                                          static_cast<py::ssize_t>(trace.pairs())});
   all->asked = Trace{0, trace.objects, {}, trace.chosen};
   if (wanted.series) all->series = series_of(std::move(result.series));
   if (wanted.frame_seconds) {
@@ -197,8 +196,9 @@ void add_result(py::module_& module) {
   type.def_readonly("answers", &Result::answers,
                     R"(Answers as --out has them; see replay and boxes.
 None where answers=False.)")
-      .def_readonly("nearest", &Result::nearest,
-                    R"(Per frame and pair, the nearest triangles and points; None unless nearest=True.
+      .def_readonly(
+          "nearest", &Result::nearest,
+          R"(Per frame and pair, the nearest triangles and points; None unless nearest=True.
 
 A structured array (frames, pairs): nearest["triangles"], uint32 (frames, pairs, 2), of i and of j;
 nearest["points"], float64 (frames, pairs, 2, 3), on i and on j, in the world.)")

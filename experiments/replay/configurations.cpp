@@ -101,8 +101,7 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
   options.count = Count::on, options.keep_answers = false, options.keep_series = true;
   // As it will be played.
   const bool pays = broad_phase == BroadPhase::where_it_pays && has_many_pairs(trace);
-  options.broad_phase =
-      pays || broad_phase == BroadPhase::on ? BroadPhase::on : BroadPhase::off;
+  options.broad_phase = pays || broad_phase == BroadPhase::on ? BroadPhase::on : BroadPhase::off;
   Chosen best;
   double least = std::numeric_limits<double>::infinity();
   std::ostringstream costs;

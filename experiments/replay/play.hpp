@@ -126,7 +126,8 @@ class PlayedBy final : public Player {
            ReplayResult& result)
       : result_(result),
         options_(options),
-        engine_(std::move(pairs), trace, uses_broad_phase<Query>(trace, options) ? BroadPhase::on : BroadPhase::off,
+        engine_(std::move(pairs), trace,
+                uses_broad_phase<Query>(trace, options) ? BroadPhase::on : BroadPhase::off,
                 static_cast<int>(options.threads)),
         answers_(result, trace, options, how),
         poses_(trace) {}

@@ -13,8 +13,7 @@ namespace {
 
 enum class Repeats : std::uint8_t { allowed, refused };
 
-std::vector<ObjectPair> pairs_from(const NamedNumbers& rows, std::size_t objects,
-                                   Repeats repeats) {
+std::vector<ObjectPair> pairs_from(const NamedNumbers& rows, std::size_t objects, Repeats repeats) {
   std::vector<ObjectPair> pairs;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> seen;
   for (std::size_t row = 0; 2 * row < rows.values.size(); ++row) {
@@ -26,7 +25,8 @@ std::vector<ObjectPair> pairs_from(const NamedNumbers& rows, std::size_t objects
         refuse("no object " + std::to_string(number) + "; there are " + std::to_string(objects));
       return static_cast<std::uint32_t>(number);
     };
-    const auto [i, j] = std::minmax({object(rows.values[2 * row]), object(rows.values[2 * row + 1])});
+    const auto [i, j] =
+        std::minmax({object(rows.values[2 * row]), object(rows.values[2 * row + 1])});
     if (i == j) refuse("object " + std::to_string(i) + " with itself");
     if (repeats == Repeats::refused) {
       const auto [first, fresh] = seen.try_emplace({i, j}, row);
@@ -51,8 +51,8 @@ PairChoice pair_choice(const PairArrays& arrays, std::size_t objects) {
   if (arrays.groups) {
     const auto& [name, groups] = *arrays.groups;
     if (groups.size() != objects)
-      throw Unusable(name, "has groups of " + std::to_string(groups.size()) + " objects; there are " +
-                               std::to_string(objects));
+      throw Unusable(name, "has groups of " + std::to_string(groups.size()) +
+                               " objects; there are " + std::to_string(objects));
     choice.groups = groups;
   }
   return choice;

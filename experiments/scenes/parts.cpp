@@ -17,27 +17,34 @@ using Index = std::uint32_t;
 using Point = Vec3<double>;
 using Squares = std::array<Index, 3>;
 
-constexpr Point bay{4, 4, 3};
+const Point bay{4, 4, 3};
 constexpr double thickness = 0.2, overlap = 0.001;
 constexpr std::size_t parts_of_bay = 12;
 
-/// The corner between `low` and `high` that is `at` of `squares` along each axis; the last is
-/// exactly `high`.
-Point corner(const Point& low, const Point& high, const Squares& at, const Squares& squares) {
+/// Initialised from braces, so that what is drawn for it is drawn in order.
+struct Box {
+  Point low, high;
+  Squares squares;
+};
+
+/// The corner that is `at` of the squares along each axis; the last is exactly at `high`.
+Point corner(const Box& box, const Squares& at) {
   Point p;
-  for (int d = 0; d < 3; ++d)
-    p[d] = at[d] == squares[d] ? high[d]
-                               : low[d] + (high[d] - low[d]) * (static_cast<double>(at[d]) / squares[d]);
+  for (int d = 0; d < 3; ++d) {
+    const double part = static_cast<double>(at[d]) / box.squares[d];
+    p[d] = at[d] == box.squares[d] ? box.high[d] : box.low[d] + (box.high[d] - box.low[d]) * part;
+  }
   return p;
 }
 
 /// A box whose sides are grids.
-TriangleMesh box(const Point& low, const Point& high, const Squares& squares) {
+TriangleMesh mesh_of(const Box& box) {
+  const auto& [low, high, squares] = box;
   TriangleMesh mesh;
   std::map<Squares, Index> made;
   const auto vertex = [&](const Squares& at) {
     const auto [place, fresh] = made.try_emplace(at, static_cast<Index>(mesh.vertices.size()));
-    if (fresh) mesh.vertices.push_back(corner(low, high, at, squares));
+    if (fresh) mesh.vertices.push_back(corner(box, at));
     return place->second;
   };
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -60,9 +67,16 @@ TriangleMesh box(const Point& low, const Point& high, const Squares& squares) {
   return mesh;
 }
 
-/// Adds a prism about a line along `axis` through `centre`, from `low` to `high` on it.
-void add_prism(TriangleMesh& mesh, int axis, const Point& centre, double low, double high,
-               double radius, Index sides) {
+/// A prism about a line along `axis` through `centre`, from `low` to `high` on it.
+struct Prism {
+  int axis;
+  Point centre;
+  double low, high, radius;
+  Index sides;
+};
+
+void add_prism(TriangleMesh& mesh, const Prism& prism) {
+  const auto& [axis, centre, low, high, radius, sides] = prism;
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   const auto first = static_cast<Index>(mesh.vertices.size());
   for (const double end : {low, high}) {
@@ -126,25 +140,28 @@ class Building {
     const auto add = [&](const char* name, TriangleMesh mesh) {
       all.push_back({name, std::move(mesh)});
     };
-    add("slab", box({joined(low[0]), joined(low[1]), floor - thickness}, {high[0], high[1], floor},
-                    {drawn(2, 9), drawn(2, 9), 1}));
+    const auto add_box = [&](const char* name, const Box& box) { add(name, mesh_of(box)); };
+    const auto add_round = [&](const char* name, const Prism& prism) {
+      TriangleMesh mesh;
+      add_prism(mesh, prism);
+      add(name, std::move(mesh));
+    };
+    add_box("slab", {{joined(low[0]), joined(low[1]), floor - thickness},
+                     {high[0], high[1], floor},
+                     {drawn(2, 9), drawn(2, 9), 1}});
     // The second wall stands between the first and the next bay's.
-    add("wall", box({low[0], low[1], joined(floor)},
-                    {high[0], low[1] + thickness, joined_below(ceiling)},
-                    {drawn(2, 9), 1, drawn(2, 7)}));
-    add("wall", box({low[0], joined(low[1] + thickness), joined(floor)},
-                    {low[0] + thickness, joined_below(high[1]), joined_below(ceiling)},
-                    {1, drawn(2, 9), drawn(2, 7)}));
-    TriangleMesh column;
-    add_prism(column, 2, low + Point(2, 2, 0), joined(floor), joined_below(ceiling), 0.15,
-              drawn(8, 48));
-    add("column", std::move(column));
-    for (const int axis : {0, 1}) {
-      TriangleMesh pipe;
-      add_prism(pipe, axis, low + Point(1 + 0.5 * axis, 1.5 - 0.5 * axis, 2.6 - 0.3 * axis),
-                joined(low[axis]), high[axis], random_.uniform(0.03, 0.12), drawn(8, 64));
-      add("pipe", std::move(pipe));
-    }
+    add_box("wall", {{low[0], low[1], joined(floor)},
+                     {high[0], low[1] + thickness, joined_below(ceiling)},
+                     {drawn(2, 9), 1, drawn(2, 7)}});
+    add_box("wall", {{low[0], joined(low[1] + thickness), joined(floor)},
+                     {low[0] + thickness, joined_below(high[1]), joined_below(ceiling)},
+                     {1, drawn(2, 9), drawn(2, 7)}});
+    add_round("column", {2, low + Point(2, 2, 0), joined(floor), joined_below(ceiling), 0.15,
+                         drawn(8, 48)});
+    for (const int axis : {0, 1})
+      add_round("pipe", {axis, low + Point(1 + 0.5 * axis, 1.5 - 0.5 * axis, 2.6 - 0.3 * axis),
+                         joined(low[axis]), high[axis], random_.uniform(0.03, 0.12),
+                         drawn(8, 64)});
     for (int k = 0; k < 6; ++k) add("bolt", bolt(low, k));
   }
 
@@ -153,8 +170,8 @@ class Building {
     const double head = joined(low[2]);
     const Point at = low + Point(1 + 0.3 * k, 3, 0);
     TriangleMesh mesh;
-    add_prism(mesh, 2, at, head, low[2] + random_.uniform(0.01, 0.03), 0.03, 6);
-    add_prism(mesh, 2, at, low[2] - 0.75 * thickness, head, 0.015, drawn(6, 24));
+    add_prism(mesh, {2, at, head, low[2] + random_.uniform(0.01, 0.03), 0.03, 6});
+    add_prism(mesh, {2, at, low[2] - 0.75 * thickness, head, 0.015, drawn(6, 24)});
     return mesh;
   }
 

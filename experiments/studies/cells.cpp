@@ -213,9 +213,8 @@ Prepared prepared_motion(const Cell& cell) {
     std::vector<Extent> extents;
     extents.reserve(ready.meshes.size());
     for (const auto& mesh : ready.meshes) extents.push_back(extent_of(mesh));
-    auto array = scene.generate(extents, HasOwnMeshes<S>
-                                             ? TouchesAny()
-                                             : touches_any(ready.meshes, scene.objects));
+    auto array = scene.generate(
+        extents, HasOwnMeshes<S> ? TouchesAny() : touches_any(ready.meshes, scene.objects));
     ready.trace = {array.shape[0], array.shape[1], std::move(array.data)};
   });
   return ready;

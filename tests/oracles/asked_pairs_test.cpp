@@ -62,8 +62,7 @@ TEST(PairChoice, RefusesWithTheRow) {
   EXPECT_EQ(complaint({.pairs = numbers({0, 1, 2, 3, 1, 0})}),
             "f.npy: row 2: the same pair as in row 0");
   EXPECT_EQ(complaint({.without = numbers({0, 1, 1, 0})}), "");
-  EXPECT_EQ(complaint({.groups = numbers({0, 1})}),
-            "f.npy: has groups of 2 objects; there are 4");
+  EXPECT_EQ(complaint({.groups = numbers({0, 1})}), "f.npy: has groups of 2 objects; there are 4");
 }
 
 struct Stage {
@@ -169,9 +168,9 @@ TEST(ChosenPairs, HaveTheAnswersOfAllPairs) {
     const auto same = [&](const ObjectPair& each) { return each.i == pair.i && each.j == pair.j; };
     return static_cast<std::size_t>(std::find_if(all.begin(), all.end(), same) - all.begin());
   };
-  for (const PairChoice& choice :
-       {PairChoice{.only = List{{7, 2}, {0, 1}, {3, 9}, {4, 5}}},
-        PairChoice{.groups = {0, 0, 0, 1, 1, 1, -1, -1, 2, 2}}, PairChoice{.without = List{{1, 2}}}})
+  for (const PairChoice& choice : {PairChoice{.only = List{{7, 2}, {0, 1}, {3, 9}, {4, 5}}},
+                                   PairChoice{.groups = {0, 0, 0, 1, 1, 1, -1, -1, 2, 2}},
+                                   PairChoice{.without = List{{1, 2}}}})
     for (const char* query : {"touching", "contacts", "distance"}) {
       Variant from_roots;
       from_roots.query = query;
@@ -217,9 +216,8 @@ TEST(ChosenPairs, AreAllThatAWorldQueries) {
   std::size_t left_out = 0;
   for (std::size_t frame = 0; frame < stage.trace.frames; ++frame) {
     std::vector<ObjectPair> expected = whole.answers[frame];
-    left_out += std::erase_if(expected, [filter = PairFilter(choice)](const ObjectPair& pair) {
-      return !filter(pair);
-    });
+    left_out += std::erase_if(
+        expected, [filter = PairFilter(choice)](const ObjectPair& pair) { return !filter(pair); });
     EXPECT_EQ(rows(part.answers[frame]), rows(expected)) << frame;
   }
   EXPECT_GT(left_out, 10u);

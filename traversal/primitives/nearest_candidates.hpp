@@ -185,7 +185,8 @@ std::array<Vec3<double>, 2> points_of(const Triangle& a, const Triangle& b, int 
     const auto &p = triangle[j], &q = triangle[next(j)];
     if (!(r < T(1))) return q;
     const Vector<T> e = difference<T>(q, p);
-    return {static_cast<double>(T(p[0]) + r * e[0]), static_cast<double>(T(p[1]) + r * e[1]), static_cast<double>(T(p[2]) + r * e[2])};
+    return {static_cast<double>(T(p[0]) + r * e[0]), static_cast<double>(T(p[1]) + r * e[1]),
+            static_cast<double>(T(p[2]) + r * e[2])};
   };
   const auto inside = [&](const Triangle& q) -> Vec3<double> {
     const Vector<T> e = difference<T>(q[1], q[0]), f = difference<T>(q[2], q[0]);

@@ -142,7 +142,8 @@ TriangleDistance apart(const Triangle& a, const Triangle& b) {
   }
   auto [on_a, on_b] = points_of<double>(a, b, best, s, t);
   if constexpr (!std::is_same_v<T, double>)
-    if (const auto exact = candidate<T>(a, b, best); std::isfinite(static_cast<double>(exact.squared))) {
+    if (const auto exact = candidate<T>(a, b, best);
+        std::isfinite(static_cast<double>(exact.squared))) {
       const auto points = points_of<T>(a, b, best, exact.s, exact.t);
       on_a = points[0], on_b = points[1];
     }
