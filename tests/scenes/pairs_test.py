@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`bvlab replay`: --nearest, --pairs, --without, --groups and --broad-phase on the command line; `bvlab scene parts`."""
+"""`bvlab replay`: --nearest, --pairs, --without, --groups and --broad-phase; `bvlab scene parts`."""
 
 import csv
 import json
@@ -28,8 +28,8 @@ class PairsOfAReplay(unittest.TestCase):
         corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
         faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1),
                  (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4), (1, 5, 7), (1, 7, 3)]
-        cls.triangles = np.array(corners, float)[np.array(faces)]
-        lines = ["OFF", "8 12 0", *(" ".join(map(str, c)) for c in corners), *("3 " + " ".join(map(str, f)) for f in faces)]
+        lines = ["OFF", "8 12 0", *(" ".join(map(str, c)) for c in corners)]
+        lines += ["3 " + " ".join(map(str, f)) for f in faces]
         (cls.folder / "cube.off").write_text("\n".join(lines) + "\n")
         cls.poses = np.zeros((2, 5, 7))
         cls.poses[..., 3] = 1
@@ -102,7 +102,8 @@ class PairsOfAReplay(unittest.TestCase):
                           self.refused("touching", option, self.array("f.npy", [0, 1], np.uint32)))
             self.assertIn("holds '<f8'", self.refused("touching", option, self.array("f.npy", [[0, 1]], float)))
             self.assertIn("nowhere.npy", self.refused("touching", option, self.folder / "nowhere.npy"))
-            self.assertIn("not with --pairs", self.refused("touching", option, good, "--page", self.folder / "page.html"))
+            self.assertIn("not with --pairs",
+                          self.refused("touching", option, good, "--page", self.folder / "page.html"))
         self.assertIn("row 1: the same pair as in row 0",
                       self.refused("touching", "--pairs", self.array("f.npy", [[0, 1], [1, 0]], np.uint32)))
         self.assertIn("has groups of 1 objects; there are 5",
@@ -136,7 +137,8 @@ values = ["recursive", "margins"]
         self.assertEqual(done.returncode, 0, done.stderr)
         with open(self.folder / "record" / "chosen.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual([(row["asked_pairs"], row["pairs"], row["hits"]) for row in rows], [(str(pairs), "6", "4")] * 2)
+        found = [(row["asked_pairs"], row["pairs"], row["hits"]) for row in rows]
+        self.assertEqual(found, [(str(pairs), "6", "4")] * 2)
         self.assertNotIn("joints", rows[0])
         definition.write_text(definition.read_text().replace("asked.npy", "nowhere.npy"))
         done = run("run", definition, "--record", self.folder / "other", "--counts")
