@@ -10,16 +10,14 @@
 #include <vector>
 
 #include "traversal/answers_in_order.hpp"
+#include "traversal/pair_choice.hpp"
 #include "traversal/strategy_pairs.hpp"
 
 namespace bvlab {
 
 /// (0,1) (0,2) ... (0,n-1) (1,2) ...: n(n-1)/2 pairs.
 inline std::vector<ObjectPair> all_object_pairs(std::uint32_t objects) {
-  std::vector<ObjectPair> pairs;
-  for (std::uint32_t i = 0; i < objects; ++i)
-    for (std::uint32_t j = i + 1; j < objects; ++j) pairs.push_back({i, j});
-  return pairs;
+  return chosen_pairs({}, objects);
 }
 
 /// Pairs is StrategyPairs, WidePairs, or a class with the same members: those that WorldOf uses,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Tracks the pairs of bodies that are near each other: a broad phase over boxes around the bodies,
-/// and a slot for each pair whose boxes overlap. A pair keeps its slot from the frame in which its
-/// boxes begin to overlap to the frame in which they part; slots are reused.
+/// and a slot for each chosen pair whose boxes overlap. A pair keeps its slot from the frame in
+/// which its boxes begin to overlap to the frame in which they part; slots are reused.
 ///
 /// A frame costs the broad phase and O(m + q), for m bodies that moved and q pairs that involve
 /// them; O(slots) where over a quarter of the bodies moved. A body is in the scene from its first
@@ -13,12 +13,14 @@
 #include <limits>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "broadphase/settings.hpp"
 #include "broadphase/structures/radix_sort.hpp"
 #include "hierarchies/geometry/morton.hpp"
 #include "hierarchies/geometry/threads.hpp"
+#include "traversal/pair_choice.hpp"
 #include "traversal/rotated_mesh_box.hpp"
 #include "traversal/shape.hpp"
 
@@ -50,6 +52,9 @@ class NearPairs {
     if (movers_.capacity() <= i) movers_.reserve(2 * (i + 1));
     return static_cast<std::uint32_t>(i);
   }
+
+  /// Only these pairs get slots. To be called before the first update.
+  void choose(PairFilter chosen) { chosen_ = std::move(chosen); }
 
   void move(std::uint32_t object, const Pose& pose) {
     if (present_[object] && poses_[object] == pose) return;
@@ -89,6 +94,7 @@ class NearPairs {
     for (std::size_t k = 0; k < changes.ended.size(); ++k) {
       fetch_ahead(changes.ended, k);
       const auto& [i, j] = changes.ended[k];
+      if (!chosen_({i, j})) continue;
       const std::uint32_t slot = slot_of(i, j);
       part(slot);
       end(slot);
@@ -96,6 +102,7 @@ class NearPairs {
     for (std::size_t k = 0; k < changes.began.size(); ++k) {
       fetch_ahead(changes.began, k);
       const auto& [i, j] = changes.began[k];
+      if (!chosen_({i, j})) continue;
       meet(begin({i, j}), ObjectPair{i, j});
     }
     // Boxes clipped to the range of float overlap even removed bodies; such pairs start afresh.
@@ -243,6 +250,7 @@ class NearPairs {
 
   Threads threads_;
   Method method_;
+  PairFilter chosen_;
   std::vector<RotatedMeshBox> mesh_boxes_;  // one for each mesh
   std::unordered_map<const TriangleMesh*, std::uint32_t> known_;  // where each mesh's box is
   std::vector<std::uint32_t> box_of_;       // for each body, the index of its box there

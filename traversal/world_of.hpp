@@ -22,6 +22,7 @@
 
 #include "traversal/answers_in_order.hpp"
 #include "traversal/near_pairs.hpp"
+#include "traversal/pair_choice.hpp"
 #include "traversal/queries/contacts.hpp"
 
 namespace bvlab {
@@ -44,6 +45,8 @@ class WorldOf {
         near_(pairs_.size(), threads,
               [this](std::size_t i) -> const TriangleMesh& { return pairs_.mesh(i); }) {}
 
+  /// Only these pairs are queried. To be called before the first update.
+  void choose(const PairChoice& choice) { near_.choose(PairFilter(choice)); }
   /// Adds a body at a pose and returns its index, one more than the last; `shape` is what Pairs
   /// has for a body, and what it refers to must outlive the world. O(1), amortised.
   template <class Shape>
@@ -98,7 +101,7 @@ class WorldOf {
     near_.settle();
   }
 
-  /// The number of pairs whose boxes overlap.
+  /// The number of chosen pairs whose boxes overlap.
   std::size_t near() const { return near_.size(); }
   /// The number of pairs that the last update queried.
   std::size_t queried() const { return queried_; }

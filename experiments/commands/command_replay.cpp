@@ -17,6 +17,7 @@
 #include "experiments/replay/replay_budgeted.hpp"
 #include "experiments/replay/replay_totals.hpp"
 #include "experiments/replay/scene_page.hpp"
+#include "experiments/scenes/pair_files.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 #include "experiments/scenes/scene_x3d.hpp"
 
@@ -25,7 +26,8 @@ namespace {
 
 struct Arguments {
   std::vector<std::string> meshes;
-  std::string trace, out, json, page, x3d, count = "off";
+  std::string trace, out, nearest, json, page, x3d, count = "off", broad_phase = "auto";
+  PairFiles pairs;
   std::optional<std::string> configuration;
   Variant variant;
   unsigned threads = 1;
@@ -47,6 +49,13 @@ void write_answers(const Arguments& arguments, const Trace& trace, const ReplayR
                              {reinterpret_cast<const std::uint32_t*>(result.contacts.data()),
                               result.contacts.size() * 5});
   }
+}
+
+void write_nearest(const Arguments& arguments, const Trace& trace, const ReplayResult& result) {
+  static_assert(sizeof(NearestPair) == 2 * sizeof(std::uint32_t) + 6 * sizeof(double));
+  const std::size_t shape[] = {trace.frames, trace.pairs()};
+  write_npy_records(arguments.nearest, "[('triangles', '<u4', (2,)), ('points', '<f8', (2, 3))]",
+                    shape, std::as_bytes(std::span(result.nearest)));
 }
 
 std::string name(const std::string& file) {
@@ -73,8 +82,13 @@ void check(const Arguments& arguments) {
   check(arguments.variant);
   std::vector<NamedFile> read{{"--trace", arguments.trace}};
   for (const auto& mesh : arguments.meshes) read.push_back({"--mesh", mesh});
+  for (const auto& [option, file] : {std::pair("--pairs", arguments.pairs.pairs),
+                                     {"--without", arguments.pairs.without},
+                                     {"--groups", arguments.pairs.groups}})
+    if (!file.empty()) read.push_back({option, file});
   const NamedFile written[] = {place_of_totals(arguments.json),
                                {"--out", arguments.out},
+                               {"--nearest", arguments.nearest},
                                {"--page", arguments.page},
                                {"--x3d", arguments.x3d}};
   require_places(read, written);
@@ -85,6 +99,16 @@ void check(const Arguments& arguments) {
                                       ? chosen(arguments)
                                       : "--fan-out " + std::to_string(arguments.variant.fan_out)));
   if (!arguments.configuration) require_fit(arguments.variant);
+  if (!arguments.nearest.empty() && arguments.variant.query != "distance")
+    throw Unusable("--nearest", "is for --query distance; not for " + arguments.variant.query);
+  if (arguments.broad_phase == "on" && arguments.variant.query == "distance")
+    throw Unusable("--broad-phase on",
+                   "not with --query distance, which has an answer for every pair");
+  if (!arguments.pairs.say_nothing())
+    for (const auto& [option, file] :
+         {std::pair("--page", arguments.page), {"--x3d", arguments.x3d}})
+      if (!file.empty())
+        throw Unusable(option, "shows all pairs; not with --pairs, --without or --groups");
   if (!arguments.budget) return;
   for (const auto& [option, file] : {std::pair("--page", arguments.page), {"--x3d", arguments.x3d}})
     if (!file.empty()) throw Unusable(option, "shows whole answers; not with --budget");
@@ -112,11 +136,13 @@ void run(Arguments arguments) {
     meshes.push_back(read_mesh(file, {.scale = arguments.scale}));
     say_if_nothing_is_culled(meshes.back(), file);
   }
-  const Trace trace = read_trace(arguments.trace);
+  Trace trace = read_trace(arguments.trace);
+  trace.chosen = chosen_from(read_pair_arrays(arguments.pairs), trace.objects);
   require_finite_corners(trace, arguments.trace, meshes);
+  const BroadPhase broad_phase = broad_phase_from(arguments.broad_phase);
   Chosen chosen;
   if (arguments.configuration) {
-    chosen = configured(arguments.variant, *arguments.configuration, meshes, &trace);
+    chosen = configured(arguments.variant, *arguments.configuration, meshes, &trace, broad_phase);
     arguments.variant = chosen.variant;
   }
   const Count count = arguments.count == "on" ? Count::on : Count::off;
@@ -134,11 +160,14 @@ void run(Arguments arguments) {
   options.count = count;
   options.threads = arguments.threads;
   options.keep_answers = !arguments.out.empty() || !arguments.x3d.empty();
+  options.keep_nearest = !arguments.nearest.empty();
+  options.broad_phase = broad_phase;
   const ReplayResult result = replay(meshes, trace, arguments.variant, options);
   Totals totals = totals_of(result, meshes, trace, arguments.variant, options);
   if (!chosen.reason.empty())
     totals.set("recommended", chosen.reason).set("choosing_seconds", chosen.seconds);
   if (!arguments.out.empty()) write_answers(arguments, trace, result);
+  if (!arguments.nearest.empty()) write_nearest(arguments, trace, result);
   if (!arguments.page.empty()) write_page(arguments, meshes, trace);
   if (!arguments.x3d.empty())
     write_whole(arguments.x3d, scene_x3d(meshes, trace, result.touching, name(arguments.trace)));
@@ -202,7 +231,31 @@ void add_replay(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--out", arguments->out,
                       "answers, as .npy: touching uint8 and distance float64 (frames, pairs); "
-                      "contacts uint32 (k, 5) of frame, i, j, triangle of i, of j, sorted");
+                      "contacts uint32 (k, 5) of frame, i, j, triangle of i, of j, sorted. Pairs "
+                      "are (0,1) (0,2) ... (1,2) ... without those left out; with --pairs, column "
+                      "k is row k of that file");
+  command->add_option(
+      "--nearest", arguments->nearest,
+      "with --query distance, of each pair the nearest triangles and points, as .npy: (frames, "
+      "pairs) of records: triangles (2,) uint32, of i and of j, and points (2, 3) float64, on i "
+      "and on j, in the world. Points are exact up to the rounding of their coordinates; surfaces "
+      "that touch have one common point. Of several nearest pairs any; the same for any number of "
+      "threads");
+  command->add_option("--pairs", arguments->pairs.pairs,
+                      "asks about these pairs alone: .npy, uint32 or int64, (k, 2) of objects, in "
+                      "the order of the answers");
+  command->add_option("--without", arguments->pairs.without,
+                      "leaves these pairs out: .npy, uint32 or int64, (k, 2) of objects");
+  command->add_option("--groups", arguments->pairs.groups,
+                      "leaves out pairs within a group: .npy, uint32 or int64, (objects,), the "
+                      "group of each object; negative: in none");
+  command
+      ->add_option("--broad-phase", arguments->broad_phase,
+                   "on: only pairs whose boxes overlap are queried, all others are apart (answers "
+                   "are the same, counts are not); off: every pair is; auto: on for many bodies, "
+                   "where nothing is counted")
+      ->check(CLI::IsMember({"auto", "on", "off"}))
+      ->capture_default_str();
   command->add_option("--page", arguments->page,
                       "the scene in 3D, as one self-contained HTML file");
   command->add_option(

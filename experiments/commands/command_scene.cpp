@@ -34,24 +34,30 @@ std::string default_meshes() {
   return "bunny";
 }
 
-std::vector<NamedMesh> meshes_of(const Arguments& arguments, const std::string& otherwise) {
+template <class S>
+std::vector<NamedMesh> meshes_of(const S& scene, const Arguments& arguments) {
+  if constexpr (HasOwnMeshes<S>) return scene.own_meshes();
   std::vector<NamedMesh> meshes;
   for (const auto& file : arguments.files)
     meshes.push_back({std::filesystem::path(file).stem().string(),
                       read_mesh(file, {.scale = arguments.scale})});
   for (const auto& name : arguments.names)
     for (auto& mesh : named_meshes(name, arguments.polygons)) meshes.push_back(std::move(mesh));
-  if (meshes.empty()) meshes = named_meshes(otherwise, arguments.polygons);
+  if (meshes.empty()) meshes = named_meshes(default_meshes<S>(), arguments.polygons);
   return meshes;
 }
 
-/// 0-bunny.off, 1-torus.off ...: in the order in which replay takes them.
+/// 0-bunny.off, 1-torus.off ...: in the order in which replay takes them, and in which a shell
+/// lists them.
 std::vector<std::filesystem::path> places_of_meshes(const std::string& directory,
                                                     const std::vector<std::string>& names) {
   std::vector<std::filesystem::path> places;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    places.push_back(std::filesystem::path(directory) /
-                     (std::to_string(i) + "-" + names[i] + ".off"));
+  const std::size_t digits = std::to_string(names.empty() ? 0 : names.size() - 1).size();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::string number = std::to_string(i);
+    number.insert(0, digits - number.size(), '0');
+    places.push_back(std::filesystem::path(directory) / (number + "-" + names[i] + ".off"));
+  }
   return places;
 }
 
@@ -88,13 +94,15 @@ void run(const S& scene, const Arguments& arguments) {
   std::vector<std::string> names;
   std::vector<TriangleMesh> meshes;
   std::vector<Extent> extents;
-  for (auto& [name, mesh] : meshes_of(arguments, default_meshes<S>())) {
+  for (auto& [name, mesh] : meshes_of(scene, arguments)) {
     extents.push_back(extent_of(mesh));
     names.push_back(std::move(name));
     meshes.push_back(std::move(mesh));
   }
   require_places_of_meshes(arguments.meshes, names, read, written[0]);
-  const auto trace = scene.generate(extents, touches_any(meshes, scene.objects));
+  // Trees are made for scenes that ask.
+  const auto touches = HasOwnMeshes<S> ? TouchesAny() : touches_any(meshes, scene.objects);
+  const auto trace = scene.generate(extents, touches);
   write_meshes(arguments.meshes, names, meshes);
   write_npy<double>(arguments.out, trace.shape, trace.data);
 }
@@ -139,6 +147,10 @@ void add(CLI::App& parent) {
   command->add_option("--out", arguments->out, "the trace: .npy, float64, (frames, objects, 7)")
       ->required();
   command->add_option("--meshes", arguments->meshes, "directory to write the meshes to, as OFF");
+  if constexpr (HasOwnMeshes<S>) {
+    command->callback([scene, arguments] { run(*scene, *arguments); });
+    return;
+  }
   command->add_option("--mesh", arguments->files, "mesh file; object i is mesh i mod their number");
   add_scale_option(*command, arguments->scale);
   command->add_option("--shape", arguments->names,

@@ -357,6 +357,12 @@ void set(Settings& settings, const Settings& to) {
       if (known == name) old = value;
 }
 
+/// Parameters that are columns only where a definition sets them: records from before there were
+/// these can be continued.
+bool is_column_where_set(std::string_view name) {
+  return name == "joints" || name == "asked_pairs" || name == "without_pairs" || name == "groups";
+}
+
 }  // namespace
 
 const std::string& Cell::operator[](std::string_view name) const {
@@ -378,6 +384,12 @@ const std::vector<Parameter>& parameters() {
     Scenes::for_each(
         [&]<class S>(std::type_identity<S>) { S{}.visit_options(AddingParameter{all}); });
     for (const auto& each : std::initializer_list<Parameter>{
+             {"asked_pairs", "",
+              "file of the pairs asked about: `.npy`, uint32 or int64, shape (k, 2)"},
+             {"without_pairs", "", "file of pairs left out, as `asked_pairs`"},
+             {"groups", "",
+              "file of the group of each body: `.npy`, shape (objects,); pairs within one are left "
+              "out"},
              {"volume", "sphere", "see `bvlab list volumes`"},
              {"strategy", "recursive", "see `bvlab list strategies`; name or name:parameter"},
              {"query", "touching", "see `bvlab list queries`"},
@@ -436,6 +448,13 @@ std::vector<Cell> cells_of(const Definition& definition) {
         if (!axis.is_parameter) next.back().labels.emplace_back(axis.name, value.label);
       }
     cells = std::move(next);
+  }
+  for (const auto& [name, usual] : default_parameters()) {
+    if (!is_column_where_set(name)) continue;
+    const auto is_usual = [&](const Cell& cell) { return cell[name] == usual; };
+    if (!std::all_of(cells.begin(), cells.end(), is_usual)) continue;
+    for (Cell& cell : cells)
+      std::erase_if(cell.parameters, [&](const auto& each) { return each.first == name; });
   }
   return cells;
 }

@@ -23,6 +23,10 @@ for strategy in ("recursive", "deferred", "margins"):
     result = bvlab.replay([mesh], poses, volume="obb", strategy=strategy, query="touching", count=True)
     tests[strategy] = result.totals["n_v"]  # its digits follow the processor's registers
     print(f"{strategy}: touching from frame {int(np.argmax(result.answers[:, 0]))}")
+# Where are they nearest in the first frame? A record of triangles and points.
+result = bvlab.replay([mesh], poses, query="distance", nearest=True)
+on_a, on_b = result.nearest["points"][0, 0]
+print(f"apart by {result.answers[0, 0]:.1f} at first, from x = {on_a[0]:.1f} to x = {on_b[0]:.1f}")
 print("fewest volume tests first:", *sorted(tests, key=tests.get))
 
 # A world begins empty here: bodies come one by one, and leave.

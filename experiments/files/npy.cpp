@@ -23,6 +23,8 @@ template <>
 constexpr std::string_view descriptor<std::uint8_t> = "|u1";
 template <>
 constexpr std::string_view descriptor<std::uint32_t> = "<u4";
+template <>
+constexpr std::string_view descriptor<std::int64_t> = "<i8";
 
 struct Header {
   std::string type;
@@ -200,10 +202,24 @@ std::variant<Array<float>, Array<double>> read_npy_floating(const std::filesyste
   return parse_npy<double>(bytes, path.string(), shape);
 }
 
-template <class T>
-std::string npy_header(std::span<const std::size_t> shape) {
-  std::string dictionary = "{'descr': '" + std::string(descriptor<T>) +
-                           "', 'fortran_order': False, 'shape': " + shown(shape) + ", }";
+Array<std::int64_t> read_npy_whole(const std::filesystem::path& path,
+                                   std::span<const std::size_t> shape) {
+  const std::string bytes = read_whole(path);
+  const std::string type = parse_header(bytes, path.string()).type;
+  if (type != descriptor<std::uint32_t>) {
+    if (type != descriptor<std::int64_t>)
+      throw Unusable(path.string(), "holds '" + type + "' where '<u4' or '<i8' is needed");
+    return parse_npy<std::int64_t>(bytes, path.string(), shape);
+  }
+  const auto narrow = parse_npy<std::uint32_t>(bytes, path.string(), shape);
+  return {narrow.shape, {narrow.data.begin(), narrow.data.end()}};
+}
+
+namespace {
+
+std::string header_of(const std::string& type, std::span<const std::size_t> shape) {
+  std::string dictionary =
+      "{'descr': " + type + ", 'fortran_order': False, 'shape': " + shown(shape) + ", }";
   const std::size_t unpadded = 10 + dictionary.size() + 1;
   dictionary.append((64 - unpadded % 64) % 64, ' ');
   dictionary += '\n';
@@ -213,6 +229,21 @@ std::string npy_header(std::span<const std::size_t> shape) {
   header += static_cast<char>(dictionary.size() & 0xff);
   header += static_cast<char>(dictionary.size() >> 8);
   return header + dictionary;
+}
+
+}  // namespace
+
+template <class T>
+std::string npy_header(std::span<const std::size_t> shape) {
+  return header_of("'" + std::string(descriptor<T>) + "'", shape);
+}
+
+void write_npy_records(const std::filesystem::path& path, const std::string& fields,
+                       std::span<const std::size_t> shape, std::span<const std::byte> records) {
+  const std::string header = header_of(fields, shape);
+  const std::string_view parts[] = {
+      header, {reinterpret_cast<const char*>(records.data()), records.size()}};
+  write_whole(path, parts);
 }
 
 #define BVLAB_INSTANTIATE(T)                                                                 \

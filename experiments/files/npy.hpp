@@ -2,6 +2,7 @@
 /// NumPy's `.npy` files (format versions 1 to 3), C order, little endian.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -31,6 +32,10 @@ Array<T> read_npy(const std::filesystem::path& path, std::span<const std::size_t
 std::variant<Array<float>, Array<double>> read_npy_floating(const std::filesystem::path& path,
                                                             std::span<const std::size_t> shape);
 
+/// The same for a file of whole numbers, uint32 or int64.
+Array<std::int64_t> read_npy_whole(const std::filesystem::path& path,
+                                   std::span<const std::size_t> shape);
+
 /// The same from bytes in memory; `name` stands in for the file in messages.
 template <class T>
 Array<T> parse_npy(std::string_view bytes, const std::string& name,
@@ -49,5 +54,10 @@ void write_npy(const std::filesystem::path& path, std::span<const std::size_t> s
       header, {reinterpret_cast<const char*>(data.data()), data.size_bytes()}};
   write_whole(path, parts);
 }
+
+/// The same for an array of records; `fields` is their type as NumPy writes it, such as
+/// "[('first', '<u4'), ('second', '<f8', (3,))]".
+void write_npy_records(const std::filesystem::path& path, const std::string& fields,
+                       std::span<const std::size_t> shape, std::span<const std::byte> records);
 
 }  // namespace bvlab

@@ -106,7 +106,7 @@ std::vector<Disagreement> disagreements(std::span<const TriangleMesh> meshes, co
                                         const ReplayResult& theirs, const ReplayResult& ours,
                                         double slack, std::size_t most) {
   std::vector<Disagreement> list;
-  const auto pairs = all_object_pairs(static_cast<std::uint32_t>(trace.objects));
+  const auto pairs = object_pairs(trace);
   const auto place = [&](std::size_t cell) {
     const auto& [i, j] = pairs[cell % pairs.size()];
     return Disagreement{static_cast<std::uint32_t>(cell / pairs.size()), i, j, {}, {}, {}, {}, {}};

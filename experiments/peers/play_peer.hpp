@@ -24,7 +24,7 @@ class PeerPlay {
   PeerPlay(std::span<const TriangleMesh> meshes, const Trace& trace, const ReplayOptions& options)
       : trace_(trace),
         options_(options),
-        pairs_(all_object_pairs(static_cast<std::uint32_t>(trace.objects))),
+        pairs_(object_pairs(trace)),
         start_(Clock::now()),
         world_(meshes, trace.objects) {
     result_.build_seconds = since_start();

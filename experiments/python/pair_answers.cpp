@@ -111,14 +111,14 @@ std::vector<std::array<std::uint32_t, 4>> PairAnswers::contacts(std::span<const 
   return rows;
 }
 
-std::vector<double> PairAnswers::distances(std::span<const ObjectPair> pairs,
-                                           std::span<const Pose> poses) {
+std::vector<NearestTriangles> PairAnswers::distances(std::span<const ObjectPair> pairs,
+                                                     std::span<const Pose> poses) {
   auto& bodies = engine_->of(engine_->for_distances);
-  std::vector<double> all;
+  std::vector<NearestTriangles> all;
   for (const ObjectPair& pair : pairs) {
     Distance query(engine_->variant.relative_error);
     bodies.ask(pair, poses, query);
-    all.push_back(query.distance());
+    all.push_back(query.nearest());
   }
   return all;
 }

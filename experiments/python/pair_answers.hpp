@@ -30,8 +30,9 @@ class PairAnswers {
   /// one for each object.
   std::vector<std::array<std::uint32_t, 4>> contacts(std::span<const ObjectPair> pairs,
                                                      std::span<const Pose> poses);
-  /// Of each pair, in units of the meshes; 0 where they touch.
-  std::vector<double> distances(std::span<const ObjectPair> pairs, std::span<const Pose> poses);
+  /// Of each pair, in units of the meshes, 0 where they touch; and the triangles that have it.
+  std::vector<NearestTriangles> distances(std::span<const ObjectPair> pairs,
+                                          std::span<const Pose> poses);
 
  private:
   struct Engine;

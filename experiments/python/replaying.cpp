@@ -6,6 +6,7 @@
 #include "experiments/python/arrays.hpp"
 #include "experiments/python/meshes.hpp"
 #include "experiments/python/module.hpp"
+#include "experiments/python/pair_arrays.hpp"
 #include "experiments/python/signals.hpp"
 #include "experiments/python/variants.hpp"
 #include "experiments/replay/coherence.hpp"
@@ -24,9 +25,16 @@ using namespace py::literals;
 struct Result : MadeByCalls {
   Result(py::object of_all, py::dict sums) : answers(std::move(of_all)), totals(std::move(sums)) {}
 
-  py::object answers, series = py::none(), frame_seconds = py::none();
+  py::object answers, nearest = py::none(), series = py::none(), frame_seconds = py::none();
   py::dict totals;
+  std::optional<Trace> asked;  ///< without poses: which pairs
 };
+
+/// Made when it is asked for: there may be more of them than answers.
+py::object pairs_of(const Result& result) {
+  if (!result.asked) return py::none();
+  return rows_of(object_pairs(*result.asked));
+}
 
 py::dict dictionary(const Totals& totals) {
   return py::module_::import("json").attr("loads")(totals.text());
@@ -56,8 +64,10 @@ py::object series_of(std::vector<FrameCounts>&& rows) {
 }
 
 struct Wanted {
-  bool count, answers, series, frame_seconds;
+  bool count, answers, nearest, series, frame_seconds;
   int threads;
+  BroadPhase broad_phase;
+  PairArrays pairs;
 };
 
 std::shared_ptr<Result> play(const py::object& given_meshes, const py::object& given_poses,
@@ -65,8 +75,13 @@ std::shared_ptr<Result> play(const py::object& given_meshes, const py::object& g
   Variant variant = variant_from(words);
   check_threads(wanted.threads);
   const Meshes meshes(given_meshes);
-  const Trace trace = trace_from(given_poses);
+  Trace trace = trace_from(given_poses);
+  trace.chosen = chosen_from(wanted.pairs, trace.objects);
+  if (wanted.nearest && variant.query != "distance")
+    throw Unusable("nearest", "is for query=\"distance\"; not for " + variant.query);
   ReplayOptions options;
+  options.keep_nearest = wanted.nearest;
+  options.broad_phase = wanted.broad_phase;
   options.count = wanted.count ? Count::on : Count::off;
   options.threads = static_cast<unsigned>(wanted.threads);
   options.keep_answers = wanted.answers;
@@ -78,7 +93,8 @@ std::shared_ptr<Result> play(const py::object& given_meshes, const py::object& g
     require_finite_corners(trace, "poses", meshes.span());
     Chosen chosen{variant, ""};
     if (words.configuration)
-      chosen = configured(variant, *words.configuration, meshes.span(), &trace);
+      chosen =
+          configured(variant, *words.configuration, meshes.span(), &trace, options.broad_phase);
     variant = chosen.variant;
     ReplayResult played = replay(meshes.span(), trace, variant, options);
     Totals of_it = totals_of(played, meshes.span(), trace, variant, options);
@@ -88,6 +104,10 @@ std::shared_ptr<Result> play(const py::object& given_meshes, const py::object& g
   });
   auto all = std::make_shared<Result>(py::none(), dictionary(totals));
   if (wanted.answers) all->answers = answers_of(result, trace, variant.query);
+  if (wanted.nearest)
+    all->nearest = records_of(std::move(result.nearest), {static_cast<py::ssize_t>(trace.frames),
+                                                          static_cast<py::ssize_t>(trace.pairs())});
+  all->asked = Trace{0, trace.objects, {}, trace.chosen};
   if (wanted.series) all->series = series_of(std::move(result.series));
   if (wanted.frame_seconds) {
     const auto frames = static_cast<py::ssize_t>(result.frame_seconds.size());
@@ -179,6 +199,15 @@ void add_result(py::module_& module) {
   type.def_readonly("answers", &Result::answers,
                     R"(Answers as --out has them; see replay and boxes.
 None where answers=False.)")
+      .def_readonly(
+          "nearest", &Result::nearest,
+          R"(Per frame and pair, the nearest triangles and points; None unless nearest=True.
+
+A structured array (frames, pairs): nearest["triangles"], uint32 (frames, pairs, 2), of i and of j;
+nearest["points"], float64 (frames, pairs, 2, 3), on i and on j, in the world.)")
+      .def_property_readonly(
+          "pairs", &pairs_of,
+          "uint32 (pairs, 2): the objects of each column of answers; None of boxes.")
       .def_readonly("totals", &Result::totals, "Times in s, counts, the variant; a dict as --json.")
       .def_readonly("series", &Result::series,
                     R"(Per frame, summed over all pairs: n_u, n_v, n_p, front, hits.
@@ -242,17 +271,21 @@ void add_replaying(py::module_& module) {
          const std::optional<std::string>& configuration, const std::optional<std::string>& build,
          std::optional<std::uint32_t> leaf_size, const std::optional<std::string>& fit,
          const std::string& precision, double relative_error, bool count, int threads, bool answers,
-         bool series, bool frame_seconds) {
+         bool series, bool frame_seconds, bool nearest, const py::object& pairs,
+         const py::object& without, const py::object& groups, const std::string& broad_phase) {
         return play(meshes, poses,
                     {volume, strategy, query, fan_out, frame, kernel, configuration, build,
                      leaf_size, fit, precision, relative_error},
-                    {count, answers, series, frame_seconds, threads});
+                    {count, answers, nearest, series, frame_seconds, threads,
+                     broad_phase_from(broad_phase), pair_arrays(pairs, without, groups)});
       },
       "meshes"_a, "poses"_a, py::kw_only(), "volume"_a = none, "strategy"_a = none,
       "query"_a = d.query, "fan_out"_a = none, "frame"_a = none, "kernel"_a = none,
       "configuration"_a = none, "build"_a = none, "leaf_size"_a = none, "fit"_a = none,
       "precision"_a = d.precision, "relative_error"_a = d.relative_error, "count"_a = false,
       "threads"_a = 1, "answers"_a = true, "series"_a = false, "frame_seconds"_a = false,
+      "nearest"_a = false, "pairs"_a = py::none(), "without"_a = py::none(),
+      "groups"_a = py::none(), "broad_phase"_a = "auto",
       R"(Answers a query for all pairs of a motion by one variant of the engine, as `bvlab replay`.
 
 meshes   a Mesh, or a list of meshes (or of anything with .vertices and .faces); object i uses mesh
@@ -265,6 +298,12 @@ query    result.answers is, for all pairs (0,1) (0,2) ... (1,2) ... of objects:
 count    fills n_u, n_v, n_p of the totals (times include the counting); the recursive strategy runs
          once more, to find which tests were skipped
 series   fills result.series, frame_seconds fills result.frame_seconds
+nearest  of distances, fills result.nearest: the nearest triangles and points of each pair
+pairs    (k, 2) integer: these pairs of objects alone, in the order of the answers; without, (k, 2): not
+         these; groups, (objects,) integer: no pairs within a group (negative: in none). What is asked
+         is result.pairs: column p of answers is pair result.pairs[p]
+broad_phase  "on": only pairs whose boxes overlap are queried, all others are apart (answers are the same,
+         counts are not); "off"; "auto": on for many bodies, where nothing is counted
 
 fan_out  most children of a node: 2, 4, 8, 16 (default: 2); frame: "world" or "body", where volumes are
          tested (default: "world"); kernel: see bvlab.kernels() (default: "gathered"); fit: "published" or

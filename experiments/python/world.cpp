@@ -17,6 +17,7 @@
 #include "experiments/python/module.hpp"
 #include "experiments/python/near_within.hpp"
 #include "experiments/python/pair_answers.hpp"
+#include "experiments/python/pair_arrays.hpp"
 #include "experiments/python/signals.hpp"
 #include "experiments/python/variants.hpp"
 #include "experiments/replay/configurations.hpp"
@@ -31,7 +32,7 @@ using namespace py::literals;
 class PyWorld : public MadeByCalls {
  public:
   PyWorld(const py::object& meshes, std::optional<std::size_t> objects, const VariantWords& words,
-          int threads)
+          int threads, const PairArrays& pairs)
       : meshes_(meshes, 0),
         first_(counted(objects.value_or(meshes_.given()))),
         variant_(words.configuration
@@ -43,7 +44,10 @@ class PyWorld : public MadeByCalls {
         is_new_(first_, 0) {
     if (first_ > 0 && meshes_.span().empty())
       throw Unusable("meshes", "at least one is needed for " + std::to_string(first_) + " bodies");
+    const PairChoice choice = pair_choice(pairs, first_);
+    chosen_ = PairFilter(choice);
     engine_ = released([&] { return make_world(meshes_.span(), first_, variant_, threads); });
+    engine_->choose(choice);
     for (const TriangleMesh& mesh : meshes_.span()) small_.push_back(is_small(mesh));
   }
 
@@ -136,11 +140,15 @@ class PyWorld : public MadeByCalls {
         [&] { return released([&] { return answers().contacts(touching_pairs(), stands_); }); }));
   }
 
-  py::tuple distances(double below) {
+  py::tuple distances(double below, bool nearest) {
     if (!(below >= 0)) throw Unusable("below", "must be a number that is not negative");
-    auto [pairs, distances] = fresh([&] { return released([&] { return within(below); }); });
+    auto [pairs, distances, points] =
+        fresh([&] { return released([&] { return within(below, nearest); }); });
     const auto count = static_cast<py::ssize_t>(distances.size());
-    return py::make_tuple(rows_of(std::move(pairs)), taken<double>(std::move(distances), {count}));
+    const auto rows = rows_of(std::move(pairs));
+    const auto values = taken<double>(std::move(distances), {count});
+    if (!nearest) return py::make_tuple(rows, values);
+    return py::make_tuple(rows, values, records_of(std::move(points), {count}));
   }
 
   std::size_t near() {
@@ -311,14 +319,28 @@ class PyWorld : public MadeByCalls {
     return pairs;
   }
 
-  std::pair<std::vector<ObjectPair>, std::vector<double>> within(double below) {
+  struct Within {
+    std::vector<ObjectPair> pairs;
+    std::vector<double> distances;
+    std::vector<NearestPair> nearest;  ///< where asked for
+  };
+  Within within(double below, bool nearest) {
     if (!near_) near_.emplace(meshes_.span(), first_);
     for (std::size_t i = near_->size(); i < objects(); ++i) near_->add(*added_[i - first_].of.mesh);
-    const auto near = near_->pairs(stands_, present_, below);
+    auto near = near_->pairs(stands_, present_, below);
+    std::erase_if(near, [&](const ObjectPair& pair) { return !chosen_(pair); });
     const auto all = answers().distances(near, stands_);
-    std::pair<std::vector<ObjectPair>, std::vector<double>> kept;
-    for (std::size_t k = 0; k < near.size(); ++k)
-      if (all[k] <= below) kept.first.push_back(near[k]), kept.second.push_back(all[k]);
+    const auto mesh = [&](std::uint32_t i) -> const TriangleMesh& {
+      return *of(i).mesh;
+    };
+    Within kept;
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      if (!(all[k].distance <= below)) continue;
+      const auto& [i, j] = near[k];
+      kept.pairs.push_back(near[k]), kept.distances.push_back(all[k].distance);
+      if (nearest)
+        kept.nearest.push_back(nearest_points(all[k], mesh(i), stands_[i], mesh(j), stands_[j]));
+    }
     return kept;
   }
 
@@ -327,12 +349,6 @@ class PyWorld : public MadeByCalls {
     for (std::size_t i = answers_->size(); i < objects(); ++i)
       answers_->add(*added_[i - first_].of.mesh);
     return *answers_;
-  }
-
-  static py::array_t<std::uint32_t> rows_of(std::vector<ObjectPair>&& pairs) {
-    static_assert(sizeof(ObjectPair) == 2 * sizeof(std::uint32_t));
-    const auto count = static_cast<py::ssize_t>(pairs.size());
-    return taken<std::uint32_t>(std::move(pairs), {count, 2});
   }
 
   Meshes meshes_;
@@ -344,6 +360,7 @@ class PyWorld : public MadeByCalls {
   std::unique_ptr<WorldEngine> engine_;
   std::optional<PairAnswers> answers_;
   std::optional<NearWithin> near_;
+  PairFilter chosen_;
   std::vector<bool> small_;                    // of each of the first bodies' meshes
   std::vector<std::optional<Pose>> moved_to_;  // of each body: where it is from the next update on
   std::vector<Pose> stands_;                   // where it stood in the last one
@@ -369,7 +386,10 @@ A body is in the scene from its first `move` on. Answers are those of `update`: 
 remove, and before the first update, all questions are a RuntimeError. Volume and
 strategy are chosen by name, as in replay; if none of these words is given, nor fan_out, frame, kernel,
 build, leaf_size or fit, what is recommended for these meshes is taken. Calls from
-several threads run one after the other.)")
+several threads run one after the other.
+
+pairs, without, groups   which pairs are asked about, as in replay: pairs (k, 2) alone, without (k, 2),
+                         no pairs within a group (objects,)); of the bodies that are given here)")
       .def(py::init([](const py::object& meshes, std::optional<std::size_t> objects,
                        const std::optional<std::string>& volume,
                        const std::optional<std::string>& strategy,
@@ -380,20 +400,23 @@ several threads run one after the other.)")
                        const std::optional<std::string>& build,
                        std::optional<std::uint32_t> leaf_size,
                        const std::optional<std::string>& fit, const std::string& precision,
-                       int threads) {
+                       int threads, const py::object& pairs, const py::object& without,
+                       const py::object& groups) {
              VariantWords words{volume, strategy,      "touching", fan_out,   frame,
                                 kernel, configuration, build,      leaf_size, fit,
                                 precision, 0};
              if (!words.said() && !configuration) words.configuration = "recommended";
              check(variant_from(words));
              check_threads(threads);
-             return std::make_shared<PyWorld>(meshes, objects, words, threads);
+             return std::make_shared<PyWorld>(meshes, objects, words, threads,
+                                              pair_arrays(pairs, without, groups));
            }),
            "meshes"_a = py::tuple(), py::kw_only(), "objects"_a = py::none(),
            "volume"_a = py::none(), "strategy"_a = py::none(), "fan_out"_a = py::none(),
            "frame"_a = py::none(), "kernel"_a = py::none(), "configuration"_a = py::none(),
            "build"_a = py::none(), "leaf_size"_a = py::none(), "fit"_a = py::none(),
-           "precision"_a = d.precision, "threads"_a = 1)
+           "precision"_a = d.precision, "threads"_a = 1, "pairs"_a = py::none(),
+           "without"_a = py::none(), "groups"_a = py::none())
       .def(
           "move", &PyWorld::move, "object"_a, "pose"_a,
           R"(Sets the pose of a body, or of several, from the next update on: move(i, pose), move(indices, poses).
@@ -425,10 +448,11 @@ Python takes longer by its own overhead.)")
 
 Each pair that touches is traversed from the roots.)")
       .def(
-          "distances", &PyWorld::distances, "below"_a,
+          "distances", &PyWorld::distances, "below"_a, py::kw_only(), "nearest"_a = false,
           R"(The pairs no farther apart than `below`, and their distances: uint32 (k, 2), float64 (k,).
 
-In units of the meshes; 0 where they touch. Each pair is traversed from the roots.)")
+In units of the meshes; 0 where they touch. Each pair is traversed from the roots. With nearest=True
+a third array has their nearest triangles and points, as bvlab.replay(..., nearest=True).nearest.)")
       .def_property_readonly("near", &PyWorld::near,
                              "The number of pairs whose boxes overlapped in the last update.")
       .def_property_readonly("queried", &PyWorld::queried,

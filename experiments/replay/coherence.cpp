@@ -55,13 +55,14 @@ double motion(const Middle& middle, const Pose& from, const Pose& to) {
 template <class Query>
 class CoherenceMeter {
  public:
-  CoherenceMeter(std::span<const TriangleMesh> meshes, std::size_t objects, const Variant& variant)
-      : pairs_(all_object_pairs(static_cast<std::uint32_t>(objects))),
+  CoherenceMeter(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant)
+      : pairs_(object_pairs(trace)),
         fronts_(pairs_.size()),
         hierarchies_(volume_entry(variant.volume).hierarchies(meshes, variant)),
-        bodies_(loops_of<Query>(variant.volume).bodies(*hierarchies_, objects, frame_of(variant))),
-        apart_(
-            loops_of<Distance>(variant.volume).bodies(*hierarchies_, objects, frame_of(variant))) {
+        bodies_(loops_of<Query>(variant.volume)
+                    .bodies(*hierarchies_, trace.objects, frame_of(variant))),
+        apart_(loops_of<Distance>(variant.volume)
+                   .bodies(*hierarchies_, trace.objects, frame_of(variant))) {
     for (const auto& mesh : meshes) {
       middles_.emplace_back(mesh);
       leaf_sizes_.push_back(leaf_size_of(mesh));
@@ -211,7 +212,7 @@ class RebuildSearch {
 template <class Query>
 CoherenceSums coherence_under(std::span<const TriangleMesh> meshes, const Trace& trace,
                               const Variant& variant, const std::function<void()>& waiting) {
-  CoherenceMeter<Query> meter(meshes, trace.objects, variant);
+  CoherenceMeter<Query> meter(meshes, trace, variant);
   std::vector<Pose> poses(trace.objects);
   for (std::size_t frame = 0; frame < trace.frames; ++frame) {
     trace.poses(frame, poses);
@@ -229,7 +230,7 @@ BestRebuilds best_rebuilds_under(std::span<const TriangleMesh> meshes, const Tra
   RebuildSearch<Query> search(AnyBodies<Query, NotCounting>(
       loops_of<Query>(variant.volume).bodies(*hierarchies, trace.objects, frame_of(variant))));
   BestRebuilds sum;
-  for (const auto& pair : all_object_pairs(static_cast<std::uint32_t>(trace.objects))) {
+  for (const auto& pair : object_pairs(trace)) {
     const BestRebuilds best = search.search(pair, poses);
     sum.tests += best.tests, sum.rebuilds += best.rebuilds;
   }

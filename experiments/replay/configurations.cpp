@@ -89,7 +89,8 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes) {
               "): oriented boxes fit them, others are mostly empty"};
 }
 
-Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const Trace& trace) {
+Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const Trace& trace,
+                   BroadPhase broad_phase) {
   const SampledFrames samples = samples_of(meshes, trace.frames);
   if (variant.query == "distance" || samples.frames.empty() || trace.pairs() == 0)
     return recommended(variant, meshes);
@@ -98,6 +99,9 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
   for (std::size_t k = 0; k < sampled.frames; ++k) sampled.poses(k, poses[k]);
   ReplayOptions options;
   options.count = Count::on, options.keep_answers = false, options.keep_series = true;
+  // As it will be played.
+  const bool pays = broad_phase == BroadPhase::where_it_pays && has_many_pairs(trace);
+  options.broad_phase = pays || broad_phase == BroadPhase::on ? BroadPhase::on : BroadPhase::off;
   Chosen best;
   double least = std::numeric_limits<double>::infinity();
   std::ostringstream costs;
@@ -152,10 +156,11 @@ Variant configured(Variant variant, std::string_view configuration) {
 }
 
 Chosen configured(Variant variant, std::string_view configuration,
-                  std::span<const TriangleMesh> meshes, const Trace* trace) {
+                  std::span<const TriangleMesh> meshes, const Trace* trace,
+                  BroadPhase broad_phase) {
   if (configuration != "recommended") return {configured(std::move(variant), configuration), ""};
   const auto start = Clock::now();
-  Chosen chosen = trace ? recommended(std::move(variant), meshes, *trace)
+  Chosen chosen = trace ? recommended(std::move(variant), meshes, *trace, broad_phase)
                         : recommended(std::move(variant), meshes);
   chosen.seconds = seconds_since(start);
   return chosen;

@@ -28,13 +28,15 @@ Variant configured(Variant variant, std::string_view configuration);
 
 /// The same for these meshes and, where it is known, their motion: `recommended` depends on both.
 /// With the reason, a sentence that is empty where there is no choice. Samples of the motion are
-/// played, by as many hierarchies as there are candidates. O(triangles) where it is null.
+/// played, by as many hierarchies as there are candidates, with a broad phase where the replay will
+/// use one. O(triangles) where the motion is null.
 struct Chosen {
   Variant variant;
   std::string reason;
   double seconds = 0;  ///< that the choice took
 };
 Chosen configured(Variant variant, std::string_view configuration,
-                  std::span<const TriangleMesh> meshes, const Trace* trace = nullptr);
+                  std::span<const TriangleMesh> meshes, const Trace* trace = nullptr,
+                  BroadPhase broad_phase = BroadPhase::off);
 
 }  // namespace bvlab

@@ -14,8 +14,8 @@
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/strategy_text.hpp"
 #include "experiments/replay/touching_world.hpp"
+#include "experiments/replay/trace_pairs.hpp"
 #include "experiments/replay/triangle_test.hpp"
-#include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/strategy_pairs.hpp"
 
@@ -31,6 +31,7 @@ class Answers {
       requires(const QueryOptions& options, std::vector<std::array<std::uint32_t, 2>>& found) {
         Query::from_options(options, found);
       };
+  static constexpr bool finds_nearest = requires(const Query& query) { query.nearest(); };
 
  public:
   Answers(ReplayResult& result, const Trace& trace, const ReplayOptions& options,
@@ -40,6 +41,8 @@ class Answers {
       if (options.threads > 1) of_pairs_.resize(pairs_);
     } else {
       if (keep_) cells().resize(trace.frames * pairs_);
+      if constexpr (finds_nearest)
+        if (options.keep_nearest) result.nearest.resize(trace.frames * pairs_);
     }
   }
 
@@ -54,7 +57,10 @@ class Answers {
     }
   }
 
-  void take(std::size_t frame, std::size_t p, const ObjectPair& pair, const Query& query) {
+  /// `nearest(found)` gives the points of the nearest triangles.
+  template <class Nearest>
+  void take(std::size_t frame, std::size_t p, const ObjectPair& pair, const Query& query,
+            const Nearest& nearest) {
     if constexpr (lists) {
       List& list = list_of(p);
       hits_ += list.found.size();
@@ -69,6 +75,9 @@ class Answers {
       else
         hits_ += answer == 0;
       if (keep_) cells()[frame * pairs_ + p] = answer;
+      if constexpr (finds_nearest)
+        if (!result_->nearest.empty())
+          result_->nearest[frame * pairs_ + p] = nearest(query.nearest());
     }
   }
 
@@ -110,33 +119,41 @@ class Answers {
   std::vector<List> of_pairs_;
 };
 
-template <class Engine, class Query, class Counter>
+template <class Pairs, class Query, class Counter>
 class PlayedBy final : public Player {
  public:
-  PlayedBy(Engine engine, const Trace& trace, const QueryOptions& how, const ReplayOptions& options,
+  PlayedBy(Pairs pairs, const Trace& trace, const QueryOptions& how, const ReplayOptions& options,
            ReplayResult& result)
       : result_(result),
         options_(options),
-        engine_(std::move(engine)),
+        engine_(std::move(pairs), trace,
+                uses_broad_phase<Query>(trace, options) ? BroadPhase::on : BroadPhase::off,
+                static_cast<int>(options.threads)),
         answers_(result, trace, options, how),
         poses_(trace) {}
 
   void play(std::size_t frame) override {
+    const std::span<const Pose> poses = poses_.at(frame);
+    Pairs& pairs = engine_.pairs();
     engine_.frame(
-        poses_.at(frame), counter_, [&](std::size_t p) { return answers_.ask(p); },
-        [&](std::size_t p, const Query& query) {
-          answers_.take(frame, p, engine_.pairs()[p], query);
+        poses, counter_, [&](std::size_t p) { return answers_.ask(p); },
+        [&](std::size_t p, const ObjectPair& pair, const Query& query) {
+          answers_.take(frame, p, pair, query, [&](const NearestTriangles& found) {
+            return nearest_points(found, pairs.mesh(pair.i), poses[pair.i], pairs.mesh(pair.j),
+                                  poses[pair.j]);
+          });
         });
-    if constexpr (requires { engine_.bodies().count_posed(counter_); })
-      engine_.bodies().count_posed(counter_);
-    const std::size_t front = engine_.front_size();
+    if constexpr (requires { pairs.bodies().count_posed(counter_); })
+      pairs.bodies().count_posed(counter_);
+    const std::size_t front = pairs.front_size();
     result_.front += static_cast<double>(front);
     if (options_.keep_series)
       result_.series.push_back({counter_.n_u, counter_.n_v, counter_.n_p, front, answers_.hits()});
-    if constexpr (requires { engine_.strategy(0).front().entries(); })
+    if (const auto near = engine_.near()) result_.near = result_.near.value_or(0) + *near;
+    if constexpr (requires { pairs.strategy(0).front().entries(); })
       if (options_.see_front)
-        for (std::size_t p = 0; p < engine_.pairs().size(); ++p)
-          options_.see_front(frame, p, engine_.strategy(p).front().entries());
+        for (std::size_t p = 0; p < pairs.pairs().size(); ++p)
+          options_.see_front(frame, p, pairs.strategy(p).front().entries());
   }
 
   void finish() override {
@@ -148,7 +165,7 @@ class PlayedBy final : public Player {
  private:
   ReplayResult& result_;
   const ReplayOptions& options_;
-  Engine engine_;
+  TracePairs<Pairs> engine_;
   Answers<Query> answers_;
   PosesInTurn poses_;
   Counter counter_;
@@ -179,14 +196,14 @@ BodiesFor<Strategy, Query, Counter> bodies_for(const VolumeEntry& volume,
       [&](const std::type_info& front) { return own_loop<Query>(volume.name, front); });
 }
 
-/// `engine` makes one, for either way to count.
-template <class Query, class EngineOf>
-void play_over(const EngineOf& engine, const Trace& trace, const Variant& variant,
+/// `pairs` makes the engine's pairs, of none yet, for either way to count.
+template <class Query, class PairsOf>
+void play_over(const PairsOf& pairs, const Trace& trace, const Variant& variant,
                const ReplayOptions& options, ReplayResult& result) {
   const QueryOptions how{triangle_test(variant.precision), variant.relative_error};
   const auto with = [&]<class Counter>(std::type_identity<Counter> counter) {
-    using Engine = decltype(engine(counter));
-    PlayedBy<Engine, Query, Counter> player(engine(counter), trace, how, options, result);
+    using Pairs = decltype(pairs(counter));
+    PlayedBy<Pairs, Query, Counter> player(pairs(counter), trace, how, options, result);
     play_frames(player, trace, options, result);
   };
   if (options.count == Count::on || options.keep_series)
@@ -199,14 +216,12 @@ template <class Strategy, class Query>
 void play(const VolumeEntry& volume, const AnyHierarchies& hierarchies, const Trace& trace,
           const Variant& variant, const ReplayOptions& options, ReplayResult& result) {
   const auto strategy = made_from<Strategy>(variant.strategy);
-  const auto engine = [&]<class Counter>(std::type_identity<Counter>) {
-    return AllPairsOf<StrategyPairs<BodiesFor<Strategy, Query, Counter>, Strategy>>(
-        {bodies_for<Strategy, Query, Counter>(volume, hierarchies, trace.objects, variant),
-         strategy},
-        all_object_pairs(static_cast<std::uint32_t>(trace.objects)),
-        static_cast<int>(options.threads));
+  const auto pairs = [&]<class Counter>(std::type_identity<Counter>) {
+    return StrategyPairs<BodiesFor<Strategy, Query, Counter>, Strategy>(
+        bodies_for<Strategy, Query, Counter>(volume, hierarchies, trace.objects, variant),
+        strategy);
   };
-  play_over<Query>(engine, trace, variant, options, result);
+  play_over<Query>(pairs, trace, variant, options, result);
 }
 
 /// Null where the query is no matter of yes or no.

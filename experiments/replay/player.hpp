@@ -24,6 +24,9 @@ class Player {
   virtual void finish() = 0;
 };
 
+/// Whether a broad phase saves more than it costs, and nothing asked for needs every pair's tests.
+bool broad_phase_pays(const Trace& trace, const ReplayOptions& options);
+
 /// Plays and times all frames; then puts in order what they found.
 void play_frames(Player& player, const Trace& trace, const ReplayOptions& options,
                  ReplayResult& result);

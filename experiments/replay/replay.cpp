@@ -95,6 +95,13 @@ bool set_tree(Variant& variant, std::string_view tree) {
   return tree == "wide" || tree == "binary";
 }
 
+BroadPhase broad_phase_from(std::string_view name) {
+  if (name == "auto") return BroadPhase::where_it_pays;
+  if (name == "on") return BroadPhase::on;
+  if (name == "off") return BroadPhase::off;
+  throw Unusable("--broad-phase " + std::string(name) + ": unknown; available: auto, on, off");
+}
+
 void check(const Variant& variant) {
   check_engine(variant);
   check_name<Precisions>("--precision", variant.precision);
@@ -148,6 +155,11 @@ std::unique_ptr<WorldEngine> make_world(std::span<const TriangleMesh> meshes, st
   if (!world)
     throw Unusable("--query " + variant.query + ": a whole scene takes only yes-or-no queries");
   return world;
+}
+
+bool detail::broad_phase_pays(const Trace& trace, const ReplayOptions& options) {
+  return options.broad_phase == BroadPhase::where_it_pays && options.count == Count::off &&
+         !options.keep_series && !options.see_front && has_many_pairs(trace);
 }
 
 void detail::play_frames(Player& player, const Trace& trace, const ReplayOptions& options,

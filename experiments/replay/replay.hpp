@@ -15,6 +15,7 @@
 #include "hierarchies/geometry/triangle_mesh.hpp"
 #include "traversal/frame.hpp"
 #include "traversal/front.hpp"
+#include "traversal/nearest_points.hpp"
 
 namespace bvlab {
 
@@ -46,10 +47,22 @@ void set_kernel(Variant& variant, std::string_view kernel);
 /// them.
 bool set_tree(Variant& variant, std::string_view tree);
 
+/// Whether a broad phase finds the pairs whose boxes overlap, and only these are queried, or every
+/// pair is. Where it pays: with many more pairs than bodies, and nothing counted.
+enum class BroadPhase : std::uint8_t { off, on, where_it_pays };
+
+/// "off", "on" or "auto"; throws Unusable for another name.
+BroadPhase broad_phase_from(std::string_view name);
+
+/// Whether a trace has so many more pairs than bodies that a broad phase pays.
+inline bool has_many_pairs(const Trace& trace) { return trace.pairs() >= 16 * trace.objects; }
+
 struct ReplayOptions {
   Count count = Count::off;
   unsigned threads = 1;
+  BroadPhase broad_phase = BroadPhase::off;
   bool keep_answers = true;         ///< fill `touching`, `contacts` or `distances`
+  bool keep_nearest = false;        ///< fill `nearest`, where the query is for distances
   bool keep_series = false;         ///< fill `series`
   bool keep_frame_seconds = false;  ///< fill `frame_seconds`: a reading of the clock in each frame
   /// Called after every frame, for every pair, with what the strategy keeps of it, if it does.
@@ -69,10 +82,13 @@ struct ReplayResult {
   double build_seconds = 0;
   std::uint64_t n_b = 0, n_u = 0, n_v = 0, n_p = 0;  ///< where counted
   std::uint64_t considered = 0;        ///< pairs, over all frames, for which anything was tested
+  /// Pairs whose boxes overlap, over all frames; nothing where no broad phase was used.
+  std::optional<std::uint64_t> near;
   double front = 0;                    ///< mean entries per pair and frame
   std::uint64_t hits = 0;              ///< touching pairs, or contacts, over all frames
   std::vector<std::uint8_t> touching;  ///< (frames, pairs)
   std::vector<double> distances;       ///< (frames, pairs)
+  std::vector<NearestPair> nearest;    ///< (frames, pairs), where asked for
   std::vector<std::array<std::uint32_t, 5>> contacts;  ///< frame, i, j, triangle of i, of j; sorted
   std::vector<FrameCounts> series;                     ///< one for each frame
   std::vector<double> frame_seconds;  ///< of each frame, where asked for; of threads the longest

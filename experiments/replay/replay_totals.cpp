@@ -92,7 +92,12 @@ Totals totals_of(const ReplayResult& result, std::span<const TriangleMesh> meshe
       .set("leaf_size", variant.leaf_size)
       .set("fit", variant.fit)
       .set("precision", variant.precision)
-      .set("threads", options.threads);
+      .set("threads", options.threads)
+      .set("broad_phase", result.near ? "on" : "off");
+  if (result.near)
+    totals.set("near", *result.near);
+  else
+    totals.set("near", nullptr);
   skipped(totals, variant, options, meshes, trace, result);
   return totals;
 }

@@ -2,10 +2,9 @@
 /// A whole scene that says which pairs touch, over pairs of any kind.
 #pragma once
 
-#include <memory>
 #include <utility>
 
-#include "experiments/replay/box_methods.hpp"
+#include "experiments/replay/near_boxes.hpp"
 #include "experiments/replay/triangle_test.hpp"
 #include "experiments/replay/world_frames.hpp"
 #include "traversal/counters.hpp"
@@ -15,21 +14,6 @@
 namespace bvlab {
 
 namespace detail {
-
-/// The broad phase of whole scenes, compiled once for all strategies.
-class NearBoxes {
- public:
-  explicit NearBoxes(const MethodSettings& settings)
-      : method_(make_method<float>("auto", settings)) {}
-  std::span<const Pair> overlapping(Boxes<float> boxes) { return method_->overlapping(boxes); }
-  std::span<const Pair> update(Boxes<float> boxes, std::span<const std::uint32_t> moved) {
-    return method_->update(boxes, moved);
-  }
-  PairChanges changes() const { return method_->changes(); }
-
- private:
-  std::unique_ptr<AnyMethod<float>> method_;
-};
 
 /// `Hierarchies` holds those of all meshes; `of(mesh)` is what Pairs has for a body of a mesh, for
 /// which it builds one that was not there.
@@ -42,6 +26,7 @@ class TouchingWorld final : public WorldEngine {
         world_(std::move(pairs), threads),
         how_{triangle_test(variant.precision), 0} {}
 
+  void choose(const PairChoice& choice) override { world_.choose(choice); }
   void move(std::uint32_t object, const Pose& pose) override { world_.move(object, pose); }
   void add(const TriangleMesh& mesh) override { world_.add(hierarchies_.of(mesh)); }
   void remove(std::uint32_t object) override { world_.remove(object); }

@@ -9,6 +9,7 @@ template std::uint64_t intersect_batch<Exact>(const Triangle* const*, const Tria
 template std::uint64_t touching_with_margins<double>(const Triangle* const*, const Triangle* const*,
                                                      int, TriangleTest, double*);
 template TriangleDistance distance<double>(const Triangle&, const Triangle&);
+template TriangleDistance distance<DoubleDouble>(const Triangle&, const Triangle&);
 
 TriangleTest triangle_test(std::string_view precision) {
   TriangleTest test = nullptr;

@@ -18,6 +18,7 @@ extern template std::uint64_t touching_with_margins<double>(const Triangle* cons
                                                             const Triangle* const*, int,
                                                             TriangleTest, double*);
 extern template TriangleDistance distance<double>(const Triangle&, const Triangle&);
+extern template TriangleDistance distance<DoubleDouble>(const Triangle&, const Triangle&);
 
 /// The name is one of Precisions; null where it is not.
 TriangleTest triangle_test(std::string_view precision);

@@ -40,7 +40,7 @@ BudgetedResult play_budgeted(std::span<const TriangleMesh> meshes, const Trace& 
   Bodies<NativeBatch<typename V::scalar>, V> bodies(hierarchies.shapes(trace.objects),
                                                     frame_of(variant));
   result.build_seconds = seconds_since(start);
-  const auto pairs = all_object_pairs(static_cast<std::uint32_t>(trace.objects));
+  const auto pairs = object_pairs(trace);
   result.known.reserve(trace.frames * pairs.size());
   result.bounds.reserve(trace.frames * pairs.size());
   PosesInTurn poses_in_turn(trace);

@@ -102,12 +102,10 @@ void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const V
     result.build_seconds = seconds_since(start);
     const auto shapes = shapes_over(meshes, hierarchies.all(), trace.objects);
     with_memory(variant, [&]<class Memory>(const Memory& memory) {
-      const auto engine = [&](auto) {
-        return AllPairsOf(WidePairs<V, fan_out, Memory, Kernel>(shapes, memory),
-                          all_object_pairs(static_cast<std::uint32_t>(trace.objects)),
-                          static_cast<int>(options.threads));
+      const auto pairs = [&](auto) {
+        return WidePairs<V, fan_out, Memory, Kernel>(shapes, memory);
       };
-      play_over<Query>(engine, trace, variant, options, result);
+      play_over<Query>(pairs, trace, variant, options, result);
     });
   });
 }

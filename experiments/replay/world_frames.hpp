@@ -17,6 +17,8 @@ namespace bvlab {
 class WorldEngine {
  public:
   virtual ~WorldEngine() = default;
+  /// Only these pairs are asked about; to be called before the first update. Ours alone can.
+  virtual void choose(const PairChoice&) {}
   /// Every body is moved before the first update; ours may come later.
   virtual void move(std::uint32_t object, const Pose& pose) = 0;
   virtual void update() = 0;

@@ -44,4 +44,9 @@ concept Scene = std::default_initializable<S> &&
   { fixed.generate(meshes, touches) } -> std::same_as<Array<double>>;
 };
 
+/// A scene that has its own meshes, one for each body, and takes no others. It does not ask what
+/// touches.
+template <class S>
+concept HasOwnMeshes = requires(const S& scene) { scene.own_meshes(); };
+
 }  // namespace bvlab

@@ -2,6 +2,7 @@
 /// THE list of scenes.
 #pragma once
 
+#include "experiments/scenes/parts.hpp"
 #include "experiments/scenes/pile.hpp"
 #include "experiments/scenes/planner.hpp"
 #include "experiments/scenes/random_walk.hpp"
@@ -11,6 +12,6 @@
 
 namespace bvlab {
 
-using Scenes = TypeList<RandomWalk, Planner, Pile, Tori, Recorded>;
+using Scenes = TypeList<RandomWalk, Planner, Pile, Tori, Recorded, Parts>;
 
 }  // namespace bvlab

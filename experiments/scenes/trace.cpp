@@ -10,6 +10,7 @@
 #include "experiments/files/npy.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/checked_trace.hpp"
+#include "traversal/pair_choice.hpp"
 
 namespace bvlab {
 
@@ -19,9 +20,14 @@ void Trace::poses(std::size_t frame, std::span<Pose> poses) const {
     poses[i] = *pose_from({v[0], v[1], v[2]}, v[3], v[4], v[5], v[6]);
 }
 
+std::vector<ObjectPair> object_pairs(const Trace& trace) {
+  if (trace.chosen) return *trace.chosen;
+  return chosen_pairs({}, static_cast<std::uint32_t>(trace.objects));
+}
+
 Trace part_of(const Trace& trace, std::span<const std::size_t> frames) {
   const std::size_t length = 7 * trace.objects;
-  Trace part{frames.size(), trace.objects, {}};
+  Trace part{frames.size(), trace.objects, {}, trace.chosen};
   part.values.reserve(frames.size() * length);
   for (const std::size_t frame : frames) {
     const double* const first = trace.values.data() + frame * length;

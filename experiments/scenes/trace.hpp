@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A motion trace: where every object of a scene stands, frame by frame.
+/// A motion trace: where every object of a scene stands, frame by frame, and which pairs of objects
+/// are asked about.
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +13,7 @@
 
 #include "hierarchies/geometry/pose.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
+#include "traversal/shape.hpp"
 
 namespace bvlab {
 
@@ -18,12 +21,20 @@ namespace bvlab {
 struct Trace {
   std::size_t frames = 0, objects = 0;
   std::vector<double> values;  ///< C order, shape (frames, objects, 7)
+  /// The pairs that are asked about, in the order of all answers; null: all of them.
+  std::shared_ptr<const std::vector<ObjectPair>> chosen = nullptr;
 
-  std::size_t pairs() const { return objects > 0 ? objects * (objects - 1) / 2 : 0; }
+  std::size_t pairs() const {
+    if (chosen) return chosen->size();
+    return objects > 0 ? objects * (objects - 1) / 2 : 0;
+  }
 
   /// The poses of one frame into `poses`, which has one entry for each object.
   void poses(std::size_t frame, std::span<Pose> poses) const;
 };
+
+/// The pairs that are asked about, in the order of all answers.
+std::vector<ObjectPair> object_pairs(const Trace& trace);
 
 /// A trace of these frames alone, in their order.
 Trace part_of(const Trace& trace, std::span<const std::size_t> frames);

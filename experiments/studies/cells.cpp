@@ -12,6 +12,7 @@
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/touches_any.hpp"
 #include "experiments/scenes/named_mesh.hpp"
+#include "experiments/scenes/pair_files.hpp"
 #include "experiments/scenes/public/public_scenes.hpp"
 #include "experiments/scenes/scenes.hpp"
 
@@ -30,7 +31,7 @@ T number(const std::string& name, const std::string& text) {
 struct SettingOption {
   const Cell& cell;
   void operator()(std::string_view name, std::string& value, std::string_view) const {
-    value = cell[name];
+    if (!cell[name].empty()) value = cell[name];
   }
   void operator()(std::string_view name, Length& value, std::string_view) const {
     try {
@@ -102,18 +103,24 @@ PublicMotion public_motion_of(const Cell& cell) {
   return public_motion(cell["scene"], "", {number<std::size_t>("frames", cell["frames"]), touches});
 }
 
-/// A public scene brings its meshes: a record says how many, and the most triangles of one.
-void set_meshes_of_public_scenes(std::vector<Cell>& cells) {
+bool has_own_meshes(const std::string& scene) {
+  bool own = is_public_scene(scene);
+  Scenes::with(scene, [&]<class S>(std::type_identity<S>) { own = HasOwnMeshes<S>; });
+  return own;
+}
+
+/// Some scenes bring their meshes: a record says how many, and the most triangles of one.
+void set_meshes_of_scenes(std::vector<Cell>& cells) {
   std::map<std::string, Settings> known;
   for (auto& cell : cells) {
-    if (!is_public_scene(cell["scene"])) continue;
-    auto& said = known[cell["scene"] + "/" + cell["frames"]];
+    if (!has_own_meshes(cell["scene"])) continue;
+    auto& said = known[trace_key(cell)];
     if (said.empty()) {
-      const auto motion = public_motion_of(cell);
+      const auto meshes = prepared(cell).meshes;
       std::size_t most = 0;
-      for (const auto& each : motion.meshes) most = std::max(most, each.mesh.triangles.size());
+      for (const auto& each : meshes) most = std::max(most, each.triangles.size());
       said = {{"mesh", cell["scene"]},
-              {"objects", std::to_string(motion.meshes.size())},
+              {"objects", std::to_string(meshes.size())},
               {"polygons", std::to_string(most)}};
     }
     for (auto& [name, value] : cell.parameters)
@@ -151,7 +158,7 @@ void set_polygons_of_files(std::vector<Cell>& cells) {
   std::map<std::string, std::string> known;
   for (auto& cell : cells) {
     const std::string& mesh = cell["mesh"];
-    if (!names_files(mesh) || is_public_scene(cell["scene"])) continue;
+    if (!names_files(mesh) || has_own_meshes(cell["scene"])) continue;
     auto& polygons = known[mesh];
     if (polygons.empty()) {
       std::size_t most = 0;
@@ -186,7 +193,10 @@ Variant variant_of(const Cell& cell) {
           cell["kernel"]};
 }
 
-Prepared prepared(const Cell& cell) {
+namespace {
+
+/// The meshes and the motion, of all pairs.
+Prepared prepared_motion(const Cell& cell) {
   Prepared ready;
   if (is_public_scene(cell["scene"])) {
     auto motion = public_motion_of(cell);
@@ -195,14 +205,30 @@ Prepared prepared(const Cell& cell) {
     ready.trace = {shape[0], shape[1], std::move(motion.trace.data)};
     return ready;
   }
-  ready.meshes = meshes_of(cell);
-  std::vector<Extent> extents;
-  extents.reserve(ready.meshes.size());
-  for (const auto& mesh : ready.meshes) extents.push_back(extent_of(mesh));
-  with_scene(cell, [&](const auto& scene) {
-    auto array = scene.generate(extents, touches_any(ready.meshes, scene.objects));
+  with_scene(cell, [&]<class S>(const S& scene) {
+    if constexpr (HasOwnMeshes<S>)
+      for (auto& each : scene.own_meshes()) ready.meshes.push_back(std::move(each.mesh));
+    else
+      ready.meshes = meshes_of(cell);
+    std::vector<Extent> extents;
+    extents.reserve(ready.meshes.size());
+    for (const auto& mesh : ready.meshes) extents.push_back(extent_of(mesh));
+    auto array = scene.generate(
+        extents, HasOwnMeshes<S> ? TouchesAny() : touches_any(ready.meshes, scene.objects));
     ready.trace = {array.shape[0], array.shape[1], std::move(array.data)};
   });
+  return ready;
+}
+
+PairArrays pair_arrays_of(const Cell& cell) {
+  return read_pair_arrays({cell["asked_pairs"], cell["without_pairs"], cell["groups"]});
+}
+
+}  // namespace
+
+Prepared prepared(const Cell& cell) {
+  Prepared ready = prepared_motion(cell);
+  ready.trace.chosen = chosen_from(pair_arrays_of(cell), ready.trace.objects);
   return ready;
 }
 
@@ -216,6 +242,7 @@ void check(const Cell& cell) {
   with_scene(cell, [](const auto& scene) {
     if constexpr (requires { scene.check(); }) scene.check();
   });
+  pair_arrays_of(cell);
   // Of other scenes, too: what is no number is a slip of the pen.
   Scenes::for_each([&]<class S>(std::type_identity<S>) { S{}.visit_options(SettingOption{cell}); });
   if (!cell["peer"].empty() && !peer(cell["peer"]) && !is_absent_peer(cell["peer"]))
@@ -247,7 +274,7 @@ std::vector<Cell> cells_with_answers(const Definition& definition) {
     }
     cells.push_back(std::move(cell));
   }
-  set_meshes_of_public_scenes(cells);
+  set_meshes_of_scenes(cells);
   set_polygons_of_files(cells);
   set_recommended_of_motions(cells);
   return cells;

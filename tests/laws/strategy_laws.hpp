@@ -12,6 +12,7 @@
 #include "experiments/scenes/formula_mesh.hpp"
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes/sphere.hpp"
+#include "tests/oracles/nearest_laws.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
@@ -73,6 +74,10 @@ std::vector<double> answers_by(const Scene& scene, const Strategy& prototype) {
     Distance distance;
     strategy.run(bodies.pair({0, 1}, distance, counter));
     EXPECT_EQ(touching.touching(), distance.distance() == 0) << frame;
+    const auto poses = poses_at(frame);
+    expect_nearest(nearest_points(distance.nearest(), scene.mesh, poses[0], scene.mesh, poses[1]),
+                   distance.distance(), scene.mesh, poses[0], scene.mesh, poses[1],
+                   std::to_string(frame));
     all.push_back(distance.distance());
   }
   return all;

@@ -7,6 +7,7 @@
 #include "experiments/replay/replay.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/random_walk.hpp"
+#include "tests/oracles/nearest_laws.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/primitives/triangle_distance.hpp"
 
@@ -83,6 +84,67 @@ TEST(DistanceQuery, CoherentIsFreshForEveryVolume) {
         for (std::size_t i = 0; i < fresh.size(); ++i)
           ASSERT_NEAR(kept[i], fresh[i], 1e-12 * fresh[i]) << strategy << ' ' << volume;
       }
+  }
+}
+
+/// Frames in threes, of which the last two are alike: bodies rest now and then.
+void let_rest(Trace& trace) {
+  const std::size_t row = trace.objects * 7;
+  for (std::size_t frame = 2; frame < trace.frames; frame += 3)
+    std::copy_n(trace.values.begin() + static_cast<std::ptrdiff_t>((frame - 1) * row), row,
+                trace.values.begin() + static_cast<std::ptrdiff_t>(frame * row));
+}
+
+/// The nearest pairs hold their laws, and are the same for any number of threads.
+void expect_nearest_pairs(const Scenery& scene, const Variant& variant) {
+  ReplayOptions options;
+  options.keep_nearest = true;
+  const ReplayResult found = replay(scene.meshes, scene.trace, variant, options);
+  ASSERT_EQ(found.nearest.size(), found.distances.size());
+  options.threads = 3;
+  const ReplayResult again = replay(scene.meshes, scene.trace, variant, options);
+  EXPECT_EQ(again.distances, found.distances);
+  std::vector<Pose> poses(scene.trace.objects);
+  std::size_t cell = 0;
+  for (std::size_t frame = 0; frame < scene.trace.frames; ++frame) {
+    scene.trace.poses(frame, poses);
+    for (const auto& [i, j] : object_pairs(scene.trace)) {
+      expect_nearest(found.nearest[cell], found.distances[cell], scene.meshes[i % 2], poses[i],
+                     scene.meshes[j % 2], poses[j],
+                     variant.volume + " " + variant.strategy + " " + variant.kernel);
+      if (testing::Test::HasFatalFailure()) return;
+      ASSERT_EQ(again.nearest[cell].triangles, found.nearest[cell].triangles);
+      ASSERT_EQ(again.nearest[cell].points, found.nearest[cell].points);
+      ++cell;
+    }
+  }
+}
+
+TEST(DistanceQuery, NearestPairsAreAsFarApartAsTheBodies) {
+  for (const double step : {0.002, 0.1}) {
+    Scenery scene = scenery(120, 4, step);
+    let_rest(scene.trace);
+    for (const double relative_error : {0.0, 0.3})
+      for (const char* frame : {"world", "body"})
+        for (const auto* volume : volume_entries())
+          for (const auto& [strategy, description] : strategies()) {
+            if (frame == std::string("body") && !volume->has_body_frame) continue;
+            Variant variant;
+            variant.query = "distance", variant.relative_error = relative_error;
+            variant.volume = volume->name, variant.strategy = strategy, variant.frame = frame;
+            expect_nearest_pairs(scene, variant);
+            ASSERT_FALSE(HasFatalFailure());
+          }
+    for (const char* kernel : {"siblings", "mixed"})
+      for (const auto& [volume, description] : wide_volumes(kernel))
+        for (const char* strategy : {"recursive", "margins"}) {
+          Variant variant;
+          variant.query = "distance";
+          set_kernel(variant, kernel);
+          variant.volume = volume, variant.strategy = strategy;
+          expect_nearest_pairs(scene, variant);
+          ASSERT_FALSE(HasFatalFailure());
+        }
   }
 }
 

@@ -60,6 +60,23 @@ void expect_bounded(const TrianglePair& pair, long double truth) {
   bounded += truth > 0 && bound > 0.99L * truth;
 }
 
+/// Points computed in double-double are off by their coordinates' rounding alone.
+void expect_points_rounded_once(const TrianglePair& pair, double distance, long double truth) {
+  const auto& [a, b] = pair;
+  const TriangleDistance found = bvlab::distance<DoubleDouble>(a, b);
+  ASSERT_EQ(found.distance, distance) << shown(pair);
+  const Triangle at_a = {found.on_a, found.on_a, found.on_a},
+                 at_b = {found.on_b, found.on_b, found.on_b};
+  const long double rounding = grain(pair) / 4;  // 2^-51 of the largest coordinate
+  ASSERT_LE(oracle::distance(at_a, a), rounding) << shown(pair);
+  ASSERT_LE(oracle::distance(at_b, b), rounding) << shown(pair);
+  ASSERT_LE(std::abs(oracle::distance(at_a, at_b) - truth), 2 * rounding + 1e-14L * truth)
+      << shown(pair);
+  if (truth == 0) {
+    ASSERT_EQ(found.on_a, found.on_b) << shown(pair);
+  }
+}
+
 void expect_right(const TrianglePair& pair) {
   const auto& [a, b] = pair;
   const long double truth = oracle::distance(a, b);
@@ -80,6 +97,7 @@ void expect_right(const TrianglePair& pair) {
   ASSERT_LE(oracle::distance(at_a, a), grain(pair)) << shown(pair);
   ASSERT_LE(oracle::distance(at_b, b), grain(pair)) << shown(pair);
   ASSERT_LE(std::abs(oracle::distance(at_a, at_b) - truth), 2 * grain(pair)) << shown(pair);
+  expect_points_rounded_once(pair, found.distance, truth);
 }
 
 template <class F>

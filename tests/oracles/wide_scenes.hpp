@@ -12,6 +12,7 @@
 
 #include "experiments/scenes/formula_mesh.hpp"
 #include "hierarchies/builds.hpp"
+#include "tests/oracles/nearest_laws.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
@@ -258,10 +259,17 @@ class PlayedWide {
             const double expected = truth.distances[f * engine_->pairs().size() + p];
             EXPECT_EQ(query.distance() == 0, expected == 0) << where() << ' ' << f << ' ' << p;
             EXPECT_NEAR(query.distance(), expected, 1e-13 * expected) << where() << ' ' << f;
+            const auto& [i, j] = engine_->pairs()[p];
+            const auto &a = mesh(i), &b = mesh(j);
+            const Pose &in_a = scene_.frames[f][i], &in_b = scene_.frames[f][j];
+            expect_nearest(nearest_points(query.nearest(), a, in_a, b, in_b), query.distance(), a,
+                           in_a, b, in_b, where());
           });
   }
 
  private:
+  const TriangleMesh& mesh(std::size_t i) const { return scene_.meshes[i % scene_.meshes.size()]; }
+
   std::string where() const {
     return std::string(scene_.name) + ' ' + std::string(V::name) + ' ' + std::to_string(F) + ' ' +
            std::string(Memory::name) + ' ' + std::string(Kernel::name);

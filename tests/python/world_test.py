@@ -68,6 +68,55 @@ class Worlds(unittest.TestCase):
                     # By other volumes: as near as distances are promised, see traversal/queries/distance.hpp.
                     np.testing.assert_allclose(distances, all_of_them[all_of_them <= below], rtol=2**-44, atol=0)
 
+    def test_nearest_pairs(self):
+        world = bvlab.World(self.meshes, objects=7, volume="obb")
+        world.move(np.arange(7), self.poses[0])
+        world.update()
+        pairs, distances = world.distances(np.inf)
+        again, same, nearest = world.distances(np.inf, nearest=True)
+        np.testing.assert_array_equal(again, pairs)
+        np.testing.assert_array_equal(same, distances)
+        self.assertEqual(nearest.shape, (len(pairs),))
+        apart = nearest["points"][:, 1] - nearest["points"][:, 0]
+        np.testing.assert_allclose(np.linalg.norm(apart, axis=1), distances, atol=1e-13)
+        result = bvlab.replay(self.meshes, self.poses, query="distance", volume="obb", nearest=True)
+        self.assertEqual(result.nearest.shape, result.answers.shape)
+        np.testing.assert_array_equal(result.pairs, bvlab.pairs_of(7))
+        apart = result.nearest["points"][..., 1, :] - result.nearest["points"][..., 0, :]
+        np.testing.assert_allclose(np.linalg.norm(apart, axis=-1), result.answers, atol=1e-13)
+        self.assertIsNone(bvlab.replay(self.meshes, self.poses, query="distance").nearest)
+        with self.assertRaisesRegex(ValueError, "nearest"):
+            bvlab.replay(self.meshes, self.poses, nearest=True)
+
+    def test_chosen_pairs(self):
+        chosen = {"without": [(1, 0), (2, 3)], "groups": [4, 4, 4, -1, -1, 5, 5]}
+        kept = [pair for pair in bvlab.pairs_of(7).tolist()
+                if pair not in ([0, 1], [0, 2], [1, 2], [2, 3], [5, 6])]
+        world = bvlab.World(self.meshes, objects=7, volume="obb", **chosen)
+        whole = bvlab.World(self.meshes, objects=7, volume="obb")
+        for poses in self.poses:
+            for each in (world, whole):
+                each.move(np.arange(7), poses)
+                each.update()
+            self.assertEqual(world.touching().tolist(), [p for p in whole.touching().tolist() if p in kept])
+            self.assertEqual(world.distances(np.inf)[0].tolist(), kept)
+        result = bvlab.replay(self.meshes, self.poses, volume="obb", **chosen)
+        self.assertEqual(result.pairs.tolist(), kept)
+        everything = bvlab.replay(self.meshes, self.poses, volume="obb")
+        columns = [everything.pairs.tolist().index(pair) for pair in kept]
+        np.testing.assert_array_equal(result.answers, everything.answers[:, columns])
+        asked = bvlab.replay(self.meshes, self.poses, volume="obb", pairs=[[5, 2], [0, 1]])
+        self.assertEqual(asked.pairs.tolist(), [[2, 5], [0, 1]])
+        for wrong, message in (({"pairs": [[0, 7]]}, "pairs: row 0: no object 7; there are 7"),
+                               ({"pairs": [[0, 1], [1, 0]]}, "pairs: row 1: the same pair as in row 0"),
+                               ({"without": [[3, 3]]}, "without: row 0: object 3 with itself"),
+                               ({"groups": [1]}, "groups: has groups of 1 objects; there are 7"),
+                               ({"pairs": [0, 1]}, "pairs")):
+            with self.assertRaisesRegex(ValueError, message):
+                bvlab.replay(self.meshes, self.poses, **wrong)
+            with self.assertRaisesRegex(ValueError, message):
+                bvlab.World(self.meshes, objects=7, **wrong)
+
     def test_answers_are_those_of_the_last_update(self):
         mesh = bvlab.Mesh(*scenes.torus())
         world = bvlab.World([mesh, mesh, mesh])

@@ -176,16 +176,23 @@ Candidate<T> candidate(const Triangle& a, const Triangle& b, int k) {
                : corner_face<T>(b[k - 3], a[0], a[1], a[2]);
 }
 
-/// The points of the k-th candidate, from its parameters.
-inline std::array<Vec3<double>, 2> points_of(const Triangle& a, const Triangle& b, int k, double s,
-                                             double t) {
+/// The points of the k-th candidate, from its parameters; computed in T, then rounded.
+template <class T>
+std::array<Vec3<double>, 2> points_of(const Triangle& a, const Triangle& b, int k, const T& s,
+                                      const T& t) {
   const auto next = [](int i) { return i == 2 ? 0 : i + 1; };
-  const auto along = [&](const Triangle& triangle, int j, double r) -> Vec3<double> {
+  const auto along = [&](const Triangle& triangle, int j, const T& r) -> Vec3<double> {
     const auto &p = triangle[j], &q = triangle[next(j)];
-    return r == 1 ? q : Vec3<double>(p + r * (q - p));
+    if (!(r < T(1))) return q;
+    const Vector<T> e = difference<T>(q, p);
+    return {static_cast<double>(T(p[0]) + r * e[0]), static_cast<double>(T(p[1]) + r * e[1]),
+            static_cast<double>(T(p[2]) + r * e[2])};
   };
   const auto inside = [&](const Triangle& q) -> Vec3<double> {
-    return q[0] + s * (q[1] - q[0]) + t * (q[2] - q[0]);
+    const Vector<T> e = difference<T>(q[1], q[0]), f = difference<T>(q[2], q[0]);
+    Vec3<double> point;
+    for (int i = 0; i < 3; ++i) point[i] = static_cast<double>(T(q[0][i]) + (s * e[i] + t * f[i]));
+    return point;
   };
   if (k < 9) return {a[k / 3], along(b, k % 3, s)};
   if (k < corner_edges) return {along(a, k % 3, s), b[k % 9 / 3]};

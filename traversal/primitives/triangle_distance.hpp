@@ -81,8 +81,7 @@ TriangleDistance touching(const Triangle& a, const Triangle& b) {
   for (int k = 0; k < candidates; ++k) {
     const auto c = candidate<T>(a, b, k);
     if (static_cast<double>(c.squared) < least)
-      offer(points_of(a, b, k, static_cast<double>(c.s), static_cast<double>(c.t))[0],
-            static_cast<double>(c.squared));
+      offer(points_of<T>(a, b, k, c.s, c.t)[0], static_cast<double>(c.squared));
   }
   for_each_crossing<T>(a, b, offer);
   for_each_crossing<T>(b, a, offer);
@@ -108,8 +107,9 @@ struct Extent {
   }
 };
 
-/// For disjoint triangles whose coordinates and extents are in the range stated above.
-template <class = double>
+/// For disjoint triangles whose coordinates and extents are in the range stated above; the points
+/// are computed in T.
+template <class T = double>
 TriangleDistance apart(const Triangle& a, const Triangle& b) {
   constexpr double u = unit_roundoff<double>;
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -140,7 +140,13 @@ TriangleDistance apart(const Triangle& a, const Triangle& b) {
     if (again.squared.high < least)
       least = again.squared.high, best = k, s = again.s.high, t = again.t.high;
   }
-  const auto [on_a, on_b] = points_of(a, b, best, s, t);
+  auto [on_a, on_b] = points_of<double>(a, b, best, s, t);
+  if constexpr (!std::is_same_v<T, double>)
+    if (const auto exact = candidate<T>(a, b, best);
+        std::isfinite(static_cast<double>(exact.squared))) {
+      const auto points = points_of<T>(a, b, best, exact.s, exact.t);
+      on_a = points[0], on_b = points[1];
+    }
   // The distance of disjoint triangles is never 0, however small.
   return {std::max(std::sqrt(least), std::numeric_limits<double>::denorm_min()), on_a, on_b};
 }
@@ -169,7 +175,7 @@ inline Triangle scaled(const Triangle& t, int exponent) {
 /// factor of two the lowest is subtracted, which is exact; on the others they are at most twice the
 /// extent. Divided by the power of two above the largest extent, no coordinate is above 4, and what
 /// underflows is less than 2^-1074 of the extent.
-template <class = double>
+template <class T = double>
 TriangleDistance apart_at_any_scale(const Triangle& a, const Triangle& b) {
   const Extent extent(a, b);
   Vec3<double> origin = Vec3<double>::Zero();
@@ -182,7 +188,7 @@ TriangleDistance apart_at_any_scale(const Triangle& a, const Triangle& b) {
   const auto moved = [&](const Triangle& t) {
     return scaled(Triangle{t[0] - origin, t[1] - origin, t[2] - origin}, -exponent);
   };
-  TriangleDistance result = apart(moved(a), moved(b));
+  TriangleDistance result = apart<T>(moved(a), moved(b));
   result.distance =
       std::max(std::ldexp(result.distance, exponent), std::numeric_limits<double>::denorm_min());
   result.on_a = scaled(result.on_a, exponent) + origin;
@@ -193,22 +199,23 @@ TriangleDistance apart_at_any_scale(const Triangle& a, const Triangle& b) {
 }  // namespace nearest
 
 /// The distance of two closed triangles with finite corners; 0 if and only if they share a point.
+/// The points are computed in T, float64 or double-double; the distance does not depend on it.
 // A template, so that a program can compile it once (extern template).
-template <class = double>
+template <class T = double>
 TriangleDistance distance(const Triangle& a, const Triangle& b) {
   using namespace nearest;
   const int k = exponent_of(a, b);
   if (intersect(a, b)) {
-    if (k == 0) return touching<double>(a, b);
-    TriangleDistance result = touching<double>(scaled(a, -k), scaled(b, -k));
+    if (k == 0) return touching<T>(a, b);
+    TriangleDistance result = touching<T>(scaled(a, -k), scaled(b, -k));
     result.on_a = scaled(result.on_a, k), result.on_b = scaled(result.on_b, k);
     return result;
   }
-  if (k != 0) return apart_at_any_scale(a, b);
-  const TriangleDistance result = apart(a, b);
+  if (k != 0) return apart_at_any_scale<T>(a, b);
+  const TriangleDistance result = apart<T>(a, b);
   // Coordinates of moderate size may be next to each other: only then is the computed distance this
   // small, whether right or not.
-  return result.distance < 0x1p-98 ? apart_at_any_scale(a, b) : result;
+  return result.distance < 0x1p-98 ? apart_at_any_scale<T>(a, b) : result;
 }
 
 }  // namespace bvlab

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "hierarchies/geometry/triangle_mesh.hpp"
@@ -24,6 +25,13 @@ struct Candidate {
 struct QueryOptions {
   TriangleTest test = intersect_batch<Exact>;
   double relative_error = 0;  ///< of distances
+};
+
+/// The distance of two surfaces, and two triangles that are as far apart.
+struct NearestTriangles {
+  static constexpr std::uint32_t none = static_cast<std::uint32_t>(-1);
+  double distance = std::numeric_limits<double>::infinity();
+  std::uint32_t a = none, b = none;  ///< their indices in their meshes; none before any was tested
 };
 
 /// What a query found among candidates.

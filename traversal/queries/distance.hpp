@@ -79,16 +79,20 @@ class Distance {
   }
 
   double limit() const { return limit_; }
-  bool known(std::uint32_t, std::uint32_t) {
-    distance_ = limit_ = 0;
+  bool known(std::uint32_t a, std::uint32_t b) {
+    nearest_ = {0, a, b};
+    limit_ = 0;
     return true;
   }
   /// Sets the answer to the last one; nothing has moved since.
-  void repeat(double distance) { distance_ = distance; }
+  void repeat(const NearestTriangles& nearest) { nearest_ = nearest; }
 
   /// In units of the meshes; infinity before any candidate was tested.
-  double distance() const { return distance_; }
-  double answer() const { return distance_; }
+  double distance() const { return nearest_.distance; }
+  double answer() const { return nearest_.distance; }
+  /// Triangles of the two bodies that are distance() apart; of several such pairs any. Their
+  /// nearest points: nearest_points.hpp.
+  const NearestTriangles& nearest() const { return nearest_; }
 
  private:
   static constexpr std::size_t at_once = native_width<double>;
@@ -107,8 +111,8 @@ class Distance {
       lower[i] = std::numeric_limits<double>::infinity();
       const auto& candidate = pending[first + i];
       const double d = bvlab::distance(*candidate.triangle_a, *candidate.triangle_b).distance;
-      if (!(d < distance_)) continue;
-      distance_ = d;
+      if (!(d < nearest_.distance)) continue;
+      nearest_ = {d, candidate.a, candidate.b};
       limit_ = std::max(d / (1 + relative_error_) * (1 - alike),
                         std::numeric_limits<double>::denorm_min());
       outcome = {.witness = first + i, .satisfied = d == 0};
@@ -129,7 +133,7 @@ class Distance {
   }
 
   double relative_error_;
-  double distance_ = std::numeric_limits<double>::infinity();
+  NearestTriangles nearest_;
   double limit_ = std::numeric_limits<double>::infinity();
 };
 

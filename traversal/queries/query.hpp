@@ -36,7 +36,8 @@ namespace bvlab {
 ///   known(a, b)                     triangles a and b share a point (found now, or still valid);
 ///                                   returns whether that satisfies the query. A query answered by
 ///                                   yes or no must ignore a and b: a repeated answer has others
-///   repeat(answer)                  for queries answered by a number: sets an earlier answer
+///   nearest(), repeat(nearest)      for queries answered by a distance: it and the triangles that
+///                                   have it; sets what an earlier query found
 template <class Q, class P>
 concept Query = requires(Q query, const P& p, std::span<const Candidate> pending) {
   { Q::name } -> std::convertible_to<std::string_view>;

@@ -21,8 +21,8 @@ class LastAnswer {
     using Query = typename Pair::Query;
     const std::uint32_t a = pair.a().epoch(), b = pair.b().epoch();
     const bool same = known_ && a == epoch_a_ && b == epoch_b_ && query_ == &Query::name;
-    if constexpr (requires { pair.query().distance(); }) {
-      if (same) pair.query().repeat(distance_);
+    if constexpr (requires { pair.query().nearest(); }) {
+      if (same) pair.query().repeat(nearest_);
     } else if constexpr (YesOrNoByOneHit<Query>) {
       if (same && touching_) pair.query().known(0, 0);  // the triangles are not part of the answer
     }
@@ -35,8 +35,8 @@ class LastAnswer {
   template <class Pair>
   void remember(const Pair& pair, const TraversalStatistics& statistics) {
     auto& query = pair.query();
-    if constexpr (requires { query.distance(); })
-      known_ = true, distance_ = query.distance();
+    if constexpr (requires { query.nearest(); })
+      known_ = true, nearest_ = query.nearest();
     else if constexpr (YesOrNoByOneHit<typename Pair::Query>)
       known_ = true, touching_ = query.answer();
     else
@@ -49,7 +49,7 @@ class LastAnswer {
   bool known_ = false, touching_ = false;
   std::uint32_t epoch_a_ = 0, epoch_b_ = 0;
   const std::string_view* query_ = nullptr;
-  double distance_ = 0;
+  NearestTriangles nearest_;
 };
 
 }  // namespace bvlab

@@ -80,7 +80,7 @@ class Margins {
     // A gap matters once it has come down to the query's limit.
     const bool by_gaps = statistics.everything && !wants_bound<Query>();
     answer_lasts(a, b, sweep.least() - (by_gaps ? query.limit() : 0));
-    if constexpr (requires { query.distance(); }) distance_ = query.distance();
+    if constexpr (requires { query.nearest(); }) nearest_ = query.nearest();
     return statistics;
   }
 
@@ -149,8 +149,8 @@ class Margins {
     }
     measuring_rule_.begin_run(moved ? step_ : 0);
     if (last_query_ != &Query::name) return false;
-    if constexpr (requires { query.distance(); }) {
-      if (!moved) query.repeat(distance_);
+    if constexpr (requires { query.nearest(); }) {
+      if (!moved) query.repeat(nearest_);
       return !moved;
     } else {
       if (moved ? !still_lasts(a, b) : !has_all_hits_) return false;
@@ -233,7 +233,7 @@ class Margins {
   double step_ = 0;                          // bound on how much nearer since the last run
   double valid_until_ = never;               // the answer lasts while displacements sum to less
   double gap_ = 0;                           // for which the last answer lasts
-  double distance_ = 0;
+  NearestTriangles nearest_;
   double upkeep_ = 0, cost_ = 0, runs_ = 0;  // smoothed cost of a run; totals since the rebuild
   std::size_t added_ = 0;  // entries that opening culled pairs has added since the rebuild
   std::uint32_t rebuilds_ = 0;

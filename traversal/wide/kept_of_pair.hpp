@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "traversal/lasting_answer.hpp"
+#include "traversal/queries/candidate.hpp"
 #include "traversal/wide/front_record.hpp"
 
 namespace bvlab {
@@ -22,7 +23,7 @@ struct PairAnswer {
 /// All else that is kept, read where the answer has expired by PairAnswer::until.
 struct KeptOfPair {
   LastingAnswer lasting;
-  double distance = 0;  ///< the last answer, where a distance is sought
+  NearestTriangles nearest;         ///< the last answer, where a distance is sought
   std::optional<NodePair> touched;  ///< FrontRecord::touched of the last traversal that had one
   WideFront front;
   FrontPause pause, verdicts_pause;

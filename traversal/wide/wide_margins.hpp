@@ -149,8 +149,8 @@ class WideMargins {
   /// Gives a query the last answer.
   template <class Query>
   void repeat(std::size_t p, Query& query) const {
-    if constexpr (requires { query.repeat(0.0); }) {
-      query.repeat(kept_[p].distance);
+    if constexpr (requires { query.nearest(); }) {
+      query.repeat(kept_[p].nearest);
     } else if constexpr (FindsAllHits<Query>) {
       for (const WideFront::Hit& hit : kept_[p].front.hits)
         query.known(hit.triangles.a, hit.triangles.b);
@@ -173,7 +173,7 @@ class WideMargins {
     if (found.touched()) kept.touched = found.touched();
     keep_front(p, found);
     if constexpr (wants_bound<Query>()) {
-      kept.distance = query.distance();  // it holds while neither body moves
+      kept.nearest = query.nearest();  // it holds while neither body moves
       return;
     } else {
       kept.touched_twice = answer.touching && !kept.was_apart;

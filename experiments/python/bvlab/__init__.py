@@ -13,6 +13,8 @@ Does my mesh touch?
     world.touching()                                # uint32 (k, 2): pairs whose surfaces share a point
     world.contacts()                                # uint32 (k, 4): the pairs of triangles
     world.distances(below=1.5)                      # pairs no farther apart, and their distances
+    world.distances(below=1.5, nearest=True)        # ... and which triangles and points are nearest
+    bvlab.World([mesh, mesh], without=[(0, 1)])     # neighbours are left out; also pairs=, groups=
 
 What does a motion cost, and what does coherence save?
 

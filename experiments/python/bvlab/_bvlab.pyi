@@ -4,7 +4,7 @@
 from collections.abc import Callable, Collection
 from os import PathLike
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,6 +32,10 @@ class Result:
     def answers(self) -> NDArray[Any] | None: ...
     @property
     def totals(self) -> dict[str, Any]: ...
+    @property
+    def nearest(self) -> NDArray[np.void] | None: ...
+    @property
+    def pairs(self) -> NDArray[np.uint32] | None: ...
     @property
     def series(self) -> NDArray[np.void] | None: ...
     @property
@@ -68,6 +72,9 @@ class World:
         fit: str | None = None,
         precision: str = ...,
         threads: int = 1,
+        pairs: ArrayLike | None = None,
+        without: ArrayLike | None = None,
+        groups: ArrayLike | None = None,
     ) -> None: ...
     def move(self, object: int | ArrayLike, pose: ArrayLike) -> None: ...
     def add(self, mesh: Mesh | HasFaces, pose: ArrayLike | None = None) -> int: ...
@@ -76,7 +83,14 @@ class World:
     def timed_steps(self, objects: ArrayLike, poses: ArrayLike) -> NDArray[np.float64]: ...
     def touching(self) -> NDArray[np.uint32]: ...
     def contacts(self) -> NDArray[np.uint32]: ...
-    def distances(self, below: float) -> tuple[NDArray[np.uint32], NDArray[np.float64]]: ...
+    @overload
+    def distances(
+        self, below: float, *, nearest: Literal[False] = False
+    ) -> tuple[NDArray[np.uint32], NDArray[np.float64]]: ...
+    @overload
+    def distances(
+        self, below: float, *, nearest: Literal[True]
+    ) -> tuple[NDArray[np.uint32], NDArray[np.float64], NDArray[np.void]]: ...
     @property
     def near(self) -> int: ...
     @property
@@ -107,6 +121,11 @@ def replay(
     answers: bool = True,
     series: bool = False,
     frame_seconds: bool = False,
+    nearest: bool = False,
+    pairs: ArrayLike | None = None,
+    without: ArrayLike | None = None,
+    groups: ArrayLike | None = None,
+    broad_phase: str = "auto",
 ) -> Result: ...
 def boxes(
     trace: ArrayLike,
