@@ -36,8 +36,11 @@ def note_of(figure, points, made=""):
     return " ".join(each[0].upper() + each[1:] + "." for each in sentences)
 
 
-def write(drawing, text, legend=None):
-    """Below the figure, under its legend where it has one."""
+def write(figure, drawing, text, legend=None):
+    """Below the figure, under its legend where it has one; where the figure says so it is only kept, as drawing.caption."""
+    drawing.caption = text
+    if figure.caption == "beside":
+        return
     # Letters are fitted to pixels, so that a legend is as high as it will be only at the resolution it is saved in.
     shown, drawing.dpi = drawing.dpi, style.DPI
     drawing.draw_without_rendering()

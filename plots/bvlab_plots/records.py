@@ -213,11 +213,10 @@ def without_ours(rows):
 
 
 def with_coherence(rows, path):
-    if not path.is_file():
-        return rows
-    coherence = read_table(path)
-    shared = [column for column in coherence if column in rows]
-    rows = rows.merge(coherence, how="left", on=shared)
+    if path.is_file():
+        coherence = read_table(path)
+        shared = [column for column in coherence if column in rows]
+        rows = rows.merge(coherence, how="left", on=shared)
     if {"kept", "entries"} <= set(rows):
         rows["survival"] = rows.kept / rows.entries.where(rows.entries > 0)
     return rows
