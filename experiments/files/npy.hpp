@@ -31,7 +31,7 @@ Array<T> read_npy(const std::filesystem::path& path, std::span<const std::size_t
 std::variant<Array<float>, Array<double>> read_npy_floating(const std::filesystem::path& path,
                                                             std::span<const std::size_t> shape);
 
-/// The same from bytes in memory; `name` stands in for the file in messages.
+/// The same from bytes in memory; messages name the file by `name`.
 template <class T>
 Array<T> parse_npy(std::string_view bytes, const std::string& name,
                    std::span<const std::size_t> shape);
