@@ -11,6 +11,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from drawing import PLOTS, Seen
@@ -181,6 +183,14 @@ class Kinds(unittest.TestCase):
                 self.assertEqual(draw.main([str(record), *words, "--style", style]), 2)
             self.assertIn(mention, said.getvalue())
             self.assertEqual(said.getvalue().count("\n"), 1)
+
+    def test_whoever_saves_a_figure_has_its_caption(self):
+        drawing, heights = self.drawn(*self.found(x="degrees", series="variant")), []
+        for keywords in ({}, dict(bbox_inches=drawing.bbox_inches)):
+            with matplotlib.rc_context({"savefig.bbox": None}):
+                drawing.savefig(self.folder / "a.png", dpi=50, **keywords)
+            heights.append(plt.imread(self.folder / "a.png").shape[0])
+        self.assertGreater(heights[0], 1.1 * heights[1])
 
     def test_small_multiples_stand_in_a_grid(self):
         found = self.found(x="degrees", y="time_ns", panels="volume", panel_rows="strategy", width="column")
