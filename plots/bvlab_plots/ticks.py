@@ -64,6 +64,13 @@ def log_ticks(low, high):
     return ticks[::max(1, math.ceil(len(ticks) / 7))]
 
 
+def name_log_ticks(axis, ticks=()):
+    """Names these values of a logarithmic matplotlib axis, or some round ones of its range, and no others."""
+    ticks = ticks or log_ticks(*axis.get_view_interval())
+    axis.set_ticks(ticks, [number(tick) for tick in ticks])
+    axis.set_minor_locator(NullLocator())
+
+
 def share_y(axes, scale):
     """One range for all panels, unless that would leave most of them empty; plain numbers on short logarithmic axes."""
     ranges = np.array([axis.get_ylim() for axis in axes if axis.dataLim.height > 0] or [axes[0].get_ylim()])
