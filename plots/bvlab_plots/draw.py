@@ -2,6 +2,7 @@
 """Draws the figures of a record: those that its definition declares as [[figure]], or one for each axis.
 
 usage: draw RECORD [--out DIR] [--x C --y C --over V --series C --panels C]
+       draw --check DEFINITION
 
 The tables of a record from before its definition declared figures are those of the definition of that name in
 experiments/definitions, and --figures takes those of any other. experiments/definitions/README.md has all keys.
@@ -40,6 +41,7 @@ def formats_of(text):
 def arguments_of(words):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("record", type=Path)
+    parser.add_argument("--check", metavar="DEFINITION", help="alone: whether its figures can be drawn; see check.py")
     parser.add_argument("--out", type=Path, help="folder for the figures (default: RECORD/figures)")
     parser.add_argument("--figures", type=Path, help="a definition whose [[figure]] tables are drawn")
     parser.add_argument("--table", action="store_true", help="print the medians, draw nothing")

@@ -35,7 +35,7 @@ def has_value(rows, column, text, what):
         found = values == text.strip()
     else:
         try:
-            found = np.isclose(values, number_of(text, rows.attrs["units"].get(column)), rtol=1e-12, atol=0)
+            found = np.isclose(values, number_of(text, rows.attrs.get("units", {}).get(column)), rtol=1e-12, atol=0)
         except ValueError:
             found = pd.Series(False, rows.index)
     if not np.any(found):
