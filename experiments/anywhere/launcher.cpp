@@ -25,7 +25,7 @@ struct Level {
   bool supported;
 };
 
-/// The folder that `bin` stands in.
+/// The folder that holds `bin`.
 std::string prefix() {
   std::string path(4096, '\0');
   const ssize_t length = readlink("/proc/self/exe", path.data(), path.size());

@@ -159,7 +159,7 @@ Witness Gjk<how>::nearest(const PosedPair& posed, Effort& effort) {
     ++effort.steps;
     const Vec3<double> v = simplex_.nearest;
     const double squared = v.squaredNorm();
-    // A point that is nearer than it can be told from the origin is the origin.
+    // A point counts as the origin where rounding cannot distinguish the two.
     const double blur = 16 * unit_roundoff<double> * size;
     if (simplex_.size == 4 || squared <= blur * blur) return witness(false);
     if (!(squared < before)) return witness(true);

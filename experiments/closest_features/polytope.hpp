@@ -61,7 +61,7 @@ class Polytope {
   std::vector<std::uint32_t> first_, edges_at_;
 };
 
-/// Two polytopes as they stand: the second one's points in the first one's frame, and back.
+/// Two polytopes in their poses: the second one's points in the first one's frame, and back.
 struct PosedPair {
   const Polytope *a, *b;
   Pose pose_a, pose_b;

@@ -72,7 +72,7 @@ void write_page(const Arguments& arguments, std::span<const TriangleMesh> meshes
               scene_page(meshes, trace, arguments.variant, {names, name(arguments.trace)}));
 }
 
-/// In the words of who asked.
+/// In the words of the command line.
 std::string chosen(const Arguments& arguments) {
   return arguments.configuration ? "--configuration " + *arguments.configuration
                                  : "--kernel " + arguments.variant.kernel;

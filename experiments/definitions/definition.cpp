@@ -127,7 +127,7 @@ class Reader {
       else if (key == "series")
         read_series(node, definition);
       else if (key == "figure")
-        definition.figures = read_figures(node, name_);
+        definition.has_figures = true;
       else
         fail(key.source(), "unknown key '" + std::string(key.str()) + "'");
     }
@@ -341,7 +341,7 @@ class Reader {
         if (!label) fail(one.source(), "a value of axis '" + axis.name + "' needs a name");
         axis.values.push_back({string(*label, "a value's name"), settings(one, "name")});
       }
-      // Cells are told apart by what stands in their row.
+      // The values in their rows distinguish cells.
       if (const auto& label = axis.values.back().label; !labels.insert(label).second)
         fail(each.source(), "axis '" + axis.name + "' has '" + label + "' twice");
     }

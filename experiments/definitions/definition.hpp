@@ -40,8 +40,6 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/definitions/figure_tables.hpp"
-
 namespace bvlab {
 
 /// Parameter names and values in the order of `parameters`, or a subset of them.
@@ -66,7 +64,7 @@ struct Definition {
   bool has_series = false;
   std::size_t series_until = static_cast<std::size_t>(-1);  ///< frames of each
   std::set<std::string> measures;                           ///< of every trace, for every volume
-  std::vector<FigureTable> figures;
+  bool has_figures = false;  ///< see figures_checked.hpp
   std::string text;  ///< the file as it was
   std::string file;  ///< for messages
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A JSON object of totals, in the order in which they are set. What writes JSON takes long to
-/// compile, so it stands behind this.
+/// compile, so only totals.cpp includes it.
 #pragma once
 
 #include <cstdint>

@@ -37,7 +37,7 @@ void clear_left_behind(const std::filesystem::path& folder);
 /// An empty path asks for nothing.
 void require_place(const std::string& option, const std::filesystem::path& path);
 
-/// What is read or written, and the option that says so. Empty paths stand for nothing.
+/// What is read or written, and the option that says so. An empty path means none.
 struct NamedFile {
   std::string option;
   std::filesystem::path path;

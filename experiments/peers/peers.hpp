@@ -2,7 +2,7 @@
 /// THE list of peers: other libraries that answer the same queries on the same traces. A peer is a
 /// folder beside this file (see adding_a_peer.md); a library's headers appear there and nowhere
 /// else. Settings are the libraries' own, but for what a description or the folder's page names;
-/// how a library was compiled stands in a record's machine.json.
+/// a record's machine.json says how a library was compiled.
 #pragma once
 
 #include <span>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The frame loop that all peers share, so that they are timed as our engine is: every frame all
-/// bodies are placed and all pairs asked; building is timed by itself.
+/// bodies are placed and all pairs queried; building is timed by itself.
 #pragma once
 
 #include <algorithm>
@@ -114,7 +114,7 @@ ReplayResult play_peer(std::span<const TriangleMesh> meshes, const Trace& trace,
   return PeerPlay<W>(meshes, trace, options).play(query);
 }
 
-/// The same of a library that counts where it is asked to.
+/// The same of a library that can count.
 template <class Counting, class NotCounting>
 ReplayResult play_counting_peer(std::span<const TriangleMesh> meshes, const Trace& trace,
                                 std::string_view query, const ReplayOptions& options) {

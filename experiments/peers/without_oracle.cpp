@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What stands in for CGAL's rational numbers where CGAL is absent.
+/// Replaces CGAL's rational numbers where CGAL is absent.
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/triangle_oracle.hpp"
 

@@ -5,7 +5,7 @@
 set(commit "")
 set(changes unknown)
 if(GIT AND EXISTS ${SOURCE}/.git)
-  # Whoever owns the folder: a container is not asked.
+  # Whoever owns the folder: in a container git would refuse it.
   set(git ${GIT} -c safe.directory=* -C ${SOURCE})
   execute_process(COMMAND ${git} rev-parse HEAD OUTPUT_VARIABLE commit ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
   execute_process(COMMAND ${git} status --porcelain --untracked-files=no -- . :!experiments/record :!plots :!paper

@@ -115,7 +115,7 @@ nlohmann::ordered_json changes() {
 
 nlohmann::ordered_json outside();
 
-/// A record that stands in the repository can be made again: its commit names the program.
+/// A record in the repository can be made again: its commit names the program.
 void refuse_with_changes(const std::filesystem::path& record) {
   if (std::string_view(build_facts::changes) != "yes") return;
   std::error_code error;

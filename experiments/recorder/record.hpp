@@ -34,7 +34,7 @@ class Table {
   bool has(const Row& key) const;
   /// Drops the rows that begin with these fields.
   void forget(const Row& key);
-  /// Puts the rows into an order; those that are equal stay as they stand.
+  /// Puts the rows into an order; equal rows keep their order.
   void sort(const std::function<bool(const Row&, const Row&)>& before);
   /// Anew, unless the file holds these rows already.
   void save();

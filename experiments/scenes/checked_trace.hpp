@@ -10,7 +10,7 @@
 namespace bvlab {
 
 /// `values` in C order, shape (frames, objects, 7). Refuses with Unusable what `read_trace` does;
-/// `name` stands in for the file in messages.
+/// Messages name the file by `name`.
 Trace checked_trace(std::size_t frames, std::size_t objects, std::vector<double> values,
                     const std::string& name);
 

@@ -104,7 +104,7 @@ TriangleMesh geodesic_sphere(std::size_t n) {
 }
 
 /// The numbers (around, across) with 2 around across nearest to `polygons`, and among those
-/// the one whose proportion is nearest to the one asked; at least `least_around` and 3.
+/// the one whose proportion is nearest to the one wanted; at least `least_around` and 3.
 std::pair<std::size_t, std::size_t> nearest_grid(std::size_t polygons, double proportion,
                                                  std::size_t least_around) {
   const double half = static_cast<double>(polygons) / 2;

@@ -15,7 +15,7 @@ namespace bvlab {
 struct FormulaMesh {
   std::string_view name;
   std::string_view description;
-  /// The mesh whose number of triangles is the nearest to the one asked that the formula has.
+  /// The formula's mesh whose number of triangles is nearest to the wanted one.
   TriangleMesh (*make)(std::size_t polygons);
 };
 
@@ -25,7 +25,7 @@ std::span<const FormulaMesh> formula_meshes();
 /// "box, torus, ..."
 std::string formula_mesh_names();
 
-/// The largest number of triangles a formula is asked for.
+/// A formula makes at most this many triangles.
 inline constexpr std::size_t most_polygons = 50'000'000;
 
 /// The mesh of that name. Throws Unusable where there is none (the message lists the names) or

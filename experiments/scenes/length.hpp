@@ -22,7 +22,7 @@ struct Length {
 };
 
 /// Throws Unusable unless `text` is a number that is finite and not negative, then nothing, "leaf"
-/// or "body"; a blank may stand between.
+/// or "body"; a blank may separate them.
 Length length_from(std::string_view text);
 
 /// As `length_from` reads it.

@@ -58,7 +58,7 @@ class Simulation {
  private:
   const Extent& mesh_of(std::size_t object) const { return meshes_[object % meshes_.size()]; }
 
-  /// Layers of a square grid, each shifted a little so that nothing stands exactly on anything.
+  /// Layers of a square grid, each shifted a little so that nothing lies exactly above anything.
   void start() {
     const double apart = 2.2 * largest_;
     const auto across = static_cast<std::size_t>(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Where bodies stand while a scene is made, and how that is written into a trace. Only operations
+/// The poses of bodies while a scene is made, and how that is written into a trace. Only operations
 /// that are the same on every machine.
 #pragma once
 
@@ -34,7 +34,7 @@ struct Place {
   Quaternion attitude = {1, 0, 0, 0};
 };
 
-/// What stands in a trace for a body: x y z qw qx qy qz. The mesh's origin is where turning about
+/// A trace's numbers for a body: x y z qw qx qy qz. The mesh's origin is where turning about
 /// the centre leaves it.
 inline std::array<double, 7> row_of(const Place& place, const Extent& mesh) {
   const auto& [centre, q] = place;

@@ -134,7 +134,7 @@ class Search {
     return {place, false};
   }
 
-  /// Asks, and writes down what was asked.
+  /// Queries a pose, and adds it to the trace.
   bool is_free(const Place& place, Array<double>& trace) {
     for (std::size_t object = 0; object < robot_; ++object)
       append(trace.data, maze_[object], mesh_of(object));

@@ -3,7 +3,7 @@
 /// length and a fixed angle. This is the talk's experiment [li1998incremental], whose "moving
 /// randomly" leaves open all that is an option here.
 ///
-/// - A body's centre (Extent::centre) stays in the cube, which stands round the world's origin;
+/// - A body's centre (Extent::centre) stays in the cube, which is centred at the world's origin;
 /// where
 ///   a step would lead out it is mirrored at the wall.
 /// - `freedoms = all`: the step is a translation by `step` in any direction together with a turn by

@@ -20,7 +20,7 @@
 namespace bvlab {
 
 /// Does this object's surface share a point with any other's, all standing as in `poses`? What
-/// answers it stands above the scenes: the caller brings it.
+/// answers it is above the scenes: the caller brings it.
 using TouchesAny = std::function<bool(std::size_t object, std::span<const Pose> poses)>;
 
 namespace detail {

@@ -12,9 +12,9 @@ namespace bvlab {
 
 /// The mesh with `polygons` triangles, or one or two fewer where an edge collapse leaps over that
 /// number, or more where no further edge can collapse without changing the surface's topology.
-/// Vertices stand in another order than before, unused ones are gone, and where more than two
+/// Vertices have another order than before, unused ones are gone, and where more than two
 /// triangles meet at an edge, or at a vertex more than one fan, the surface is cut apart there
-/// first. A mesh that has no more triangles than asked is given back as it is.
+/// first. A mesh that has no more triangles than wanted is returned as it is.
 TriangleMesh simplified(const TriangleMesh& mesh, std::size_t polygons);
 
 }  // namespace bvlab

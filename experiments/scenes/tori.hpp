@@ -3,7 +3,7 @@
 /// close to each other for most of the way, as in the falling torus that PQP came with
 /// (larsen2000fast), whose path is not ours.
 ///
-/// - Body 0 stands at the origin, as its mesh is. Body 1 falls along z from `fall` above to `fall`
+/// - Body 0 stays at the origin, as its mesh is. Body 1 falls along z from `fall` above to `fall`
 ///   below, at even speed; its centre wanders off the axis by up to `wobble` while it turns about x
 ///   and y, `turns` times about x and half as often about y.
 /// - The same options and bodies give the same bytes on every machine.

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+<<<<<<< HEAD
 /// A motion trace: where every object of a scene stands, frame by frame, and which pairs of objects
 /// are asked about.
+=======
+/// A motion trace: the pose of every object of a scene, frame by frame.
+>>>>>>> tidy
 #pragma once
 
 #include <cstddef>
@@ -46,7 +50,7 @@ class PosesInTurn {
   /// The trace must outlive this.
   explicit PosesInTurn(const Trace& trace) : trace_(trace), poses_(trace.objects) {}
 
-  /// Of one frame, one for each object: until the next are asked for.
+  /// Of one frame, one for each object: valid until the next call.
   std::span<const Pose> at(std::size_t frame);
 
  private:
@@ -59,7 +63,7 @@ class PosesInTurn {
 /// 32 bits number.
 Trace read_trace(const std::string& path);
 
-/// The same from bytes in memory; `name` stands in for the file in messages.
+/// The same from bytes in memory; messages name the file by `name`.
 Trace parse_trace(std::string_view bytes, const std::string& name);
 
 /// Refuses a trace by which a corner of a triangle does not stand in float64: where it overflows.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What stands in where CGAL is absent.
+/// Replaces what CGAL does where it is absent.
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/convex_hull.hpp"
 #include "experiments/scenes/simplify_mesh.hpp"

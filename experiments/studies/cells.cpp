@@ -61,7 +61,7 @@ std::uint32_t fan_out_of(const Cell& cell) {
   return native.fan_out;
 }
 
-/// What a configuration says stands in the cell's row.
+/// A cell's row holds what its configuration says.
 void spell_out(Cell& cell, const Variant& variant) {
   for (const auto& [key, said] : Settings{{"volume", variant.volume},
                                           {"strategy", variant.strategy},
@@ -136,7 +136,7 @@ Variant configured_variant_of(const Cell& cell) {
 }
 
 /// What is recommended depends on the meshes and the motion. It is found once for each of them,
-/// also where the cells are asked for again.
+/// also where the cells are made again.
 void set_recommended_of_motions(std::vector<Cell>& cells) {
   static std::map<std::string, Variant> known;
   for (auto& cell : cells) {
@@ -255,11 +255,12 @@ bool has_answer(const Cell& cell) {
   return other && other->answers(cell["query"]);
 }
 
-std::vector<Cell> cells_with_answers(const Definition& definition) {
+std::vector<Cell> cells_with_answers(const Definition& definition, AbsentPeers absent) {
   std::vector<Cell> cells;
   std::set<Settings> replaced;
   for (Cell& cell : cells_of(definition)) {
-    if (!has_answer(cell)) continue;
+    const bool is_kept = absent == AbsentPeers::kept && is_absent_peer(cell["peer"]);
+    if (!has_answer(cell) && !is_kept) continue;
     const bool of_peer = !cell["peer"].empty();
     if (of_peer) {
       for (auto& [name, value] : cell.parameters)

@@ -38,7 +38,9 @@ bool has_answer(const Cell& cell);
 
 /// A peer has a volume, a strategy and so on of its own: what a cell says of ours is cleared. So is
 /// a configuration's replaced. Cells that then say the same are one.
-std::vector<Cell> cells_with_answers(const Definition& definition);
+enum class AbsentPeers { left_out, kept };
+std::vector<Cell> cells_with_answers(const Definition& definition,
+                                     AbsentPeers absent = AbsentPeers::left_out);
 
 /// Cells that share a trace and a query, as indices, in the order in which a definition has them.
 std::vector<std::vector<std::size_t>> traces_of(const std::vector<Cell>& cells);

@@ -598,46 +598,6 @@ class Experiment {
   Neighbours neighbours_;
 };
 
-/// Axes of several values, and what a record of the definition will hold.
-DrawnColumns drawn_columns(const Definition& definition, const std::vector<Cell>& cells) {
-  DrawnColumns drawn;
-  const auto add = [](std::vector<std::string>& to, const Row& names) {
-    to.insert(to.end(), names.begin(), names.end());
-  };
-  const bool is_configured = std::any_of(
-      cells.begin(), cells.end(), [](const Cell& cell) { return !cell["configuration"].empty(); });
-  for (const auto* settings : {&cells.at(0).labels, &cells.at(0).parameters})
-    for (const auto& [name, value] : *settings) {
-      drawn.record.push_back(name);
-      auto& values = drawn.values[name];
-      for (const Cell& cell : cells) values.insert(cell[name]);
-    }
-  // What a configuration sets is in a row, and in no cell yet.
-  if (is_configured)
-    for (const char* name :
-         {"volume", "strategy", "build", "leaf_size", "fit", "fan_out", "frame", "kernel"})
-      drawn.values.erase(name);
-  drawn.values.erase("polygons");  // of a file's mesh, what it has
-  add(drawn.record, measured_columns);
-  add(drawn.record, {"variant", "later_ns", "later_pairs"});
-  if (definition.measures.contains("coherence") || definition.measures.contains("best rebuilds")) {
-    add(drawn.record, coherence_columns);
-    drawn.record.push_back("survival");
-  }
-  for (const auto& axis : definition.axes) {
-    drawn.frames.push_back(axis.name);
-    if (axis.values.size() < 2 || axis.name == "seed") continue;
-    DrawnColumns::Axis varied{axis.name, {axis.name}};
-    for (const auto& value : axis.values)
-      for (const auto& [name, ignored] : value.settings) varied.columns.insert(name);
-    drawn.axes.push_back(std::move(varied));
-  }
-  if (definition.has_series) add(drawn.frames, frame_columns);
-  for (const auto& [name, value] : definition.series) drawn.fixed_in_frames.insert(name);
-  drawn.frames.push_back("variant");
-  return drawn;
-}
-
 void check_some_cell_has(const std::string& name, const std::string& value,
                          const std::vector<Cell>& cells) {
   std::set<std::string> there;
@@ -731,7 +691,6 @@ void check(const Definition& definition) {
       throw Unusable("all its peers were absent when bvlab was built, for example " +
                      peers_asked.begin()->first);
     check_series_matches(definition, cells);
-    check_figures(definition.figures, drawn_columns(definition, cells), definition.file);
   } catch (const Unusable& fault) {
     const std::string what = fault.what();
     if (what.starts_with(definition.file)) throw;
@@ -767,6 +726,35 @@ void check_extends(const Definition& held, const Definition& definition) {
   for (const auto& measure : held.measures)
     if (!definition.measures.contains(measure))
       throw Unusable("it measures " + measure + ", the definition does not");
+}
+
+void write_cells(const Definition& definition, const std::filesystem::path& folder) {
+  const auto cells = cells_with_answers(definition, AbsentPeers::kept);
+  const bool has_coherence =
+      definition.measures.contains("coherence") || definition.measures.contains("best rebuilds");
+  Row columns, axes;
+  for (const auto* settings : {&cells.at(0).labels, &cells.at(0).parameters})
+    for (const auto& [name, value] : *settings) columns.push_back(name);
+  for (const Row* measured : {&measured_columns, &coherence_columns})
+    if (measured == &measured_columns || has_coherence)
+      columns.insert(columns.end(), measured->begin(), measured->end());
+  for (const auto& axis : definition.axes) axes.push_back(axis.name);
+  if (definition.has_series) axes.insert(axes.end(), frame_columns.begin(), frame_columns.end());
+  Table rows(folder / (definition.name + ".csv"), columns);
+  Table frames(folder / (definition.name + ".frames.csv"), axes);
+  for (const Cell& cell : cells) {
+    Row row = key_row(cell);
+    row.push_back("0");
+    row.resize(columns.size());
+    rows.add(std::move(row));
+    if (!wants_series(definition, cell)) continue;
+    Row frame;
+    for (const auto& axis : definition.axes) frame.push_back(cell[axis.name]);
+    frame.resize(axes.size());
+    frames.add(std::move(frame));
+  }
+  rows.save();
+  if (!axes.empty()) frames.save();
 }
 
 DefinitionSize size_of(const Definition& definition) {

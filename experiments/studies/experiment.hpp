@@ -20,8 +20,12 @@ namespace bvlab {
 using Progress = std::function<void(std::size_t done, std::size_t all)>;
 
 /// Throws Unusable, naming the definition's file, for names that do not exist and values that
-/// cannot be in any of its cells. Takes no time: asked before a record is opened.
+/// cannot be in any of its cells. Takes no time: called before a record is opened.
 void check(const Definition& definition);
+
+/// Writes into a folder what is known of the tables before anything is run: their columns, and a
+/// row for each cell, in which nothing is measured. Peers that are absent have theirs.
+void write_cells(const Definition& definition, const std::filesystem::path& folder);
 
 enum class Measured { counts_and_times, counts };
 
@@ -50,13 +54,13 @@ void check_extends(const Definition& held, const Definition& definition);
 
 /// Writes `<record>/<name>.csv`, one row for each cell and repetition, and, where the definition
 /// asks for a series, `<name>.frames.csv`, where it measures coherence, `<name>.coherence.csv`.
-/// What is there already is passed over. In the end rows stand in the order of the definition's
-/// traces and repetitions; while they are made they stand as they came, `unfinished.json` says how
-/// many there will be, and `<name>.counted.csv` holds counts of what is not timed yet. Where only
-/// counts are measured there is one row for each cell, its times are empty, and traces are run side
-/// by side. Throws Unusable for a record that holds times if only counts are wanted, and the other
-/// way round. Peers that were absent when the program was built are left out, and named on standard
-/// error.
+/// What is there already is passed over. In the end rows have the order of the definition's
+/// traces and repetitions. Before that they have the order in which they came, `unfinished.json`
+/// says how many there will be, and `<name>.counted.csv` holds counts of what is not timed yet.
+/// Where only counts are measured there is one row for each cell, its times are empty, and traces
+/// are run side by side. Throws Unusable for a record that holds times if only counts are wanted,
+/// and the other way round. Peers that were absent when the program was built are left out, and
+/// named on standard error.
 void run_experiment(const Definition& definition, const std::filesystem::path& record,
                     const RunOptions& options, const Progress& progress);
 

@@ -6,6 +6,7 @@
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/recorder/record.hpp"
+#include "experiments/studies/figures_checked.hpp"
 #include "experiments/studies/study.hpp"
 
 namespace bvlab {
@@ -26,8 +27,8 @@ Part part_from(const std::string& text, std::size_t traces) {
                  std::to_string(traces) + ", as many as there are traces");
 }
 
-/// Calls run(folder) with the folder of the record, in which stands what is known before anything
-/// is run. If it refuses, a new record is removed again.
+/// Calls run(folder) with the folder of the record, which holds what is known before anything is
+/// run. If it refuses, a new record is removed again.
 template <class Run>
 std::filesystem::path in_record(const RunRequest& request, const Extends& extends, Run&& run) {
   std::filesystem::path folder = request.record.empty() ? fresh_record("experiments/record")
@@ -58,6 +59,7 @@ std::optional<StudyDefinition> checked_study(const RunRequest& request) {
   auto study = study_from(request.text, request.file);
   if (!study) return study;
   check(*study);
+  if (study->has_figures) check_figures(request.text, request.file);
   if (!request.part.empty()) refuse_parts(request);
   if (request.options.measured == Measured::counts) refuse_counts(request);
   return study;
@@ -66,6 +68,10 @@ std::optional<StudyDefinition> checked_study(const RunRequest& request) {
 Definition checked_definition(const RunRequest& request) {
   Definition definition = parse_definition(request.text, request.file);
   check(definition);
+  if (definition.has_figures)
+    check_figures(request.text, request.file, [&](const std::filesystem::path& folder) {
+      write_cells(definition, folder);
+    });
   return definition;
 }
 

@@ -12,7 +12,7 @@ namespace bvlab {
 
 struct RunRequest {
   std::string text;    ///< the definition
-  std::string file;    ///< where it stands, for messages and for the record's command
+  std::string file;    ///< its path, for messages and for the record's command
   std::string record;  ///< folder; a new one, experiments/record/<date>.<n>, where empty
   std::string part;    ///< "3/8"; the whole where empty
   RunOptions options;  ///< its part is set by `part`

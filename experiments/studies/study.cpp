@@ -5,9 +5,9 @@
 #include <stdexcept>
 
 #include "experiments/definitions/definition.hpp"
-#include "experiments/definitions/figure_tables.hpp"
 #include "experiments/definitions/toml.hpp"
 #include "experiments/files/unusable.hpp"
+#include "experiments/studies/figures_checked.hpp"
 
 namespace bvlab {
 namespace {
@@ -113,7 +113,7 @@ std::optional<StudyDefinition> study_from(const std::string& text, const std::st
           list.push_back(scalar(file, value));
       }
     } else if (key == "figure") {
-      definition.figures = read_figures(node, file);
+      definition.has_figures = true;
     } else if (key != "kind" && key != "description") {
       fail(file, node, "unknown key '" + std::string(key.str()) + "' of a study");
     }
@@ -157,11 +157,10 @@ StudyRecord::StudyRecord(const StudyDefinition& definition, const std::filesyste
       folder_(folder),
       keys_(keys),
       progress_(progress) {
-  DrawnColumns there;
-  there.record = table_.columns();
-  for (const char* made : {"peer", "variant", "later_ns", "later_pairs"})
-    there.record.push_back(made);
-  check_figures(definition.figures, there, definition.file);
+  if (!definition.has_figures) return;
+  check_figures(definition.text, definition.file, [&](const std::filesystem::path& to) {
+    Table(to / (definition.name + ".csv"), table_.columns()).save();
+  });
 }
 
 bool StudyRecord::has(const Row& key) const {

@@ -20,7 +20,6 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/definitions/figure_tables.hpp"
 #include "experiments/recorder/record.hpp"
 #include "experiments/studies/experiment.hpp"
 #include "experiments/studies/study_parameter.hpp"
@@ -42,7 +41,7 @@ class StudyDefinition {
   std::size_t whole(const std::string& key) const { return wholes(key).at(0); }
 
   std::map<std::string, std::vector<std::string>> parameters;  ///< as they were written
-  std::vector<FigureTable> figures;
+  bool has_figures = false;
 };
 
 /// What a study has to work with: rows are saved as they are finished, and what a broken run has

@@ -3,14 +3,14 @@
 /// and displacement all variants run the same frames, in an order drawn anew for each repetition,
 /// and every frame's pair set is compared with the reference's by count and by a sum of hashes.
 /// A frame's time is the mean over all but the first (or over those from `steady_from` on), since
-/// some methods save work up for later frames; beside it stand the median, the 99th percentile and
+/// some methods save work up for later frames; beside it are the median, the 99th percentile and
 /// the worst. Where `plays` is more than one, a row is made of so many plays, interleaved as well,
 /// and each of its frames is the fastest of them: what else the machine did is not in the worst
 /// frames. A method that is `told`, or a peer, gets the indices of the boxes that moved; the others
 /// find out. A set is a built-in one or a file: the first frame of a box trace. Memory that
 /// an earlier run freed is given back to the system first, so that the first frame is a first call.
 /// A run that something else disturbed is made again. Processor time, which neighbours on the
-/// machine disturb less, stands beside that of the wall clock; `bytes` is the heap that a method
+/// machine disturb less, is beside that of the wall clock; `bytes` is the heap that a method
 /// holds after its last frame.
 #include <algorithm>
 #include <cmath>

@@ -24,7 +24,7 @@ struct StudyParameter {
   std::vector<std::string> fallback;  ///< where none was written
   std::string what;
   Bounds bounds{};
-  /// Words that there are; where none stand here, whoever uses them looks.
+  /// The words there are; where the list is empty, whoever uses a word checks it.
   std::vector<std::string> names{};
   bool takes_files = false;  ///< besides them, .npy
 

@@ -4,7 +4,7 @@
 /// apart (`sides`, in radii); every policy answers the same traces by recursion.
 ///
 /// Rows with the query "roots" are about the roots alone: pose_ns is then for a body's root, all
-/// that its pose needs included, and a policy "hull" stands beside the others: supports of the
+/// that its pose needs included, and a policy "hull" is beside the others: supports of the
 /// mesh's convex hull, found by climbing. Elsewhere pose_ns is C_u, averaged over all volumes of
 /// the hierarchy, timed apart (those near the root have more corners than the rest).
 #include <algorithm>

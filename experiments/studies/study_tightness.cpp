@@ -16,7 +16,7 @@
 /// is where a traversal meets a node, for from farther away its parent is enough. Uniformly, since
 /// no volume leaves out more than the distance, and near probes would all say the same. Every level
 /// has about as many, dealt out evenly to that number of its nodes; a leaf belongs to the level
-/// where it stands; nodes that are a point are left out.
+/// in its place; nodes that are a point are left out.
 #include <algorithm>
 #include <cmath>
 #include <random>

@@ -80,7 +80,7 @@ Settings settings_of(const StudyDefinition& definition) {
   return settings;
 }
 
-/// Pairs with area, so that every test can be asked, but for the sets that are made of others.
+/// Pairs with area, so that every test can answer, but for the sets that are made of others.
 std::vector<TrianglePair> pairs_of(const TriangleSet& set, const Settings& settings,
                                    bool zero_area) {
   auto pairs = set.make(settings.pairs, settings.seed);

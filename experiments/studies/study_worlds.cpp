@@ -119,7 +119,7 @@ void check_settings(const StudyDefinition& definition) { settings_of(definition)
 Trace trace_of(const Scene& scene, const Settings& settings, const TriangleMesh& mesh) {
   RandomWalk walk;
   walk.objects = scene.objects;
-  // With `moving` 0 nobody moves: a scene that stands.
+  // With `moving` 0 nobody moves.
   const auto movers =
       static_cast<std::size_t>(std::lround(scene.moving * static_cast<double>(scene.objects)));
   walk.moving = std::max<std::size_t>(movers, 1);

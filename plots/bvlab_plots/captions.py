@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What stands below a figure: of what its points and bars are made, and what a reader has to know of it."""
 
+import functools
 import textwrap
 
 from bvlab_plots import style
@@ -38,8 +39,13 @@ def note_of(figure, points, made=""):
     return " ".join(each[0].upper() + each[1:] + "." for each in sentences)
 
 
-def write(drawing, text, legend=None):
-    """Below the figure, under its legend where it has one."""
+def write(figure, drawing, text, legend=None):
+    """Below the figure, under its legend where it has one; where the figure says so it is only kept, as drawing.caption."""
+    drawing.caption = text
+    # Whoever saves it with settings of their own has the legend and the caption, too.
+    drawing.savefig = functools.partial(drawing.savefig, bbox_inches="tight")
+    if figure.caption == "beside":
+        return
     # Letters are fitted to pixels, so that a legend is as high as it will be only at the resolution it is saved in.
     shown, drawing.dpi = drawing.dpi, style.DPI
     drawing.draw_without_rendering()

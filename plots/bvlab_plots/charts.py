@@ -22,7 +22,7 @@ def panel_grid(figure, points, places):
 
     seaborn's FacetGrid lays out in one number of columns, whatever is in the panels; here it depends on that."""
     names = list(dict.fromkeys(zip(points.panel_row, points.panel)))
-    if figure.panel_rows:
+    if figure.panel_rows or "quantities" in points.attrs:
         return declared_grid(figure, names)
     title = max(len(name) for _, name in names)
     room = 1 if places > 60 else 2 if title > 26 or places > 20 else 3 if title > 16 else 4
@@ -59,7 +59,9 @@ def declared_grid(figure, names):
                 found[line, column] = axes[i, j]
             else:
                 axes[i, j].set_axis_off()
-        axes[i, -1].annotate(line, (1.02, 0.5), xycoords="axes fraction", rotation=270, va="center", fontsize=8)
+        if figure.panel_rows:
+            axes[i, -1].annotate(line, (1.02, 0.5), xycoords="axes fraction", rotation=270, va="center",
+                                 fontsize=plt.rcParams["legend.fontsize"])
     return drawing, found
 
 
@@ -104,44 +106,68 @@ def labelled_unit(expression, given, values, figure=None):
 
 
 def draw(figure, points):
-    """A matplotlib figure of kind line or bars."""
+    """A matplotlib figure of kind line or bars. Each quantity has a row of panels, and an axis of its own."""
     attrs = points.attrs
+    quantities = attrs.get("quantities", [attrs])
     named = attrs["x"] is None or figure.kind == "bars"
-    log_x, log_y = logs(figure, points)
-    y_label, factor = labelled_unit(attrs["value"], figure.y_label, points.middle, figure)
-    if attrs["several"] and not figure.y_label:
-        unit = y_label[y_label.rfind("("):] if y_label.endswith(")") else ""
-        y_label = {"ns": "time"}.get(attrs["value"].unit(), "value") + f" {unit}"
-    points = points.assign(**{c: points[c] * factor for c in ("low", "middle", "high")})
     looks, labels = style.joint_looks(points.key), dict(zip(points.key, points.series))
     labels.update({key: labels[key] + " (answers differ)" for key in points[points.wrong].key})
     drawing, axes = panel_grid(figure, points, points.x.nunique() * len(looks) if named else 0)
-    scale = Scale(points.middle, log_y)
     if named:
-        places = draw_named(points, axes, looks, labels, scale, figure)
+        names = list(dict.fromkeys(points.x))
+        places = range(len(names)), [name if isinstance(name, str) else number(name) for name in names], False
         x_label = figure.x_label or (attrs["x"].label() if attrs["x"] else "")
         if attrs["x"] and attrs["x"].unit() and not figure.x_label:
             x_label += f" ({attrs['x'].unit()})"
     else:
+        log_x = logs(figure, points)[0]
         x_label, x_factor = labelled_unit(attrs["x"], figure.x_label, points.x)
         points = points.assign(x=points.x * x_factor)
         across = Scale(points.x, log_x)
-        draw_lines(points, axes, looks, labels, scale, across, attrs["measured"])
         places = numeric_ticks(points.x, across)
-    finish(axes.values(), scale, points, figure.over, places, named, figure.kind == "bars")
-    return labelled(drawing, axes.values(), x_label, y_label, captions.note_of(figure, points))
+    note, y_labels = captions.note_of(figure, points), []
+    given = [text.strip() for text in figure.y_label.split(";")] if len(quantities) > 1 else [figure.y_label]
+    for row, quantity in enumerate(quantities):
+        part, there = points, axes
+        if len(quantities) > 1:
+            part = points[points.panel_row == str(row)]
+            there = {place: axis for place, axis in axes.items() if place[0] == str(row)}
+        y_label, factor = y_label_of(quantity, figure, part, given[row] if row < len(given) else "")
+        y_labels.append(y_label)
+        log_y = logs(figure, part)[1]
+        part = part.assign(**{c: part[c] * factor for c in ("low", "middle", "high")})
+        scale = Scale(part.middle, log_y)
+        if named:
+            base = draw_named(part, there, looks, labels, scale, figure, names)
+            note += f" Bars begin at {number(base)}." if base and not figure.over else ""
+        else:
+            draw_lines(part, there, looks, labels, scale, across, attrs["measured"])
+        finish(there.values(), scale, part, figure.over, places, named, figure.kind == "bars")
+        if len(quantities) > 1:
+            next(iter(there.values())).set_ylabel(wrapped(y_label, 22))
+    return labelled(figure, drawing, axes.values(), x_label, "" if len(quantities) > 1 else y_labels[0], note)
 
 
-def labelled(drawing, axes, x_label, y_label, note):
+def y_label_of(quantity, figure, points, given):
+    """What is on an axis, with its unit, and what to multiply values with."""
+    label, factor = labelled_unit(quantity["value"], given, points.middle, figure)
+    if quantity["several"] and not given:
+        unit = label[label.rfind("("):] if label.endswith(")") else ""
+        label = {"ns": "time"}.get(quantity["value"].unit(), "value") + f" {unit}"
+    return label, factor
+
+
+def labelled(figure, drawing, axes, x_label, y_label, note):
     """With labels, the legend and the note below it."""
-    drawing.supylabel(wrapped(y_label, 13 * drawing.get_figheight()), fontsize=9)
-    drawing.supxlabel(wrapped(x_label, 13 * drawing.get_figwidth()), fontsize=9)
+    size = plt.rcParams["axes.labelsize"]
+    drawing.supylabel(wrapped(y_label, 13 * drawing.get_figheight()), fontsize=size)
+    drawing.supxlabel(wrapped(x_label, 13 * drawing.get_figwidth()), fontsize=size)
     handles, names = style.labelled(axes)
     legend = None
     if len(names) > 1 or names and names[0]:
         legend = style.legend_below(drawing, handles, names)
     settle(drawing, axes)
-    captions.write(drawing, note, legend)
+    captions.write(figure, drawing, note, legend)
     return drawing
 
 
@@ -158,12 +184,14 @@ def draw_lines(points, axes, looks, labels, scale, across, measured):
                                    markersize=4, linewidth=1.1, elinewidth=0.6, **style.point_style(looks[key]))
 
 
-def draw_named(points, axes, looks, labels, scale, figure):
-    """Side by side at each name. Bars stand on zero, or, as ratios on a logarithmic axis, on one; where neither is
-    on the axis there are points."""
-    names, keys = list(dict.fromkeys(points.x)), list(looks)
-    barred = figure.kind == "bars" and (not scale.log or bool(figure.over))
+def draw_named(points, axes, looks, labels, scale, figure, names):
+    """Side by side at each name. Bars stand on zero, or, as ratios on a logarithmic axis, on one; where neither is on
+    the axis there are points, or, if it was asked for, bars from where the axis begins. Gives where bars begin."""
+    keys = list(looks)
+    barred = figure.kind == "bars" and (not scale.log or bool(figure.over) or "y" in figure.log)
     width, base = 0.8 / len(keys), 1 if scale.log else 0
+    if barred and scale.log and not figure.over:
+        base = scale.begins()
     for (line, panel, key), group in points.groupby(["panel_row", "panel", "key"], sort=False):
         axis = axes[line, panel]
         place = np.array([names.index(x) for x in group.x]) + (keys.index(key) - (len(keys) - 1) / 2) * width
@@ -183,7 +211,7 @@ def draw_named(points, axes, looks, labels, scale, figure):
         for between in range(1, len(names)):
             axis.axvline(between - 0.5, color="#eeeeee", linewidth=0.8, zorder=0)
         axis.set_xlim(-0.5, len(names) - 0.5)
-    return range(len(names)), [name if isinstance(name, str) else number(name) for name in names], False
+    return base if barred else 0
 
 
 def finish(axes, scale, points, over, places, named, barred):

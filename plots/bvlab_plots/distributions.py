@@ -61,7 +61,7 @@ def ecdfs(figure, points, label):
             axis.set_xticks(ticks, texts, minor=False)
             axis.minorticks_off()
     note = captions.note_of(figure, points, made=f"distribution of {count_text(points)} values a curve")
-    return charts.labelled(drawing, axes.values(), label, "share of values", note)
+    return charts.labelled(figure, drawing, axes.values(), label, "share of values", note)
 
 
 def boxes(figure, points, label):
@@ -85,7 +85,7 @@ def boxes(figure, points, label):
     note = captions.note_of(figure, points, made=f"boxes: quartiles, whiskers: least to largest, of {count_text(points)} "
                             "values a box")
     x_label = figure.x_label or (points.attrs["x"].label() if points.attrs["x"] else "")
-    return charts.labelled(drawing, axes.values(), x_label, label, note)
+    return charts.labelled(figure, drawing, axes.values(), x_label, label, note)
 
 
 def dress(axis, keys, looks, labels):

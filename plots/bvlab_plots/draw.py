@@ -2,6 +2,7 @@
 """Draws the figures of a record: those that its definition declares as [[figure]], or one for each axis.
 
 usage: draw RECORD [--out DIR] [--x C --y C --over V --series C --panels C]
+       draw --check DEFINITION
 
 The tables of a record from before its definition declared figures are those of the definition of that name in
 experiments/definitions, and --figures takes those of any other. experiments/definitions/README.md has all keys.
@@ -23,7 +24,8 @@ KEYS = {"x": "a column, several, or an expression of columns", "y": "an expressi
         "kind": ", ".join(figures.KINDS), "value": "of a map", "pool": "columns that go into the interval",
         "statistic": ", ".join(figures.CHOICES["statistic"]), "interval": ", ".join(figures.CHOICES["interval"]),
         "fit": "of a scatter: line or power", "clock": "processor or wall", "table": "frames: rows of single frames",
-        "log": "axes that are logarithmic: none, x, y or xy", "width": "column or page of a paper",
+        "caption": "below the figure, or beside it, as NAME.txt", "x_label": "in place of words for columns", "y_label": "as well",
+        "value_label": "as well", "log": "axes that are logarithmic: none, x, y or xy", "width": "column or page of a paper",
         "peers": "all: those whose answers differ, too", "name": "of the files"}
 OUTPUTS = ["pdf", "png", "tex", "csv"]
 
@@ -39,10 +41,12 @@ def formats_of(text):
 def arguments_of(words):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("record", type=Path)
+    parser.add_argument("--check", metavar="DEFINITION", help="alone: whether its figures can be drawn; see check.py")
     parser.add_argument("--out", type=Path, help="folder for the figures (default: RECORD/figures)")
     parser.add_argument("--figures", type=Path, help="a definition whose [[figure]] tables are drawn")
     parser.add_argument("--table", action="store_true", help="print the medians, draw nothing")
     parser.add_argument("--formats", metavar="F,F", help="pdf, png, tex, csv (default: pdf,png; of tables tex,csv)")
+    parser.add_argument("--style", metavar="FILE", help="matplotlib's settings (rcParams), a file or a style by its name")
     parser.add_argument("--frames", action="store_true", help="rows of single frames, NAME.frames.csv")
     for key, text in KEYS.items():
         if key != "table":
@@ -84,7 +88,10 @@ def written(figure, found, out, formats):
     if pictures and figure.kind == "table":
         raise Refused(f"figure {figure.name}: a table is written as tex and csv")
     if pictures:
-        names.append(style.save(kinds.drawing_of(figure, found), out, figure.name, pictures))
+        drawing = kinds.drawing_of(figure, found)
+        names.append(style.save(drawing, out, figure.name, pictures))
+        if figure.caption == "beside":
+            names.append(style.write(out, f"{figure.name}.txt", drawing.caption + "\n"))
     return names
 
 
@@ -123,7 +130,8 @@ def complain(arguments, text):
 def main(words=None):
     arguments = arguments_of(words)
     try:
-        return 2 if draw_all(arguments) else 0
+        with style.settings(arguments.style):
+            return 2 if draw_all(arguments) else 0
     except Refused as fault:
         complain(arguments, str(fault))
         return 2

@@ -21,6 +21,7 @@ CHOICES = {
     "clock": ["processor", "wall"],
     "table": ["frames"],
     "width": ["column", "page"],
+    "caption": ["below", "beside"],
 }
 DEFAULT_VALUES = ["time_ns / pairs", "time_ns / answers", "frame_ns", "ns_per_call", "ns_per_frame", "time_ns",
                   "pose_ns", "false_positives + false_negatives", "n_v / pairs"]
@@ -49,51 +50,57 @@ class Figure:
     log: str = ""
     peers: str = ""
     width: str = ""
+    caption: str = ""
     x_label: str = ""
     y_label: str = ""
     value_label: str = ""
 
 
 def figure_from(table):
-    """One [[figure]] table, or what the command line says. `bvlab run` refuses the same."""
-    unknown = set(table) - set(Figure.__dataclass_fields__)
-    if unknown:
-        raise Refused(f"figure: unknown key '{min(unknown)}'; available: {', '.join(Figure.__dataclass_fields__)}")
+    """One [[figure]] table, or what the command line says. A Refused has the key that is at fault, if it is one."""
+    named = f"figure {table.get('name', '')}: "
     for key, value in table.items():
+        if key not in Figure.__dataclass_fields__:
+            raise Refused(f"{named}unknown key '{key}'; available: {', '.join(Figure.__dataclass_fields__)}", key)
         strings = value if key == "where" and isinstance(value, list) else [value]
         if (key == "where") != isinstance(value, list) or not all(isinstance(each, str) for each in strings):
-            raise Refused(f"figure: {key} must be {'a list of strings' if key == 'where' else 'a string'}")
+            raise Refused(f"{named}{key} must be {'a list of strings' if key == 'where' else 'a string'}", key)
+        if value and value not in CHOICES.get(key, [value]):
+            raise Refused(f"{named}unknown {key} '{value}'; available: {', '.join(CHOICES[key])}", key)
     for key in ("name", "x"):
         if not table.get(key):
-            raise Refused(f"figure {table.get('name', '')}: needs {'a' if key == 'name' else 'an'} {key}")
+            raise Refused(f"{named}needs {'a' if key == 'name' else 'an'} {key}")
     figure = Figure(**table)
     if "/" in figure.name:
-        raise Refused(f"figure {figure.name}: a name without '/'")
-    for key, allowed in CHOICES.items():
-        if getattr(figure, key) and getattr(figure, key) not in allowed:
-            raise Refused(f"figure {figure.name}: unknown {key} '{getattr(figure, key)}'; available: "
-                          + ", ".join(allowed))
+        raise Refused(f"{named}a name without '/'", "name")
     if figure.kind in ("map", "scatter") and not figure.y:
-        raise Refused(f"figure {figure.name}: a {figure.kind} needs a y")
+        raise Refused(f"{named}a {figure.kind} needs a y")
     if figure.fit and figure.kind != "scatter":
-        raise Refused(f"figure {figure.name}: a fit is drawn through a scatter")
+        raise Refused(f"{named}a fit is drawn through a scatter", "fit")
     if figure.ratio and not figure.over:
-        raise Refused(f"figure {figure.name}: a ratio needs what it is over")
+        raise Refused(f"{named}a ratio needs what it is over")
     return figure
+
+
+def each_declared(definition):
+    """Of each [[figure]] of a definition, in their order: the figure, or why it is none."""
+    names = set()
+    for table in definition.get("figure", []):
+        try:
+            figure = figure_from(table)
+            if figure.name in names:
+                raise Refused(f"a second figure '{figure.name}'")
+            names.add(figure.name)
+            yield figure
+        except Refused as fault:
+            yield fault
 
 
 def declared(definition):
     """The figures of a definition, and why others are none: a fault of one is none of the others'."""
-    figures, faults = [], []
-    for table in definition.get("figure", []):
-        try:
-            figure = figure_from(table)
-            if figure.name in [each.name for each in figures]:
-                raise Refused(f"a second figure '{figure.name}'")
-            figures.append(figure)
-        except Refused as fault:
-            faults.append(str(fault))
-    return figures, faults
+    found = list(each_declared(definition))
+    return ([each for each in found if isinstance(each, Figure)],
+            [str(each) for each in found if isinstance(each, Refused)])
 
 
 def default_value(rows):

@@ -80,7 +80,7 @@ def draw(figure, points):
         draw_values(drawing, axes, columns, lines, points, unit, figure)
     for axis in axes.values():
         axis.set(xlabel=labels[0], ylabel=labels[1])
-    captions.write(drawing, captions.note_of(figure, points), legend)
+    captions.write(figure, drawing, captions.note_of(figure, points), legend)
     return drawing
 
 

@@ -2,6 +2,7 @@
 """The points of a figure: rows selected, set in relation to a variant in the same cell, a statistic and its interval."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -127,7 +128,7 @@ def pooled_in(rows, figure, apart):
         if most < 2 or column in pooled:
             continue
         if column not in asked + repeated + ["repetition"]:
-            raise Refused(f"'{column}' is neither named nor fixed: {most} of its values would be one point; say where = "
+            raise Refused(f"axis '{column}' is neither named nor fixed: {most} of its values would be one point; say where = "
                           f"[\"{column}=...\"], or name it in x, series or panels, or say pool = \"{column}\"")
         pooled[column] = most if least == most else (least, most)
         if column != "repetition":
@@ -141,6 +142,8 @@ def points_of(rows, figure):
 
     attrs: the expressions value, x, y (of names: nothing); measured, whether x is; pooled, what went into a point."""
     texts = [(figure.value if figure.kind == "map" else figure.y) or default_value(rows)]
+    if figure.kind in ("", "line", "bars") and ";" in texts[0]:
+        return points_in_panels(rows, figure, texts[0].split(";"))
     if figure.kind in ("", "line", "bars", "table", "scatter"):
         texts = [text.strip() for text in texts[0].split(",")]
     parts = [one_value(rows, figure, text) for text in texts]
@@ -148,9 +151,21 @@ def points_of(rows, figure):
     if len(parts) > 1:
         labels = [part.attrs["value"].label() for part in parts]
         if len({part.attrs["value"].unit() for part in parts}) > 1 and not figure.over:
-            raise Refused(f"y: {', '.join(labels)} are not measured in the same unit")
+            raise Refused(f"y: {', '.join(labels)} are not measured in the same unit; "
+                          "between semicolons each has a panel")
         points = pd.concat([with_what(part, label) for part, label in zip(parts, labels)], ignore_index=True)
     points.attrs.update(attrs, several=len(parts) > 1)
+    return points
+
+
+def points_in_panels(rows, figure, texts):
+    """Of several quantities: each has a row of panels. Those that are timed say of all how."""
+    if figure.panel_rows:
+        raise Refused("panel_rows: y has several panels, which stand there", "panel_rows")
+    parts = [points_of(rows, replace(figure, y=text.strip())) for text in texts]
+    points = pd.concat([part.assign(panel_row=str(row)) for row, part in enumerate(parts)], ignore_index=True)
+    said = next((part.attrs for part in parts if part.attrs["timed"]), parts[0].attrs)
+    points.attrs.update(said, quantities=[part.attrs for part in parts])
     return points
 
 

@@ -29,7 +29,7 @@ def base_of(rows, over):
         if not match or match[2] != "=":
             raise Refused(f"over '{over}': name=value, or one of {', '.join(BEST)}")
         columns_of(rows, match[1], "over")
-        base, names = base[has_value(base, match[1], match[3], "over")], [*names, match[1]]
+        base, names = base[has_value(base, match[1], match[3], f"over {part.strip()}")], [*names, match[1]]
     ours = base.peer == ""
     return base[ours] if ours.any() and "peer" not in names else base, tied(rows, names)
 

@@ -2,4 +2,8 @@
 
 
 class Refused(Exception):
-    """What cannot be drawn, in one line that says what there is instead."""
+    """What cannot be drawn, in one line that says what there is instead; `key` is that of the figure where it is one's."""
+
+    def __init__(self, text, key=""):
+        super().__init__(text)
+        self.key = key

@@ -5,8 +5,7 @@ usage: report [RECORDS ...] [--out DIR] [--no-scenes]
 
 Of each record: what it asks, what it says, figures (those in RECORD/figures, else they are drawn), the medians as a
 table, the command, the machine, the commit and the definition. Scenes in 3D are made by build/release/bvlab where
-that is built, notebooks and the gallery of figures where tests/run has
-made them. Without RECORDS those of experiments/record.
+that is built, notebooks where tests/run has made them. Without RECORDS those of experiments/record.
 """
 
 import argparse
@@ -38,7 +37,7 @@ def make(arguments):
     sections = [report_page.section_of(record, arguments.out) for record in arguments.records or all_records()]
     scenes = [] if arguments.no_scenes else report_scenes.make(ROOT / "build" / "release" / "bvlab", arguments.out)
     notebooks = report_notebooks.make(ROOT / "build" / "notebooks", arguments.out)
-    return report_page.write(sections, scenes, arguments.out, notebooks, report_notebooks.gallery(ROOT / "build" / "gallery", arguments.out))
+    return report_page.write(sections, scenes, arguments.out, notebooks)
 
 
 def main(words=None):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The notebooks and the gallery of the report: as they were rendered when they were made, by tests/run."""
+"""The notebooks of the report: as they were rendered when they were made, by tests/run."""
 
 import re
 import shutil
@@ -16,11 +16,3 @@ def make(rendered, out):
         title = re.search(r"<h1[^>]*>(.*?)(<a|</h1>)", page.read_text(), re.DOTALL)
         made.append((page.stem, unescape(title[1]).strip() if title else "", f"notebooks/{page.name}"))
     return made
-
-
-def gallery(made, out):
-    """Copies the gallery in the folder `made`, if there is one, to OUT/gallery; name, title and file of it, in a list."""
-    if not (Path(made) / "index.html").is_file():
-        return []
-    shutil.copytree(made, out / "gallery", dirs_exist_ok=True)
-    return [("gallery", "Every kind of figure, beside the lines that declare it", "gallery/index.html")]

@@ -204,15 +204,14 @@ def list_of(anchor, title, pages):
     return f'<section id="{anchor}"><h2>{title}</h2><ul>{shown}</ul></section>' if pages else ""
 
 
-def write(sections, scenes, out, notebooks=(), gallery=()):
+def write(sections, scenes, out, notebooks=()):
     """Writes OUT/index.html with what it needs in it, and figures and scenes beside it; says where."""
     sections = sorted(sections, key=lambda section: (section.place, section.name, section.folder))
     anchors = [MARKS.sub("-", f"{section.name}-{section.folder}") for section in sections]
     links = "".join(f'<li><a href="#{anchor}">{text(section.name)}</a></li>'
                     for section, anchor in zip(sections, anchors))
     parts = {"links": links, "count": str(len(sections)),
-             "scenes": list_of("scenes", "Scenes in 3D", scenes) + list_of("notebooks", "Notebooks", notebooks)
-                       + list_of("gallery", "Figures", gallery),
+             "scenes": list_of("scenes", "Scenes in 3D", scenes) + list_of("notebooks", "Notebooks", notebooks),
              "sections": board.html_of([section.rows for section in sections]) +
                          "\n".join(html_of(section, anchor) for section, anchor in zip(sections, anchors))}
     folder = PLOTS / "page"

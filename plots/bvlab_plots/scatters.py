@@ -73,7 +73,7 @@ def draw(figure, points):
     if figure.fit:
         note += f" {'y = a x^b' if figure.fit == 'power' else 'y = a + b x'} by least squares" + \
             (" of logarithms" if figure.fit == "power" else "") + "; [ ]: 95 % (t)."
-    return charts.labelled(drawing, axes.values(), x_label, y_label, note)
+    return charts.labelled(figure, drawing, axes.values(), x_label, y_label, note)
 
 
 def annotate(axis, fits):

@@ -9,6 +9,7 @@ import pandas as pd
 from bvlab_plots import records
 from bvlab_plots.expression import Expression
 from bvlab_plots.refused import Refused
+from bvlab_plots.words import LENGTHS
 
 VARIANT = ["volume", "tree", "fan_out", "frame", "kernel", "strategy", "configuration", "method", "test", "source", "peer", "variant"]  # what a variant may be
 CONFIGURED = {"volume", "tree", "fan_out", "frame", "kernel", "strategy", "build", "fit", "leaf_size"}  # what a configuration sets
@@ -34,13 +35,19 @@ def has_value(rows, column, text, what):
         found = values == text.strip()
     else:
         try:
-            found = np.isclose(values, float(text), rtol=1e-12, atol=0)
+            found = np.isclose(values, number_of(text, rows.attrs.get("units", {}).get(column)), rtol=1e-12, atol=0)
         except ValueError:
             found = pd.Series(False, rows.index)
     if not np.any(found):
         there = dict.fromkeys(value if isinstance(value, str) else f"{value:g}" for value in values)
         raise Refused(f"{what}: {column} has no '{text.strip()}'; available: {', '.join(map(repr, there))}")
     return pd.Series(found, rows.index)
+
+
+def number_of(text, unit):
+    """Of a length with the unit of its column, too: "0.03body"."""
+    suffix = next((suffix for suffix, name in LENGTHS.items() if name == unit), "")
+    return float(text.strip().removesuffix(suffix))
 
 
 def selected(rows, conditions):

@@ -30,13 +30,19 @@ def with_terms(rows):
     return rows, source
 
 
-def points_of(rows, figure):
-    """As of bars, with a column for each term."""
+def time_of(rows, figure):
+    """The expression of the time that terms are stacked beside; refused where a figure has another."""
     text = figure.y or default_value(rows)
     if "time_ns" not in text:
         raise Refused(f"figure {figure.name}: y of stacked terms is a time: time_ns, or time_ns / pairs")
     if figure.series or figure.over:
         raise Refused(f"figure {figure.name}: stacked terms have neither series nor over: name what differs in x")
+    return text
+
+
+def points_of(rows, figure):
+    """As of bars, with a column for each term."""
+    text = time_of(rows, figure)
     rows, source = with_terms(rows)
     points = one_value(rows, figure, text)
     for term in TERMS:
@@ -70,7 +76,7 @@ def draw(figure, points):
     for axis in axes.values():
         axis.grid(axis="x", visible=False)
     x_label = figure.x_label or (attrs["x"].label() if attrs["x"] else "")
-    return charts.labelled(drawing, axes.values(), x_label, label,
+    return charts.labelled(figure, drawing, axes.values(), x_label, label,
                            captions.note_of(figure, points) + f" {attrs['source'][0].upper()}{attrs['source'][1:]}.")
 
 

@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How figures look: legible in print and in greyscale; names have the looks of looks.py."""
 
+<<<<<<< HEAD
 import io
+=======
+import contextlib
+>>>>>>> tidy
 from pathlib import Path
 
 import matplotlib
@@ -10,6 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from bvlab_plots.looks import STYLES, joint_looks, looks  # noqa: F401
+from bvlab_plots.refused import Refused
 
 DPI = 200  # of images
 WIDTHS = {"column": 3.4, "page": 7.0}  # inches, of a paper of two columns
@@ -34,11 +39,29 @@ plt.rcParams.update({
 })
 
 
+<<<<<<< HEAD
 def subplots(lines, columns, figsize, **keywords):
     """As plt.subplots, for files: whatever backend is set, and whether or not there is a display."""
     figure = Figure(figsize=figsize, layout="constrained")
     FigureCanvasAgg(figure)
     return figure, figure.subplots(lines, columns, squeeze=False, **keywords)
+=======
+@contextlib.contextmanager
+def settings(given):
+    """With the settings of a file, or of a style that matplotlib knows by this name, over those above."""
+    with matplotlib.rc_context():
+        if given in plt.style.available:
+            plt.style.use(given)
+        elif given and not Path(given).is_file():
+            raise Refused(f"--style {given}: no such file, and no style of matplotlib's")
+        elif given:
+            try:
+                of_file = matplotlib.rc_params_from_file(given, fail_on_error=True, use_default_template=False)
+                plt.rcParams.update({key: value for key, value in of_file.items() if key != "backend"})
+            except (OSError, ValueError, KeyError) as fault:
+                raise Refused(f"--style {given}: {fault}".replace("\n", " ")) from None
+        yield
+>>>>>>> tidy
 
 
 def line_style(look):

@@ -8,6 +8,7 @@ import pandas as pd
 
 from bvlab_plots import captions
 from bvlab_plots.charts import labelled_unit
+from bvlab_plots.words import called
 
 
 def label_of(figure, points):
@@ -60,16 +61,28 @@ def to_latex(figure, points):
     label, factor = label_of(figure, points)
     cells = [shortest(m * factor) + (f" [{shortest(lo * factor)}, {shortest(hi * factor)}]" if lo != hi else "")
              for lo, m, hi in zip(points.low, points.middle, points.high)]
+    headers = [header(figure.y, points.attrs["y"], figure.y_label, points)] if figure.kind == "map" else []
+    headers.append(header(figure.x, points.attrs["x"], figure.x_label, points))
     lines = ["% " + escaped(label), "% " + escaped(captions.note_of(figure, points))]
     for panel, table in wide(figure, points, cells):
         table.columns.name = None
         table = table.reset_index()
         table[figure.x] = [value if isinstance(value, str) else shortest(value) for value in table[figure.x]]
+        table.columns = [*headers, *table.columns[len(headers):]]
         with warnings.catch_warnings():  # pandas 1.5 announces that 2.0 will need Jinja for this
             warnings.simplefilter("ignore", FutureWarning)
             text = table.rename(columns=str).to_latex(index=False, na_rep="", escape=True)
         lines += ([f"% {escaped(panel)}"] if panel else []) + [text.rstrip()]
     return mathematics("\n".join(lines)) + "\n"
+
+
+def header(columns, expression, given, points):
+    """What an axis is called at the head of its column, with its unit."""
+    kind = points.attrs["value"].kind
+    if given or not expression:
+        return given or ", ".join(called(column.strip(), kind) for column in columns.split(","))
+    unit = expression.unit()
+    return expression.label() + (f" ({unit})" if unit else "")
 
 
 def escaped(text):

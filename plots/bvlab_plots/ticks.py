@@ -28,6 +28,10 @@ class Scale:
         self.zero = positive.min() / 5 if self.log else 0
         self.has_zero = self.log and bool((values <= 0).any())
 
+    def begins(self):
+        """A power of ten below all values, or zero's place: where bars can begin on a logarithmic axis."""
+        return self.zero if self.has_zero else 10.0 ** math.floor(math.log10(self.zero * 5) - 1e-9)
+
     def at(self, values):
         return np.maximum(np.asarray(values, float), self.zero) if self.log else np.asarray(values, float)
 
@@ -37,7 +41,11 @@ def numeric_ticks(values, across):
     there = sorted(set(values))
     if len(there) > 9 and not across.log:
         return None, None, False
-    ticks = there if len(there) <= 9 else [0] * across.has_zero + decades(min(v for v in there if v > 0), max(there))
+    ticks = there
+    if len(there) > 9:
+        low, high = min(v for v in there if v > 0), max(there)
+        tens = decades(low, high)
+        ticks = [0] * across.has_zero + (tens if len(tens) > 1 else log_ticks(low, high))
     return across.at(ticks), [number(tick) for tick in ticks], across.log
 
 
@@ -54,6 +62,13 @@ def log_ticks(low, high):
     if len(ticks) < 2:
         ticks = [tick for tick in MaxNLocator(5).tick_values(low, high) if low <= tick <= high]
     return ticks[::max(1, math.ceil(len(ticks) / 7))]
+
+
+def name_log_ticks(axis, ticks=()):
+    """Names these values of a logarithmic matplotlib axis, or some round ones of its range, and no others."""
+    ticks = ticks or log_ticks(*axis.get_view_interval())
+    axis.set_ticks(ticks, [number(tick) for tick in ticks])
+    axis.set_minor_locator(NullLocator())
 
 
 def share_y(axes, scale):

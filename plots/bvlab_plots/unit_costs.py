@@ -44,6 +44,9 @@ def fitted(rows):
                           "unit-costs.json of bench_unit_costs beside the record")
         relative = known[COUNTS].to_numpy(float) / known.time_ns.to_numpy(float)[:, None]
         found[volume], _ = nnls(relative, np.ones(len(known)))
+        if found[volume][1] <= 0 and known.n_v.any():
+            raise Refused(f"unit costs of {volume}: by the fit volume tests would be free (C_v = 0): put unit-costs.json of "
+                          "bench_unit_costs beside the record")
         said = known[COUNTS].to_numpy(float) @ found[volume]
         left += float(((known.time_ns - said) ** 2).sum())
         whole += float(((known.time_ns - known.time_ns.mean()) ** 2).sum())

@@ -19,8 +19,7 @@ import pandas as pd
 from bvlab_scripts import law
 from bvlab_plots import style
 from bvlab_plots.arguments import record_arguments
-from bvlab_plots.ticks import log_ticks
-from bvlab_plots.words import number
+from bvlab_plots.ticks import log_ticks, name_log_ticks
 
 
 def print_tables(rows, kappa):
@@ -47,12 +46,6 @@ def print_tables(rows, kappa):
         print(f"\nMargins leave {margins[0]:.2f} leaves^{margins[1]:.2f} of the recursion's tests to do; "
               "off by a factor of",
               ", ".join(f"{v:.2f} ({k})" for k, v in law.margins_errors(rows, margins).items()))
-
-
-def plain_ticks(axis, low, high):
-    ticks = log_ticks(low, high)
-    axis.set_ticks(ticks, [number(tick) for tick in ticks])
-    axis.set_minor_locator(plt.NullLocator())
 
 
 def share_axis(axis, ticks, texts):
@@ -87,7 +80,7 @@ def draw_speedup(rows, out):
     axes[0, 0].set_ylabel("tests, recursive / strategy")
     axes[1, 0].set_ylabel("time, recursive / strategy")
     for line in axes:
-        plain_ticks(line[0].yaxis, *line[0].get_ylim())
+        name_log_ticks(line[0].yaxis)
     figure.tight_layout()
     style.legend_below(figure, *axes[0, 0].get_legend_handles_labels())
     return style.save(figure, out, "coherence-speedup")
@@ -117,11 +110,11 @@ def draw_law(rows, kappa, out):
     axes[0].set(xlabel="speedup in tests, by the law", ylabel="measured", xlim=(low, high), ylim=(low, high),
                 xscale="log", yscale="log")
     for axis in (axes[0].xaxis, axes[0].yaxis):
-        plain_ticks(axis, low, high)
+        name_log_ticks(axis, log_ticks(low, high))
     axes[0].legend(frameon=False, fontsize=7)
     axes[1].axhline(1, color="black", linewidth=0.8)
     axes[1].set(xlabel="share of the front lost per frame", ylabel="law / measured", yscale="log")
-    plain_ticks(axes[1].yaxis, *axes[1].get_ylim())
+    name_log_ticks(axes[1].yaxis)
     share_axis(axes[1], [0, 0.01, 0.1, 1], ["0", "1%", "10%", "all"])
     draw_curve(axes[2], kappa)
     figure.tight_layout()

@@ -71,7 +71,7 @@ def print_tables(record, runs, said):
     print(f"{len(rows)} cells, {rows.seed.nunique()} seeds; errors in %, 95 % intervals over seeds: median, 95 % of cells")
     for source, predictors in said.items():
         for name, values in predictors.items():
-            print(f"  tests  {source:14} {name:28}", law_unseen.shown(law_unseen.middle_and_most(law_unseen.off_by(values, runs), seeds)))
+            print(f"  tests  {source:14} {name:28}", runs.line(values))
     known = (timed.measured > 0) & np.isfinite(timed.measured)
     print(f"  times of {(~known).sum()} cells are left out: shorter in the longer run")
     for name in (LAW, LAST, SAME):
@@ -82,7 +82,7 @@ def print_tables(record, runs, said):
 
 def hypotheses(runs, said, timed):
     def middle(name, source=PREFIX):
-        return 100 * np.median(law_unseen.off_by(said[source][name], runs))
+        return runs.off(said[source][name])
     in_time = 100 * np.median(off(timed[LAW], timed.measured))
     named = law_unseen.choices(runs, {LAW: said[PREFIX][LAW]})[LAW]
     right = 100 * (named <= 1.1).mean()

@@ -17,8 +17,7 @@ from bvlab_plots import style
 from bvlab_plots.arguments import record_arguments
 from bvlab_plots.hypotheses import print_hypotheses
 from bvlab_plots.refused import Refused
-from bvlab_plots.ticks import log_ticks
-from bvlab_plots.words import number
+from bvlab_plots.ticks import log_ticks, name_log_ticks
 from bvlab_scripts.law_unseen import ALONE, LAST, LATER, LAW, PREFIX, SAME
 
 SETTING = ["mesh", "motion"]
@@ -73,11 +72,6 @@ def at(runs, fan_out, regime="easy"):
     return ((runs.measured.fan_out == fan_out) & runs.measured[regime]).to_numpy()
 
 
-def off(runs, values, where, share=0.5):
-    """In percent."""
-    return 100 * np.quantile(law_unseen.off_by(values, runs)[where], share) if where.any() else np.nan
-
-
 def thresholds(runs):
     """Of each fan-out: the survival below which lists lose, and the share of cells on the wrong side."""
     found = {}
@@ -97,7 +91,7 @@ def own_kappas(runs):
 def hypotheses(runs, said, kappa):
     """Those of law-fan-outs.md, as (number, whether it holds, numbers in percent)."""
     fan_outs = fan_outs_of(runs)
-    errors = {name: {f: off(runs, said[name], at(runs, f)) for f in fan_outs} for name in PREDICTORS}
+    errors = {name: {f: runs.off(said[name], at(runs, f)) for f in fan_outs} for name in PREDICTORS}
 
     def each(values, form="{:.1f}"):
         return "; ".join(f"{f}: {form.format(value)}" for f, value in values.items())
@@ -108,7 +102,7 @@ def hypotheses(runs, said, kappa):
     yield (4, errors[LAW][2] < min(two.values()) and errors[SAME][16] <= 10,
            f"at 2: {errors[LAW][2]:.1f}; " + ", ".join(f"{name} {value:.1f}" for name, value in two.items())
            + f"; no change at 16: {errors[SAME][16]:.1f}")
-    less = {f: off(runs, said[LAW], at(runs, f, "less")) for f in fan_outs}
+    less = {f: runs.off(said[LAW], at(runs, f, "less")) for f in fan_outs}
     yield 5, min(less.values()) > 20, each(less)
     lose = {f: survival for f, (survival, _) in thresholds(runs).items()}
     yield 6, all(a < b for a, b in zip(list(lose.values()), list(lose.values())[1:])), each(lose, "{:.2f}")
@@ -118,7 +112,6 @@ def hypotheses(runs, said, kappa):
 
 def print_tables(runs, said, kappa):
     rows = runs.measured
-    seeds = rows.seed.to_numpy()
     print(f"{len(rows)} cells of lists, {rows.mesh.nunique()} shapes, {rows.seed.nunique()} seeds; kappa {kappa:.2f}. Speedup in tests of "
           f"frames {runs.first} to {int(runs.sources[PREFIX].frames.max()) - 1}; errors in %, 95 % intervals over seeds.")
     for regime, label in (("easy", "half of the binary front survives, not persisting"), ("less", "less survives")):
@@ -130,7 +123,7 @@ def print_tables(runs, said, kappa):
             print(f"\nF = {fan_out}, {label}: {where.sum()} cells, speedups {saved.quantile(0.05):.2f} to {saved.quantile(0.95):.2f}"
                   f"{'':12} median{'':16}  95 %")
             for name in PREDICTORS:
-                print(f"  {name:30}", law_unseen.shown(law_unseen.middle_and_most(law_unseen.off_by(said[name], runs)[where], seeds[where])))
+                print(f"  {name:30}", runs.line(said[name], where))
     print("\nSurvival (of binary trees) below which lists lose, and cells on the wrong side:",
           "; ".join(f"{f}: {survival:.2f}, {100 * wrong:.0f} %" for f, (survival, wrong) in thresholds(runs).items()))
     print_hypotheses(hypotheses(runs, said, kappa))
@@ -155,8 +148,7 @@ def draw(runs, said, out):
                 ylabel=f"measured, from frame {runs.first} on")
     for axis in (axes[0].xaxis, axes[0].yaxis, axes[2].yaxis):
         axis.axes.set_yscale("log")
-        axis.set_ticks(ticks, [number(tick) for tick in ticks])
-        axis.set_minor_locator(plt.NullLocator())
+        name_log_ticks(axis, ticks)
     draw_errors(axes[1], runs, said, fan_outs)
     axes[2].axhline(1, color="black", linewidth=0.8)
     axes[2].set(xscale="symlog", xlabel="share of the binary front lost a frame, %\n(motion does not persist)", ylabel="speedup in tests, medians", xlim=(0, 100))
@@ -180,9 +172,7 @@ def draw_errors(axis, runs, said, fan_outs):
                       markerfacecolor="white" if k == 1 else None, label=name)
     axis.set_xticks(range(len(fan_outs)), [str(f) for f in fan_outs])
     axis.set(yscale="log", xlabel="fan-out F", ylabel="error, median (%)\n(half of the front survives,\nmotion does not persist)")
-    ticks = log_ticks(*axis.get_ylim())
-    axis.set_yticks(ticks, [number(tick) for tick in ticks])
-    axis.yaxis.set_minor_locator(plt.NullLocator())
+    name_log_ticks(axis.yaxis)
 
 
 def main():

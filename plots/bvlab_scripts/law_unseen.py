@@ -21,8 +21,8 @@ from bvlab_plots import records, style
 from bvlab_plots.arguments import record_arguments
 from bvlab_plots.hypotheses import print_hypotheses
 from bvlab_plots.refused import Refused
-from bvlab_plots.ticks import log_ticks
-from bvlab_plots.words import number, plain
+from bvlab_plots.ticks import log_ticks, name_log_ticks
+from bvlab_plots.words import plain
 
 COHERENCE = Path(__file__).resolve().parents[2] / "experiments" / "record" / "coherence"
 CELL = ["setting", "query", "volume", "strategy"]
@@ -97,6 +97,15 @@ class Runs:
     sources: dict
     totals: pd.DataFrame
     first: int
+
+    def off(self, values, where=slice(None), share=0.5):
+        """By how many percent predictions are off in the cells of a mask: a quantile; NaN where there is none."""
+        found = off_by(values, self)[where]
+        return 100 * np.quantile(found, share) if len(found) else np.nan
+
+    def line(self, values, where=slice(None)):
+        """Median and 95th percentile of that with their intervals, as a part of a line."""
+        return shown(middle_and_most(off_by(values, self)[where], self.measured.seed.to_numpy()[where]))
 
 
 def read(record, setting=("setting",)):
@@ -262,19 +271,18 @@ def best_of_all(runs):
 
 def print_tables(runs, said, fit):
     rows = runs.measured
-    seeds = rows.seed.to_numpy()
     print(f"{len(rows)} cells of lists, {rows.setting.nunique()} settings, {rows.seed.nunique()} seeds; kappa {fit.kappa:.2f}. "
           f"Speedup in tests of frames {runs.first} to {int(rows.frames.max()) - 1}; errors in %, 95 % intervals over seeds.")
     for where, mask in ((name, mask) for name, mask in regimes(runs).items() if ":" not in name):
         print(f"\n{where}, {mask.sum()} cells: {'':20} median{'':16}  95 %")
         for source, found in said.items():
             for name, values in found.items():
-                print(f"  {source:14} {name:28}", shown(middle_and_most(off_by(values, runs)[mask], seeds[mask])))
+                print(f"  {source:14} {name:28}", runs.line(values, mask))
     print(f"\nThe law by regime: {'':36} median{'':16}  95 %{'':19} R and c alone, last run's cost (medians)")
     for where, mask in regimes(runs).items():
         for source in (s for s in said if s != ITSELF):
-            beside = [100 * np.median(off_by(said[source][name], runs)[mask]) for name in (ALONE, LAST)]
-            print(f"  {where:38} {source:12}", shown(middle_and_most(off_by(said[source][LAW], runs)[mask], seeds[mask])),
+            beside = [runs.off(said[source][name], mask) for name in (ALONE, LAST)]
+            print(f"  {where:38} {source:12}", runs.line(said[source][LAW], mask),
                   "".join(f"{value:8.1f}" for value in beside))
     print("\nOne motion model out in turn, from prefixes, medians in %:")
     print(models_left_out(runs, fit).round(2).to_string(index=False))
@@ -293,7 +301,7 @@ def hypotheses(runs, said, fit):
     """Those of law-unseen.md, as (number, whether it holds, numbers in percent)."""
     rows = runs.measured
     def off(mask, name=LAW, source=PREFIX, share=0.5):
-        return 100 * np.quantile(off_by(said[source][name], runs)[mask], share) if np.any(mask) else np.nan
+        return runs.off(said[source][name], mask, share)
     where = easy(runs).to_numpy()
     persists = ((rows.scene == "random-walk") & (rows.persistence > 0)).to_numpy()
     less, pile = (rows.survives == "less than half").to_numpy(), (rows.scene == "pile").to_numpy()
@@ -348,8 +356,7 @@ def draw(runs, said, out):
         axis.set(xscale="log", yscale="log", xlim=(low, high), ylim=(low, high), title=f"inputs from: {source}",
                  xlabel="speedup in tests, by the law")
         for each in (axis.xaxis, axis.yaxis):
-            each.set_ticks(ticks, [number(tick) for tick in ticks])
-            each.set_minor_locator(plt.NullLocator())
+            name_log_ticks(each, ticks)
     axes[0].set_ylabel(f"measured, from frame {runs.first} on")
     axes[0].legend(frameon=False, fontsize=6.5, handletextpad=0.1, borderaxespad=0)
     draw_errors(axes[-1], runs, said)
@@ -380,9 +387,7 @@ def draw_errors(axis, runs, said):
     axis.set_yticks(range(len(settings)), [plain(setting) for setting in settings], fontsize=7)
     axis.set(xscale="log", xlabel="error, median (%), with its interval")
     axis.invert_yaxis()
-    ticks = log_ticks(*axis.get_xlim())
-    axis.set_xticks(ticks, [number(tick) for tick in ticks])
-    axis.xaxis.set_minor_locator(plt.NullLocator())
+    name_log_ticks(axis.xaxis)
 
 
 def main():

@@ -34,7 +34,7 @@ def unseen(record):
     regimes = law_unseen.regimes(runs)
 
     def off(name, source=PREFIX, where=everywhere, share=0.5):
-        return 100 * np.quantile(law_unseen.off_by(said[source][name], runs)[where], share)
+        return runs.off(said[source][name], where, share)
 
     def interval(name, where=everywhere):
         return law_unseen.middle_and_most(law_unseen.off_by(said[PREFIX][name], runs)[where], rows.seed.to_numpy()[where])[0][1:]
@@ -71,7 +71,7 @@ def heaps(record):
     timed = law_bullet.times(record, runs, said)
 
     def off(name, source=PREFIX):
-        return 100 * np.median(law_unseen.off_by(said[source][name], runs))
+        return runs.off(said[source][name])
     right = law_unseen.choices(runs, {LAW: said[PREFIX][LAW]})[LAW] <= 1.1
     return {"law": off(LAW), "last": off(LAST), "alone": off(ALONE), "time": 100 * np.median(law_bullet.off(timed[LAW], timed.measured)),
             "last_time": 100 * np.median(law_bullet.off(timed[LAST], timed.measured)), "others": off(LAST, OTHERS),
@@ -89,7 +89,7 @@ def wide_law(record):
     claim(rows.mesh.nunique() == 4 and rows.motion.nunique() == 5 and rows.seed.nunique() == 5, "four shapes, five motions, five seeds")
 
     def off(name, fan_out, share=0.5, regime="easy"):
-        return law_fan_outs.off(runs, said[name], law_fan_outs.at(runs, fan_out, regime), share)
+        return runs.off(said[name], law_fan_outs.at(runs, fan_out, regime), share)
     shown = {LAW: "the formula", LAST: "the speedup measured in the 20 frames", law_fan_outs.BINARY: "the formula, from binary trees and F",
              ALONE: "R and c alone", law_fan_outs.SAME: "no change"}
     claim(all(off(LAW, f, 0.95) < off(name, f, 0.95) for f in fan_outs for name in (LAST, LATER, ALONE, law_fan_outs.SAME)),
@@ -110,4 +110,4 @@ def wide_law(record):
             "kappa": Interval(list(own.values())), "lose_two": lose[2][0], "lose_wide": Interval([lose[f][0] for f in fan_outs[1:]]),
             "cells": int(law_fan_outs.at(runs, 2).sum()), "less_cells": int(law_fan_outs.at(runs, 2, "less").sum()), **told(law_fan_outs.hypotheses(runs, said, fit.kappa), WIDE),
             "persisting_cells": int(persisting[0].sum()),
-            "persisting": Interval([law_fan_outs.off(runs, said[LAW], where) for where in persisting])}
+            "persisting": Interval([runs.off(said[LAW], where) for where in persisting])}

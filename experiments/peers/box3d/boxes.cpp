@@ -37,7 +37,7 @@ class Box3d final : public BoxPeer {
  private:
   static constexpr std::uint32_t nowhere = 0xffffffffu;
 
-  /// A pair whose wide boxes overlap, and where it stands in the list.
+  /// A pair whose wide boxes overlap, and its place in the list.
   struct Candidate {
     Pair pair;
     std::uint32_t slot;

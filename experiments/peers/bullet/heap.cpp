@@ -134,7 +134,7 @@ class Simulation {
     world_.addRigidBody(bodies_.back().get());
   }
 
-  /// Where the mesh's own frame stands, in its own units.
+  /// The pose of the mesh's own frame, in its own units.
   void append(const btRigidBody& body, std::vector<double>& data) const {
     const btTransform& transform = body.getWorldTransform();
     const btQuaternion q = transform.getRotation();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Bullet's pipeline: dynamic trees of boxes with a cache of pairs in front, GImpact for concave
 /// meshes behind. Bodies that did not move are asleep: their boxes are not computed again, and a
-/// pair of two sleepers is not asked. Bullet works in float32 and finds all contacts, where we and
-/// FCL stop at the first; it has no cheaper question for concave meshes.
+/// pair of two sleepers is not queried. Bullet works in float32 and finds all contacts, where we
+/// and FCL stop at the first; it has no cheaper question for concave meshes.
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>

@@ -11,7 +11,7 @@
 namespace bvlab {
 namespace {
 
-/// One body: its triangles as they stand in the world, and Embree's tree over their boxes.
+/// One body: its triangles, posed in the world, and Embree's tree over their boxes.
 class PosedMesh {
  public:
   PosedMesh(RTCDevice device, const TriangleMesh& mesh)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// FCL 0.7's mesh against mesh, by its bounding volume. Volume tests and triangle tests of obb,
-/// obbrss and kios are FCL's own count, where they are asked for; otherwise its public functions
+/// obbrss and kios are FCL's own count, where counts are wanted; otherwise its public functions
 /// are called and nothing is counted.
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// FCL's pipeline: its dynamic tree of boxes in front, updated for the bodies that moved, and its
-/// trees of oriented boxes behind. It keeps no answers, so every pair is asked in every frame; or
-/// its user keeps them, as its callback lets one: then only pairs of which a body moved are asked.
+/// trees of oriented boxes behind. It keeps no answers, so every pair is queried in every frame; or
+/// its user keeps them, as its callback allows: then only pairs with a moved body are queried.
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
@@ -16,7 +16,7 @@ namespace {
 
 using Object = fcl::CollisionObjectd;
 
-/// Which pairs that are near FCL is asked about in a frame: all, or those of which a body moved.
+/// Which near pairs FCL is queried for in a frame: all, or those with a body that moved.
 enum class FclPairs { all, moved };
 
 template <FclPairs which>

@@ -16,7 +16,7 @@ class OdeWorld {
     (void)ready, (void)ready_here;
     for (const auto& mesh : meshes_) {
       data_.push_back(dGeomTriMeshDataCreate());
-      // Meshes are used where they stand: both outlive the world.
+      // The world refers to the meshes: both outlive it.
       dGeomTriMeshDataBuildDouble(data_.back(), mesh.vertices.data(), sizeof(Vec3<double>),
                                   static_cast<int>(mesh.vertices.size()), mesh.triangles.data(),
                                   static_cast<int>(3 * mesh.triangles.size()),

@@ -26,7 +26,7 @@ class PhysxSilence final : public physx::PxErrorCallback {
   void reportError(physx::PxErrorCode::Enum, const char*, const char*, int) override {}
 };
 
-/// Made when it is first asked for, and never released.
+/// Made when it is first used, and never released.
 inline physx::PxFoundation& physx_foundation() {
   static PhysxMemory memory;
   static PhysxSilence silence;

@@ -67,7 +67,7 @@ class Urdf {
   std::string name_;
 };
 
-/// A frame of the log: where the base stands, and the angles.
+/// A frame of the log: the pose of the base, and the angles.
 struct Logged {
   Eigen::Isometry3d base;
   std::vector<double> angles;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// What others' files say, as meshes and traces. Each throws Unusable, naming the file and what is
-/// wrong, where a file is not of its form or has fewer frames than are asked for.
+/// wrong, where a file is not of its form or has fewer frames than wanted.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ struct PublicMotion {
   Array<double> trace;
 };
 
-/// What is asked of a motion, and what is lent to make it.
+/// What a motion has to be, and what is lent to make it.
 struct MotionRequest {
   std::size_t frames = 0;
   /// For motions that nobody recorded: whether an object touches another one.

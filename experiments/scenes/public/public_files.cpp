@@ -1,49 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/scenes/public/public_files.hpp"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <optional>
 #include <vector>
 
+#include "experiments/files/spawned.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
 #include "experiments/scenes/public/sha256.hpp"
 
-extern char** environ;
-
 namespace bvlab {
 namespace {
 
-/// What a program writes to its standard output; nothing where it fails. No shell is asked.
+/// What a program writes to its standard output; nothing where it fails.
 std::optional<std::string> output_of(std::vector<std::string> words) {
-  int ends[2];
-  if (pipe(ends) != 0) return std::nullopt;
-  std::vector<char*> arguments;
-  for (auto& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
-  posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addclose(&actions, ends[0]);
-  pid_t child = 0;
-  const int fault =
-      posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(ends[1]);
-  std::string text;
-  char part[65536];
-  for (ssize_t got; fault == 0 && (got = read(ends[0], part, sizeof part)) > 0;)
-    text.append(part, static_cast<std::size_t>(got));
-  close(ends[0]);
-  int status = 1;
-  if (fault != 0 || waitpid(child, &status, 0) != child || status != 0) return std::nullopt;
-  return text;
+  Spawned run = spawned(std::move(words), Stream::output);
+  if (run.status != 0) return std::nullopt;
+  return std::move(run.text);
 }
 
 class Reader {
@@ -65,7 +39,7 @@ class Reader {
     const auto plain = std::filesystem::path(from_) / file.path;
     std::optional<std::string> bytes;
     if (std::filesystem::is_regular_file(plain)) bytes = read_whole(plain);
-    // A work tree may stand at another commit.
+    // A work tree may be at another commit.
     if (!bytes || sha256(*bytes) != file.sha256)
       if (auto of_commit = blob(from_, file)) bytes = std::move(of_commit);
     if (!bytes) throw absent(file);
@@ -97,7 +71,7 @@ class Reader {
     return output_of({"git", "-C", clone, "cat-file", "blob",
                       std::string(source_.commit) + ":" + std::string(file.path)});
   }
-  /// Without its files: git brings those that are asked for.
+  /// Without its files: git fetches each when it is read.
   std::filesystem::path cloned() const {
     const auto clone = kept_.string() + ".git";
     const std::string url = "https://github.com/" + std::string(source_.repository) + ".git";

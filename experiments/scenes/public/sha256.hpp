@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// SHA-256 (FIPS 180-4) of bytes, as 64 hexadecimal digits: what a public file is told by.
+/// SHA-256 (FIPS 180-4) of bytes, as 64 hexadecimal digits: the identity of a public file.
 #pragma once
 
 #include <array>

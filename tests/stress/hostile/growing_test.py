@@ -241,7 +241,12 @@ class Refused(GrowTest):
                            (dict(table="frames", y="n_v"), "no column 'n_v'"),
                            (dict(x="seed"), "axis 'strategy' is neither named nor fixed"),
                            (dict(fit="power"), "through a scatter"), (dict(kind="scatter", y=""), "needs a y"),
-                           (dict(interval="sd"), "unknown interval 'sd'")):
+                           (dict(interval="sd"), "unknown interval 'sd'"),
+                           (dict(y="time_ns, n_v", pool="seed"), "are not measured in the same unit"),
+                           (dict(kind="stacked", y="n_v"), "y of stacked terms is a time"),
+                           (dict(kind="scatter"), "'strategy' holds names"),
+                           (dict(where=["n_v > 'x'"]), "'n_v > 'x''"),
+                           (dict(x="seed", where=["strategy=deferred", "strategy=recursive"]), "'recursive'")):
             self.write("grow.toml", definition(seeds=(1, 2), end=figure(**(whole | keys))))
             self.refuse("run", "grow.toml", "--record", "record", mentions=["grow.toml: line ", said])
         study = 'name = "grow"\nkind = "triangles"\nrepetitions = 1\n[parameters]\npairs = 200\n'
@@ -249,6 +254,13 @@ class Refused(GrowTest):
         done = self.run_bvlab("run", "grow.toml", "--record", "record")
         self.assertEqual(done.returncode, 2)
         self.assertIn("no column 'tset'", done.stderr)
+
+    def test_without_a_python_that_draws_figures_are_not_checked(self):
+        self.write("grow.toml", definition(end=figure(name="mine", x="strategi")))
+        self.write("pandas.py", "raise ImportError('it is not here')\n")
+        done = self.run_bvlab("run", "grow.toml", "--parts", env=os.environ | {"PYTHONPATH": str(self.folder)})
+        self.assertEqual((done.returncode, json.loads(done.stdout)["cells"]), (0, 2))
+        self.assertEqual(done.stderr, "bvlab: figures were not checked: ImportError: it is not here\n")
 
     def test_figures_that_can(self):
         measured = 'measures = ["coherence"]'
