@@ -186,7 +186,7 @@ BVLAB_EXPORT(nearest) const Array* nearest(std::size_t i, std::size_t j) {
     for (int side = 0; side < 2; ++side) {
       const auto& tree = trees[body[side] % trees.size()];
       const auto& sphere = tree.volume(side ? nodes.b : nodes.a);
-      centre[side] = poses[body[side]]({sphere.centre[0], sphere.centre[1], sphere.centre[2]});
+      centre[side] = poses[body[side]](Vec3<double>(sphere.centre.cast<double>()));
       radii += sphere.radius;
     }
     return (centre[0] - centre[1]).norm() - radii;
@@ -207,8 +207,8 @@ BVLAB_EXPORT(nearest) const Array* nearest(std::size_t i, std::size_t j) {
       for (std::uint32_t s = at.first; s < at.first + at.count; ++s)
         for (std::uint32_t t = bt.first; t < bt.first + bt.count; ++t) {
           const auto found =
-              distance<double>(poses[i](meshes[m].corners(a.primitive(s))),
-                               poses[j](meshes[n].corners(b.primitive(t))));
+              bvlab::distance<double>(poses[i](meshes[m].corners(a.primitive(s))),
+                                      poses[j](meshes[n].corners(b.primitive(t))));
           if (!(found.distance < least)) continue;
           least = found.distance;
           for (int k = 0; k < 3; ++k) points[k] = found.on_a[k], points[3 + k] = found.on_b[k];

@@ -40,9 +40,9 @@ class WatchedLoops final : public detail::BodiesOver<V, Query> {
     if constexpr (std::is_same_v<Front, NoFront>) {
       return between.from_front(front);
     } else {
-    const std::size_t n = self.size(), i = pair.i, j = pair.j;
-    const bool watched = i * (2 * n - i - 1) / 2 + j - i - 1 == self.run_.watched;
-    return between.from_front(WatchedFront(front, watched ? &self.run_.tested : nullptr));
+      const std::size_t n = self.size(), i = pair.i, j = pair.j;
+      const bool watched = i * (2 * n - i - 1) / 2 + j - i - 1 == self.run_.watched;
+      return between.from_front(WatchedFront(front, watched ? &self.run_.tested : nullptr));
     }
   }
 

@@ -20,12 +20,13 @@ async function engineFrom(text) {
   let memory = null;
   const bytesAt = (at, size) => new Uint8Array(memory.buffer, at, size);
   const textAt = at => {
-    const bytes = new Uint8Array(memory.buffer);
-    return new TextDecoder().decode(bytes.subarray(at, bytes.indexOf(0, at)));
+    const all = new Uint8Array(memory.buffer);
+    return new TextDecoder().decode(all.subarray(at, all.indexOf(0, at)));
   };
   // What the module asks of a system that it does not have here: 8 is "no such file".
   const nothing = new Proxy({}, { get: () => () => 8 });
-  const { instance } = await WebAssembly.instantiate(await unzipped(text), {
+  const bytes = await unzipped(text).catch(() => { throw Error('The engine in this page is damaged.'); });
+  const { instance } = await WebAssembly.instantiate(bytes, {
     wasi_snapshot_preview1: nothing,
     bvlab: { fail: at => { throw Error(textAt(at)); } },
   });

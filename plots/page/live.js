@@ -25,8 +25,8 @@ const live = (() => {
     const angle = Math.hypot(...v), s = angle > 0 ? Math.sin(angle / 2) / angle : 0;
     return [Math.cos(angle / 2), v[0] * s, v[1] * s, v[2] * s];
   };
-  const rotated = (v, q) => times(times(q, [0, ...v]), [q[0], -q[1], -q[2], -q[3]]).slice(1).map(x => x / dot4(q, q));
   const dot4 = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+  const rotated = (v, q) => times(times(q, [0, ...v]), [q[0], -q[1], -q[2], -q[3]]).slice(1).map(x => x / dot4(q, q));
   const poseOf = i => poses.subarray(7 * i, 7 * i + 7);
   const boxes = data.meshes.map(({ exact }) => {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
@@ -202,10 +202,9 @@ const live = (() => {
     state.waiting = null;
     if (state.pair) element('first').value = state.pair[0], element('second').value = state.pair[1];
     watch();
-    // The front is told from the next frame on: the same again changes no answer, but it counts.
-    if (self.engine && !state.free && state.pair) seekAgain(); else draw();
+    // The front is told from the next frame on.
+    changed();
   }
-  const seekAgain = () => { state.free = true, seek(state.frame); };
 
   // Time
   function play(on) {
@@ -262,8 +261,9 @@ const live = (() => {
     const [right, up, back] = scene.directions() ?? [[1, 0, 0], [0, 0, 1], [0, -1, 0]];
     const ways = { ArrowLeft: right.map(x => -x), ArrowRight: right, ArrowUp: up, ArrowDown: up.map(x => -x), PageUp: back.map(x => -x), PageDown: back };
     const way = ways[event.key], i = selected();
-    if (way && event.shiftKey) byHand(), moveBody(i, [0, 0, 0], cross3(back, way).some(x => x) ? cross3(back, way).map(x => x / 12) : way.map(x => x / 12)), playNow();
-    else if (way) byHand(), moveBody(i, way.map(x => x * largest / 20)), playNow();
+    const about = way && (way === ways.PageUp || way === ways.PageDown ? way : cross3(back, way));
+    if (way && event.shiftKey) self.moveBody(i, [0, 0, 0], about.map(x => x / 12));
+    else if (way) self.moveBody(i, way.map(x => x * largest / 20));
     else if (event.key === ' ') play(!state.playing);
     else if (event.key === '.' || event.key === ',') self.seek(state.frame + (event.key === '.' ? 1 : -1));
     else if (event.key === 'n' && data.objects > 1) choose([(i + 1) % data.objects, (i + 2) % data.objects]);
@@ -314,8 +314,10 @@ const live = (() => {
   /** Another strategy, volume, kernel, fan-out or query: the motion is played again up to here, so that numbers are
    *  those of one strategy from the first frame on. By hand there is no motion: it goes on from here. */
   function changed() {
-    if (state.free) restart(), playNow();
-    else seekAgain();
+    const free = state.free;
+    state.free = true;
+    if (free) restart(), playNow();
+    else seek(state.frame);
   }
   function addRun(what = {}) {
     const used = runs.map(run => run.colour), colour = colours.map(name => look.colour(name)).find(each => !used.includes(each));
@@ -368,9 +370,9 @@ const live = (() => {
     data.runs.forEach(run => addRun(run));
     element('frame').max = data.motionFrames - 1;
     for (const id of ['play', 'back', 'step', 'frame']) element(id).disabled = data.motionFrames < 2;
-    if (data.objects > 1) state.pair = [0, 1], element('second').value = 1;
     state.free = true;  // until the motion has been taken from its beginning
     seek(0);
+    if (data.objects > 1) choose(touching.size > 0 ? data.pairOf([...touching][0]) : [0, 1]);
     scene.lookAt(null);
     connect();
     element('legend').textContent = 'Orange bodies touch. Drag one.';

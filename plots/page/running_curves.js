@@ -28,11 +28,12 @@ const curves = (() => {
     pen.font = `${10 * scale}px sans-serif`;
     pen.fillText(count.format(top), 2 * scale, 9 * scale);
     pen.lineWidth = 1.25 * scale;
+    const across = Math.max(120, ...runs.map(run => run.past.length)) - 1;
     for (const run of [...runs].reverse()) {
       pen.strokeStyle = run.colour;
       pen.beginPath();
       run.past.forEach((values, at) =>
-        pen.lineTo(at / (most - 1) * canvas.width, canvas.height - scale - values[k] / top * (canvas.height - 12 * scale)));
+        pen.lineTo(at / across * canvas.width, canvas.height - scale - values[k] / top * (canvas.height - 12 * scale)));
       pen.stroke();
     }
   }
