@@ -5,12 +5,14 @@
 /// for it.
 #pragma once
 
+#include <sched.h>
+
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <thread>
 #include <vector>
+
+#include "hierarchies/geometry/unless_done.hpp"
 
 namespace bvlab {
 
@@ -21,24 +23,24 @@ enum class Sharing : std::uint8_t { one_thread, several_threads };
 /// Reserved stamps: work in progress, and work that was never done.
 inline constexpr std::uint32_t in_work = 0xffffffffu, never_done = 0xfffffffeu;
 
-/// Whether the work has been done under this stamp.
-inline bool is_done(std::uint32_t& done, std::uint32_t stamp) {
-  return std::atomic_ref(done).load(std::memory_order_acquire) == stamp;
+/// Whether the work has been done under this stamp. The compilers' own atomic operations, since
+/// libc++ 16 has no std::atomic_ref.
+inline bool is_done(const std::uint32_t& done, std::uint32_t stamp) {
+  return __atomic_load_n(&done, __ATOMIC_ACQUIRE) == stamp;
 }
 
 namespace detail {
 /// Claims the work, or waits until the thread that claimed it is done. Returns whether it was
 /// claimed.
 [[gnu::noinline]] inline bool take_work(std::uint32_t& done, std::uint32_t stamp) {
-  const std::atomic_ref at(done);
-  std::uint32_t seen = at.load(std::memory_order_acquire);
+  std::uint32_t seen = __atomic_load_n(&done, __ATOMIC_ACQUIRE);
   for (;;) {
     if (seen == stamp) return false;
     if (seen == in_work) {
-      std::this_thread::yield();
-      seen = at.load(std::memory_order_acquire);
-    } else if (at.compare_exchange_weak(seen, in_work, std::memory_order_acq_rel,
-                                        std::memory_order_acquire)) {
+      sched_yield();
+      seen = __atomic_load_n(&done, __ATOMIC_ACQUIRE);
+    } else if (__atomic_compare_exchange_n(&done, &seen, in_work, true, __ATOMIC_ACQ_REL,
+                                           __ATOMIC_ACQUIRE)) {
       return true;
     }
   }
@@ -48,14 +50,13 @@ namespace detail {
 /// Calls work() unless that has been done under this stamp; returns whether it was called. If
 /// work() throws, it is not done, and another thread may do it.
 template <class Work>
-[[gnu::noinline]] bool once(std::uint32_t& done, std::uint32_t stamp, Work work) try {
+[[gnu::noinline]] bool once(std::uint32_t& done, std::uint32_t stamp, Work work) {
   if (!detail::take_work(done, stamp)) return false;
+  UnlessDone undo([&] { __atomic_store_n(&done, never_done, __ATOMIC_RELEASE); });
   work();
-  std::atomic_ref(done).store(stamp, std::memory_order_release);
+  undo.is_done();
+  __atomic_store_n(&done, stamp, __ATOMIC_RELEASE);
   return true;
-} catch (...) {
-  std::atomic_ref(done).store(never_done, std::memory_order_release);
-  throw;
 }
 /// The same, without atomic operations for one thread.
 template <class Work>

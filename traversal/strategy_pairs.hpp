@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "hierarchies/geometry/threads.hpp"
+#include "hierarchies/geometry/unless_done.hpp"
 #include "traversal/bodies.hpp"
 #include "traversal/once.hpp"
 
@@ -128,7 +129,8 @@ class StrategyPairs {
   /// After an exception, of a query or of an allocation, what the strategy keeps may lack entries:
   /// the next run begins with a new one.
   template <class Pair, class Counter>
-  void run_pair(std::uint32_t slot, const Pair& pair, Counter& counter) try {
+  void run_pair(std::uint32_t slot, const Pair& pair, Counter& counter) {
+    UnlessDone undo([&] { drop(slot); });
     Strategy& strategy = strategies_[slot];
     if constexpr (roots_as_batches && !wants_bound<typename Pair::Query>())
       if (are_all_moved_ && strategy.starts_at_roots()) {
@@ -137,12 +139,10 @@ class StrategyPairs {
           strategy.roots_are_apart();
         else
           strategy.run_below_roots(pair);
-        return;
+        return undo.is_done();
       }
     strategy.run(pair);
-  } catch (...) {
-    drop(slot);
-    throw;
+    undo.is_done();
   }
 
   template <class Counter, class MakeQuery>

@@ -12,14 +12,17 @@
 /// twentieth of a frame in which ten thousand bodies move.
 #pragma once
 
+#include <sched.h>
+
+#include <atomic>
 #include <cstdint>
 #include <deque>
-#include <mutex>
 #include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "hierarchies/geometry/unless_done.hpp"
 #include "traversal/answers_in_order.hpp"
 #include "traversal/near_pairs.hpp"
 #include "traversal/pair_choice.hpp"
@@ -165,7 +168,8 @@ class WorldContacts {
   Contacts query(const ObjectPair& pair, std::uint32_t slot,
                  TriangleTest test = intersect_batch<Exact>) {
     OfPair& of_pair = [&]() -> OfPair& {
-      const std::lock_guard lock(mutex_);
+      while (busy_.test_and_set(std::memory_order_acquire)) sched_yield();
+      const UnlessDone release([&] { busy_.clear(std::memory_order_release); });
       if (slot >= of_slot_.size()) of_slot_.resize(slot + 1);
       return of_slot_[slot];
     }();
@@ -189,7 +193,7 @@ class WorldContacts {
     ObjectPair pair;
     std::vector<Contact> contacts;
   };
-  std::mutex mutex_;
+  std::atomic_flag busy_;  // libc++ has no std::mutex where it has no threads
   std::deque<OfPair> of_slot_;  // a deque: queries refer to its elements while it grows
 };
 

@@ -14,6 +14,7 @@
 
 #include "broadphase/box.hpp"
 #include "hierarchies/geometry/pages.hpp"
+#include "hierarchies/geometry/unless_done.hpp"
 
 namespace bvlab {
 
@@ -91,7 +92,7 @@ class PairList {
     void* const pairs = capacity < static_cast<std::size_t>(-1) / sizeof(Pair)
                             ? std::realloc(pairs_, capacity * sizeof(Pair))
                             : nullptr;
-    if (!pairs) throw std::bad_alloc();
+    if (!pairs) fail(std::bad_alloc());
     pairs_ = static_cast<Pair*>(pairs), capacity_ = capacity;
     if (capacity * sizeof(Pair) >= pages::worth_huge && huge_pages_)
       pages::advise(pairs_, pairs_ + capacity_, true);

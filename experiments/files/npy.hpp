@@ -32,15 +32,11 @@ Array<T> read_npy(const std::filesystem::path& path, std::span<const std::size_t
 std::variant<Array<float>, Array<double>> read_npy_floating(const std::filesystem::path& path,
                                                             std::span<const std::size_t> shape);
 
-<<<<<<< HEAD
 /// The same for a file of whole numbers, uint32 or int64.
 Array<std::int64_t> read_npy_whole(const std::filesystem::path& path,
                                    std::span<const std::size_t> shape);
 
-/// The same from bytes in memory; `name` stands in for the file in messages.
-=======
 /// The same from bytes in memory; messages name the file by `name`.
->>>>>>> tidy
 template <class T>
 Array<T> parse_npy(std::string_view bytes, const std::string& name,
                    std::span<const std::size_t> shape);

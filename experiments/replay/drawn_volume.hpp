@@ -41,6 +41,8 @@ constexpr std::string_view drawn_as() {
   if (requires(V v) { v.bounds; }) return "k-dop";
   if (requires(V v) { v.centre, v.axes, v.half; } && holds<V>(15)) return "box";
   if (requires(V v) { v.centre, v.side, v.half, v.radius; } && holds<V>(12)) return "rectangle";
+  if (requires(V v) { v.centre, v.half, v.normal, v.slab_centre, v.width; } && holds<V>(11))
+    return "slab-box";
   if (requires(V v) { v.centre, v.axis, v.inner, v.outer, v.cosine; } && holds<V>(9))
     return "shell";
   if (requires(V v) { v.centre, v.radius; } && holds<V>(4)) return "ball";
@@ -56,6 +58,8 @@ std::vector<float> drawn_numbers(const V& v) {
     return numbers_of(v.centre, v.axes[0], v.axes[1], v.axes[2], v.half);
   else if constexpr (drawn_as<V>() == "rectangle")
     return numbers_of(v.centre, v.side[0], v.side[1], v.half, v.radius);
+  else if constexpr (drawn_as<V>() == "slab-box")
+    return numbers_of(v.centre, v.half, v.normal, v.slab_centre, v.width);
   else if constexpr (drawn_as<V>() == "shell")
     return numbers_of(v.centre, v.axis, v.inner, v.outer, v.cosine);
   else if constexpr (drawn_as<V>() == "ball")

@@ -316,6 +316,15 @@ std::filesystem::path page_folder() {
   return in_source;
 }
 
+/// A script of the page, or of what npm gave at set-up (set_up_viewers in experiments/setup), which
+/// a package has among the page's files. The page says what it lacks where npm gave nothing.
+std::string script(const std::filesystem::path& folder, const std::string& file) {
+  std::error_code error;
+  for (const auto& place : {folder, std::filesystem::path(BVLAB_VIEWERS_DIRECTORY)})
+    if (std::filesystem::exists(place / file, error)) return read_whole(place / file);
+  return {};
+}
+
 }  // namespace
 
 std::string scene_page(std::span<const TriangleMesh> meshes, const Trace& trace,
@@ -326,7 +335,7 @@ std::string scene_page(std::span<const TriangleMesh> meshes, const Trace& trace,
   // A name must not end the script that it stands in.
   replace_each(data, "<", "", [](const auto&) { return std::string("\\u003c"); });
   replace_each(page, "<script src=\"", "\"></script>", [&](const std::string& file) {
-    return "<script>\n" + read_whole(folder / file) + "</script>";
+    return "<script>\n" + script(folder, file) + "</script>";
   });
   replace_each(page, "<link rel=\"stylesheet\" href=\"", "\">", [&](const std::string& file) {
     return "<style>\n" + read_whole(folder / file) + "</style>";

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 
 #include "experiments/files/npy.hpp"
@@ -13,12 +12,6 @@
 #include "traversal/pair_choice.hpp"
 
 namespace bvlab {
-
-void Trace::poses(std::size_t frame, std::span<Pose> poses) const {
-  const double* v = values.data() + frame * objects * 7;
-  for (std::size_t i = 0; i < objects; ++i, v += 7)
-    poses[i] = *pose_from({v[0], v[1], v[2]}, v[3], v[4], v[5], v[6]);
-}
 
 std::vector<ObjectPair> object_pairs(const Trace& trace) {
   if (trace.chosen) return *trace.chosen;
@@ -34,18 +27,6 @@ Trace part_of(const Trace& trace, std::span<const std::size_t> frames) {
     part.values.insert(part.values.end(), first, first + length);
   }
   return part;
-}
-
-std::span<const Pose> PosesInTurn::at(std::size_t frame) {
-  const std::size_t length = 7 * trace_.objects;
-  const double* v = trace_.values.data() + frame * length;
-  const double* before = frame_ ? trace_.values.data() + *frame_ * length : nullptr;
-  for (std::size_t i = 0; i < trace_.objects; ++i, v += 7) {
-    if (before && std::memcmp(v, before + 7 * i, 7 * sizeof *v) == 0) continue;
-    poses_[i] = *pose_from({v[0], v[1], v[2]}, v[3], v[4], v[5], v[6]);
-  }
-  frame_ = frame;
-  return poses_;
 }
 
 Trace parse_trace(std::string_view bytes, const std::string& name) {

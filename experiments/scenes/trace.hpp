@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-<<<<<<< HEAD
-/// A motion trace: where every object of a scene stands, frame by frame, and which pairs of objects
-/// are asked about.
-=======
-/// A motion trace: the pose of every object of a scene, frame by frame.
->>>>>>> tidy
+/// A motion trace: the pose of every object of a scene, frame by frame, and which pairs of objects
+/// are queried.
 #pragma once
 
 #include <cstddef>

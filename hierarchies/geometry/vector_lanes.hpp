@@ -50,7 +50,9 @@ using Vector = typename VectorOf<T, W>::type;
 template <class T>
 using Word = std::conditional_t<sizeof(T) == 8, std::int64_t, std::int32_t>;
 
-#if defined(__AVX512F__)
+#if defined(BVLAB_REGISTER_BYTES)  // those of another processor, to count as it does
+inline constexpr int register_bytes = BVLAB_REGISTER_BYTES;
+#elif defined(__AVX512F__)
 inline constexpr int register_bytes = 64;
 #elif defined(__AVX__)
 inline constexpr int register_bytes = 32;

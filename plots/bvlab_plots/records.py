@@ -225,20 +225,11 @@ def without_ours(rows):
     return rows
 
 
-<<<<<<< HEAD
 def with_coherence(rows, path, names):
-    if not path.is_file():
-        return rows
-    coherence = read_table(path, names)
-    shared = [column for column in coherence if column in rows]
-    rows = rows.merge(coherence, how="left", on=shared)
-=======
-def with_coherence(rows, path):
     if path.is_file():
-        coherence = read_table(path)
+        coherence = read_table(path, names)
         shared = [column for column in coherence if column in rows]
         rows = rows.merge(coherence, how="left", on=shared)
->>>>>>> tidy
     if {"kept", "entries"} <= set(rows):
         rows["survival"] = rows.kept / rows.entries.where(rows.entries > 0)
     return rows

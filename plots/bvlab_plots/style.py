@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How figures look: legible in print and in greyscale; names have the looks of looks.py."""
 
-<<<<<<< HEAD
-import io
-=======
 import contextlib
->>>>>>> tidy
+import io
 from pathlib import Path
 
 import matplotlib
@@ -39,13 +36,6 @@ plt.rcParams.update({
 })
 
 
-<<<<<<< HEAD
-def subplots(lines, columns, figsize, **keywords):
-    """As plt.subplots, for files: whatever backend is set, and whether or not there is a display."""
-    figure = Figure(figsize=figsize, layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure, figure.subplots(lines, columns, squeeze=False, **keywords)
-=======
 @contextlib.contextmanager
 def settings(given):
     """With the settings of a file, or of a style that matplotlib knows by this name, over those above."""
@@ -61,7 +51,11 @@ def settings(given):
             except (OSError, ValueError, KeyError) as fault:
                 raise Refused(f"--style {given}: {fault}".replace("\n", " ")) from None
         yield
->>>>>>> tidy
+def subplots(lines, columns, figsize, **keywords):
+    """As plt.subplots, for files: whatever backend is set, and whether or not there is a display."""
+    figure = Figure(figsize=figsize, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure, figure.subplots(lines, columns, squeeze=False, **keywords)
 
 
 def line_style(look):

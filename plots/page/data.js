@@ -2,10 +2,6 @@
 // What the program wrote into the page, as typed arrays. Its scene_page.cpp is the other end.
 'use strict';
 
-const bytesOf = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
-const floatsOf = text => new Float32Array(bytesOf(text).buffer);
-const wholesOf = text => new Uint32Array(bytesOf(text).buffer);
-
 /** Sets that change from frame to frame (see sets_over_time.hpp): one sorted array for each frame. */
 function setsOverTime(text, frames) {
   const bytes = bytesOf(text), sets = [];
@@ -59,18 +55,8 @@ const data = (() => {
       volumes: floatsOf(mesh.volumes),
     };
   });
-  const pairOf = p => {
-    let i = 0;
-    for (let row = objects - 1; p >= row; p -= row--) ++i;
-    return [i, i + 1 + p];
-  };
   return {
-    ...read, meshes, pairOf,
-    pairCount: objects * (objects - 1) / 2,
-    numberOf: (i, j) => {
-      if (i > j) [i, j] = [j, i];
-      return i * (2 * objects - i - 1) / 2 + j - i - 1;
-    },
+    ...read, meshes, ...pairsOf(objects),
     meshOf: i => meshes[i % meshes.length],
     meshIndexOf: i => i % meshes.length,
     poses: floatsOf(read.poses), series: wholesOf(read.series),

@@ -5,15 +5,16 @@
 const scene = (() => {
   const canvas = document.getElementById('scene');
   // Three.js writes an error to the console where it finds no WebGL: asked for beforehand, on a canvas of its own.
-  if (!document.createElement('canvas').getContext('webgl2')) {
+  const webgl = document.createElement('canvas').getContext('webgl2') !== null;
+  if (!webgl || typeof THREE === 'undefined') {
     const said = document.createElement('p');
     said.id = 'no-webgl';
-    said.textContent = 'This browser shows no 3D here (WebGL 2 is off or missing): the scene is not drawn. '
+    said.textContent = (webgl
+      ? 'This page was made without three.js, which draws: experiments/setup gets it from npm. The scene is not drawn. '
+      : 'This browser shows no 3D here (WebGL 2 is off or missing): the scene is not drawn. ')
       + 'Curves, pairs and numbers are all there; --x3d writes the scene for other viewers.';
     canvas.replaceWith(said);
-    const nothing = () => {};
-    return { put: nothing, paint: nothing, showVolumes: nothing, placeVolumes: nothing, lookAt: nothing,
-      onClick: nothing, draw: nothing };
+    return new Proxy({}, { get: () => () => {} });
   }
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
   renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
@@ -34,7 +35,7 @@ const scene = (() => {
     geometry.computeBoundingSphere();
     return geometry;
   });
-  const names = ['body', 'touching', 'first', 'second'];
+  const names = ['body', 'touching', 'first', 'second', 'lit'];
   const materials = {};
   // Many that one can look through hide what is behind them.
   const faint = Math.max(0.04, Math.min(0.13, 1.3 / data.objects));
@@ -49,9 +50,9 @@ const scene = (() => {
     return body;
   });
 
-  // Of the first body and of the second: faces one can look through, and outlines.
-  const shown = ['first', 'second'].map(name => {
-    const face = new THREE.MeshLambertMaterial({ side: THREE.DoubleSide, transparent: true, opacity: 0.16, depthWrite: false });
+  // Of the first body and of the second, and again of what is lit: faces one can look through, and outlines.
+  const shown = ['first', 'second', 'lit', 'lit'].map(name => {
+    const face = new THREE.MeshLambertMaterial({ side: THREE.DoubleSide, transparent: true, opacity: name === 'lit' ? 0.3 : 0.16, depthWrite: false });
     const line = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.75, depthWrite: false });
     const group = new THREE.Group();
     group.add(new THREE.Mesh(new THREE.BufferGeometry(), face), new THREE.LineSegments(new THREE.BufferGeometry(), line));
@@ -61,7 +62,25 @@ const scene = (() => {
     return { name, group, face, line };
   });
 
+  // Segments between points in the world, over everything else.
+  const lines = ['contact', 'nearest'].map(name => {
+    const material = new THREE.LineBasicMaterial({ depthTest: false });
+    const drawn = new THREE.LineSegments(new THREE.BufferGeometry(), material);
+    drawn.frustumCulled = false, drawn.renderOrder = 3;
+    world.add(drawn);
+    return { name, drawn, material };
+  });
+  /** Six numbers a segment. */
+  function showLines(name, corners) {
+    const { drawn } = lines.find(each => each.name === name);
+    if (drawn.geometry.attributes.position?.count > 0 || corners.length > 0) changed = true;
+    drawn.geometry.dispose();
+    drawn.geometry = new THREE.BufferGeometry();
+    drawn.geometry.setAttribute('position', new THREE.BufferAttribute(Float32Array.from(corners), 3));
+  }
+
   function colours() {
+    for (const { name, material } of lines) material.color.set(look.colour(name));
     for (const name of names)
       for (const faded of [false, true]) materials[name + faded].color.set(look.colour(name));
     for (const { name, face, line } of shown) face.color.set(look.colour(name)), line.color.set(look.colour(name));
@@ -98,12 +117,12 @@ const scene = (() => {
     return [0, 1, 2].map(r => [e[r], e[4 + r], e[8 + r]]);
   };
 
-  /** Draws these nodes' volumes of the pair's two bodies (or nothing). */
+  /** Draws these nodes' volumes of the pair's two bodies (or nothing); nodes of both that are lit come after. */
   function showVolumes(pair, nodes) {
     shown.forEach(({ group }, side) => {
-      group.visible = pair !== null && nodes[side].length > 0;
+      group.visible = pair !== null && (nodes[side]?.length ?? 0) > 0;
       if (!group.visible) return;
-      const i = pair[side], body = bodies[i];
+      const i = pair[side % 2], body = bodies[i];
       const { corners, normals, lines } = volumes.shape(data.meshIndexOf(i), nodes[side], volumes.realigned ? rowsOf(body) : null);
       const [faces, outline] = group.children;
       for (const child of group.children) child.geometry.dispose(), child.geometry = new THREE.BufferGeometry();
@@ -116,8 +135,9 @@ const scene = (() => {
   /** After the bodies have moved: volumes that keep their shape go with them. */
   function placeVolumes(pair) {
     if (pair) shown.forEach(({ group }, side) => {
-      group.position.copy(bodies[pair[side]].position);
-      if (!volumes.realigned) group.quaternion.copy(bodies[pair[side]].quaternion);
+      group.position.copy(bodies[pair[side % 2]].position);
+      if (volumes.realigned) group.quaternion.identity();
+      else group.quaternion.copy(bodies[pair[side % 2]].quaternion);
     });
     changed = true;
   }
@@ -159,16 +179,72 @@ const scene = (() => {
   }
   new ResizeObserver(fit).observe(canvas);
 
+  /** Where a pointer is in the canvas, -1 to 1 each way. */
+  function pointOf(event) {
+    const box = canvas.getBoundingClientRect();
+    return new THREE.Vector2((event.clientX - box.left) / box.width * 2 - 1, 1 - (event.clientY - box.top) / box.height * 2);
+  }
+  function pointedAt(event) {
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(pointOf(event), camera);
+    return ray.intersectObjects(bodies, false)[0] ?? null;
+  }
+
+  /** Where in the canvas a body can be taken hold of, in pixels; null where others hide it. */
+  function placeOf(i) {
+    const { array } = bodies[i].geometry.attributes.position, index = bodies[i].geometry.index.array, ray = new THREE.Raycaster();
+    bodies[i].updateMatrixWorld();
+    for (let t = 0; t + 2 < index.length; t += 3) {
+      const middle = [0, 1, 2].map(k => (array[3 * index[t] + k] + array[3 * index[t + 1] + k] + array[3 * index[t + 2] + k]) / 3);
+      const at = new THREE.Vector3(...middle).applyMatrix4(bodies[i].matrixWorld).project(camera);
+      ray.setFromCamera(new THREE.Vector2(at.x, at.y), camera);
+      if (ray.intersectObjects(bodies, false)[0]?.object === bodies[i])
+        return { x: (at.x + 1) / 2 * canvas.clientWidth, y: (1 - at.y) / 2 * canvas.clientHeight };
+    }
+    return null;
+  }
+
   /** Calls back with the number of a body that was clicked, not dragged; null for none. */
   function onClick(act) {
     let down = null;
-    canvas.addEventListener('pointerdown', event => { down = [event.clientX, event.clientY]; });
+    canvas.addEventListener('pointerdown', event => { down = [event.clientX, event.clientY]; }, true);
     canvas.addEventListener('pointerup', event => {
       if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
-      const box = canvas.getBoundingClientRect(), ray = new THREE.Raycaster();
-      ray.setFromCamera(new THREE.Vector2((event.clientX - box.left) / box.width * 2 - 1, 1 - (event.clientY - box.top) / box.height * 2), camera);
-      act(ray.intersectObjects(bodies, false)[0]?.object.userData.index ?? null);
+      act(pointedAt(event)?.object.userData.index ?? null);
     });
+  }
+
+  /** What is dragged is a body, where one is under the pointer: `begin(body)`, `move(way, turn)` with the way of the
+   *  pointer in the world and in pixels, `end()`. Else the camera goes round. */
+  function onDrag({ begin, move, end }) {
+    let held = null;
+    canvas.addEventListener('pointerdown', event => {
+      const hit = held ? null : pointedAt(event);
+      if (!hit) return;
+      event.stopImmediatePropagation();  // the camera stays
+      canvas.setPointerCapture(event.pointerId);
+      const depth = hit.point.clone().project(camera).z;
+      held = { id: event.pointerId, depth, at: hit.point, x: event.clientX, y: event.clientY };
+      begin(hit.object.userData.index);
+    }, true);
+    canvas.addEventListener('pointermove', event => {
+      if (event.pointerId !== held?.id) return;
+      const { x, y } = pointOf(event), at = new THREE.Vector3(x, y, held.depth).unproject(camera);
+      move(at.clone().sub(held.at).toArray(), [event.clientX - held.x, event.clientY - held.y], event);
+      Object.assign(held, { at, x: event.clientX, y: event.clientY });
+    });
+    for (const name of ['pointerup', 'pointercancel'])
+      canvas.addEventListener(name, event => {
+        if (event.pointerId !== held?.id) return;
+        held = null;
+        end();
+      });
+  }
+  /** The camera's right, up and back, in the world. */
+  function directions() {
+    const ways = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3()];
+    camera.matrixWorld.extractBasis(...ways);
+    return ways.map(way => way.toArray());
   }
 
   function draw() {
@@ -182,5 +258,5 @@ const scene = (() => {
   put(0);
   fit();
   lookAt(null);
-  return { put, paint, showVolumes, placeVolumes, lookAt, onClick, draw };
+  return { put, paint, showVolumes, placeVolumes, showLines, lookAt, onClick, onDrag, placeOf, directions, draw };
 })();

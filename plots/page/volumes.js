@@ -154,12 +154,18 @@ function realignment(k, rows) {
 }
 
 const volumes = (() => {
-  const kind = data.drawn_as;
+  const kind = () => data.drawn_as, isKdop = () => kind() === 'k-dop';
   const shapes = {
     'ball': (v, out, fineness) => addSwept(out, v.slice(0, 3), [1, 0, 0], [0, 1, 0], 0, 0, v[3], fineness),
     'rectangle': (v, out, fineness) =>
       addSwept(out, v.slice(0, 3), v.slice(3, 6), v.slice(6, 9), v[9], v[10], v[11], fineness),
     'shell': (v, out, fineness) => addShell(out, v.slice(0, 3), v.slice(3, 6), v[6], v[7], v[8], fineness),
+    'slab-box': (v, out) => {
+      const at = v.slice(0, 3), slab = v.slice(6, 9), middle = dot3(slab, at) + v[9];
+      const ways = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], sides = ways.flatMap(way => [way, way.map(x => -x)]);
+      const bounds = [0, 1, 2].flatMap(k => [v[3 + k] + at[k], v[3 + k] - at[k]]);
+      addHalfSpaces(out, [...sides, slab, slab.map(x => -x)], [...bounds, v[10] + middle, v[10] - middle]);
+    },
     'box': (v, out) => {
       const at = v.slice(0, 3), axes = [v.slice(3, 6), v.slice(6, 9), v.slice(9, 12)];
       addBox(out, at, axes, v.slice(12, 15));
@@ -181,7 +187,7 @@ const volumes = (() => {
     const key = (node * 64 + fineness) * data.meshes.length + m;
     if (!made.has(key)) {
       const { numbers, volumes } = data.meshes[m], out = { corners: [], normals: [], lines: [] };
-      shapes[kind](Array.from(volumes.subarray(node * numbers, (node + 1) * numbers)), out, fineness);
+      shapes[kind()](Array.from(volumes.subarray(node * numbers, (node + 1) * numbers)), out, fineness);
       if (made.size > 4000) made.clear();
       made.set(key, { corners: Float32Array.from(out.corners), normals: Float32Array.from(out.normals), lines: Float32Array.from(out.lines) });
     }
@@ -195,13 +201,15 @@ const volumes = (() => {
   }
 
   return {
-    drawable: kind === 'k-dop' || kind in shapes,
+    get drawable() { return isKdop() || kind() in shapes; },
     /** Whether it stays along the world's axes, and so changes its shape when its body turns. */
-    realigned: kind === 'k-dop',
-    most: kind === 'k-dop' ? 256 : 1024,
+    get realigned() { return isKdop(); },
+    get most() { return isKdop() ? 256 : 1024; },
+    /** After other volumes have come into the data. */
+    forget() { made.clear(); },
     /** In the body's own frame; of k-DOPs along the world's axes, when the body is turned by these rows. */
     shape(m, nodes, rows) {
-      if (kind === 'k-dop') {
+      if (isKdop()) {
         const { numbers, volumes } = data.meshes[m], normals = normalsOf(numbers);
         const along = realignment(numbers, rows), out = { corners: [], normals: [], lines: [] };
         for (const node of nodes) {

@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 import numpy as np
-from browser import BVLAB, Browser, require_browser
+from browser import BVLAB, ROOT, Browser, require_browser
 
 # How many pixels of the scene are drawn, and a number that another picture hardly has.
 PICTURE = """
@@ -61,6 +61,18 @@ class ReplayPage(unittest.TestCase):
         drawn, number = browser.run(PICTURE)
         return drawn, number
 
+    def test_says_that_it_was_made_without_three(self):
+        """As where npm could not be reached."""
+        page = self.page("--strategy", "separation-list")
+        page.write_text(page.read_text().replace("var THREE=", "var other="))
+        with Browser() as browser:
+            browser.open(page)
+            self.assertIn("without three.js", browser.text("#no-webgl"))
+            browser.click("#play")
+            self.assertTrue(browser.wait_for("return document.getElementById('frame').value >= 3"))
+            self.assertEqual(browser.errors(), [])
+
+    @unittest.skipUnless((ROOT / "build" / "viewers" / "three.min.js").exists(), "three.js could not be had from npm")
     def test_opens_plays_and_shows_volumes(self):
         with Browser() as browser:
             browser.open(self.page("--strategy", "separation-list"))
@@ -134,7 +146,7 @@ class ReplayPage(unittest.TestCase):
     def test_volumes_of_every_shape_enclose_their_triangles(self):
         """What is drawn of the root, and of a k-DOP in the world, reaches as far as the mesh does."""
         compiled = {line.split()[0] for line in run("list", "volumes").stdout.splitlines() if line}
-        for volume in ("sphere", "obb", "aabb", "kdop14", "kdop18", "kdop26", "rss", "shell"):
+        for volume in ("sphere", "obb", "aabb", "kdop14", "kdop18", "kdop26", "rss", "shell", "slab-box"):
             if volume not in compiled:
                 continue
             with self.subTest(volume), Browser() as browser:

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "hierarchies/geometry/threads.hpp"
+#include "hierarchies/geometry/unless_done.hpp"
 #include "traversal/shape.hpp"
 #include "traversal/wide/siblings_kernel.hpp"
 #include "traversal/wide/wide_margins.hpp"
@@ -56,7 +57,8 @@ class WidePairs {
   const Vec3<double>& mesh_origin(std::size_t i) const { return bodies_[i].hierarchy().origin(); }
 
   void put(std::uint32_t slot, const ObjectPair& pair) {
-    if (slot >= most_pairs) throw std::length_error("wide trees: more than 2^30 pairs of bodies");
+    if (slot >= most_pairs)
+      fail(std::length_error("wide trees: more than 2^30 pairs of bodies"));
     if (slot >= pairs_.size()) memory_.resize(slot + 1), pairs_.resize(slot + 1);
     pairs_[slot] = pair;
   }
@@ -170,7 +172,11 @@ class WidePairs {
   template <class Query, class MakeQuery, class Take>
   void traverse_interleaved(std::span<const std::int32_t> near, Worker& worker,
                             std::uint64_t before, Counting& counter, MakeQuery& make_query,
-                            Take& take) try {
+                            Take& take) {
+    // Fronts of traversals that did not end may lack entries.
+    UnlessDone undo([&] {
+      for (const std::int32_t p : near) drop(static_cast<std::uint32_t>(p));
+    });
     using Lanes = typename Kernel::template PairFrame<V, F>::S;
     using Record = typename Memory::template Record<Lanes>;
     struct Running {
@@ -213,10 +219,7 @@ class WidePairs {
           std::swap(running[k], running[active]);
         }
       }
-  } catch (...) {
-    // Fronts of traversals that did not end may lack entries.
-    for (const std::int32_t p : near) drop(static_cast<std::uint32_t>(p));
-    throw;
+    undo.is_done();
   }
 
   std::vector<ObjectPair> pairs_;

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The engine live on a page: one HTML file that needs no other and no network.
+
+With meshes and, if given, a motion: bodies that are dragged, turned and thrown, several strategies side by side, what
+each of them tests and keeps. With an X3D scene: its parts can be dragged, and what they touch turns red.
+"""
+
+import argparse
+import base64
+import gzip
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from bvlab_plots.refused import Refused
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES, VIEWERS = ROOT / "plots" / "page", ROOT / "build" / "viewers"
+# What keeps a page below four megabytes: viewer and engine take half of it.
+MOST_TRIANGLES, MOST_BODIES, ROOM_FOR_MOTION = 50_000, 300, 900_000
+RUNS = ["margins", "separation-list", "recursive"]
+NAMED = re.compile(r'<script src="([^"]+)"></script>|<link rel="stylesheet" href="([^"]+)">|<!--data-->')
+
+
+def text_of(array, kind):
+    return base64.b64encode(np.ascontiguousarray(array, kind).tobytes()).decode()
+
+
+def bytes_of(path):
+    try:
+        return Path(path).read_bytes()
+    except OSError as fault:
+        raise Refused(f"{path}: {fault.strerror}") from fault
+
+
+def program():
+    """The Python module, which reads meshes as the program does."""
+    sys.path.append(str(ROOT / "build" / "release" / "python"))
+    try:
+        import bvlab  # pylint: disable=import-outside-toplevel
+    except ImportError as fault:
+        raise Refused("the Python module bvlab is not built, which reads meshes: experiments/setup builds it") from fault
+    return bvlab
+
+
+def engine():
+    """The module for WebAssembly, made first where that is to be done."""
+    done = subprocess.run([ROOT / "experiments" / "live" / "build"], stderr=subprocess.PIPE, text=True, check=False)
+    if done.returncode:
+        raise Refused(done.stderr.strip().splitlines()[-1] if done.stderr.strip() else "the engine was not made")
+    return base64.b64encode(gzip.compress(bytes_of(ROOT / "build" / "live" / "engine.wasm"), mtime=0)).decode()
+
+
+def written(name, data):
+    """The page of that name with its scripts, its styles and the data, which cannot end the script that they are in."""
+    text = json.dumps(data).replace("<", "\\u003c")
+
+    def part(match):
+        if match[1]:
+            place = PAGES / match[1] if (PAGES / match[1]).exists() else VIEWERS / match[1]
+            script = place.read_text() if place.exists() else ""
+            return "<script>\n" + script.replace("</script", "<\\/script") + "</script>"
+        return "<style>\n" + (PAGES / match[2]).read_text() + "</style>" if match[2] else text
+    return NAMED.sub(part, (PAGES / name).read_text())
+
+
+def motion_of(path, bvlab):
+    try:
+        trace = np.load(path, allow_pickle=False)
+    except OSError as fault:
+        raise Refused(f"{path}: {fault.strerror or 'not a trace'}") from fault
+    except (ValueError, EOFError) as fault:
+        raise Refused(f"{path}: not a .npy array") from fault
+    if trace.dtype != np.float64 or trace.ndim != 3 or trace.shape[2] != 7:
+        raise Refused(f"{path}: must be float64 of shape (frames, objects, 7), not {trace.dtype} {trace.shape}")
+    if 0 in trace.shape:
+        raise Refused(f"{path}: there is no frame or no object to show")
+    try:
+        bvlab.poses(trace[..., :3], trace[..., 3:], order="wxyz")
+    except ValueError as fault:
+        raise Refused(f"{path}: {fault}") from fault
+    return trace
+
+
+def side_by_side(meshes, bodies):
+    """One frame: bodies in a square, nearly as close as the largest is wide."""
+    step = 1.05 * max(np.linalg.norm(np.ptp(mesh.vertices, axis=0)) for mesh in meshes) / np.sqrt(2)
+    side = int(np.ceil(np.sqrt(bodies)))
+    poses = np.zeros((1, bodies, 7))
+    poses[0, :, 0], poses[0, :, 2] = step * (np.arange(bodies) % side), step * (np.arange(bodies) // side)
+    poses[..., 3] = 1
+    for i in range(bodies):
+        poses[0, i, :3] -= (meshes[i % len(meshes)].vertices.min(0) + meshes[i % len(meshes)].vertices.max(0)) / 2
+    return poses
+
+
+def run_of(text):
+    """STRATEGY[,VOLUME[,KERNEL[,FAN-OUT]]]."""
+    words = text.split(",")
+    kernel = words[2] if len(words) > 2 else "gathered"
+    return {"strategy": words[0], "volume": words[1] if len(words) > 1 else "sphere", "kernel": kernel,
+            "fanOut": int(words[3]) if len(words) > 3 and words[3].isdigit() else 2}
+
+
+def live_page(arguments):
+    bvlab = program()
+    meshes = []
+    for path in arguments.mesh:
+        try:
+            meshes.append(bvlab.read(path))
+        except (ValueError, OSError) as fault:
+            raise Refused(str(fault)) from fault
+    triangles = sum(len(mesh.faces) for mesh in meshes)
+    if triangles > MOST_TRIANGLES:
+        raise Refused(f"{arguments.mesh[0]}: {triangles} triangles with all other meshes; a page holds {MOST_TRIANGLES}")
+    motion = motion_of(arguments.trace, bvlab) if arguments.trace else side_by_side(meshes, arguments.bodies or max(2, len(meshes)))
+    frames, bodies = motion.shape[:2]
+    if bodies > MOST_BODIES:
+        raise Refused(f"{arguments.trace or '--bodies'}: {bodies} bodies; a page moves at most {MOST_BODIES}")
+    shown = max(1, min(frames, ROOM_FOR_MOTION // (56 * bodies)))
+    left_out = [f"Of {frames} frames the first {shown} are in this page."] if shown < frames else []
+    return written("live.html", {
+        "title": ", ".join(dict.fromkeys(Path(path).name for path in arguments.mesh)), "bodies": bodies, "query": arguments.query,
+        "runs": [run_of(text) for text in arguments.run or RUNS], "left_out": left_out,
+        "meshes": [{"name": Path(path).name, "vertices": text_of(mesh.vertices, "<f8"), "triangles": text_of(mesh.faces, "<u4")}
+                   for path, mesh in zip(arguments.mesh, meshes)],
+        "motion": text_of(motion[:shown], "<f8"), "engine": engine()})
+
+
+def x3d_page(arguments):
+    return written("x3d.html", {"title": Path(arguments.x3d).name, "scene": bytes_of(arguments.x3d).decode(errors="replace"),
+                                "engine": engine()})
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="plots/live", description=__doc__.splitlines()[0])
+    parser.add_argument("--mesh", action="append", help="mesh file; body i has mesh i modulo their number")
+    parser.add_argument("--trace", help="a motion, as bvlab replay takes it; without it bodies stand side by side")
+    parser.add_argument("--bodies", type=int, help="how many stand there without a motion (default: one a mesh, at least two)")
+    parser.add_argument("--query", choices=["touching", "contacts", "distance"], default="contacts")
+    parser.add_argument("--run", action="append", metavar="STRATEGY[,VOLUME[,KERNEL[,FAN-OUT]]]",
+                        help=f"what runs side by side at first (default: {', '.join(RUNS)} over spheres)")
+    parser.add_argument("--x3d", help="instead of meshes, an X3D scene, whose parts can be dragged")
+    parser.add_argument("--out", required=True, help="the page")
+    arguments = parser.parse_args()
+    if bool(arguments.mesh) == bool(arguments.x3d):
+        raise Refused("either --mesh or --x3d says what is shown")
+    if arguments.bodies is not None and not 1 <= arguments.bodies <= MOST_BODIES:
+        raise Refused(f"--bodies {arguments.bodies}: must be 1 to {MOST_BODIES}")
+    out = Path(arguments.out)
+    page = x3d_page(arguments) if arguments.x3d else live_page(arguments)
+    try:
+        part = out.with_name(out.name + ".part")
+        part.write_text(page)
+        os.replace(part, out)
+    except OSError as fault:
+        raise Refused(f"--out {out}: {fault.strerror}") from fault

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the last frames cost, one curve for each strategy.
+'use strict';
+
+const curves = (() => {
+  const most = 600, count = new Intl.NumberFormat('en', { maximumSignificantDigits: 6 });
+  const kinds = [['N<sub>u</sub>', 'volumes posed'], ['N<sub>v</sub>', 'volume tests'], ['N<sub>p</sub>', 'triangle tests'],
+                 ['front', 'entries'], ['hits', ''], ['N<sub>b</sub>', 'whole bodies'], ['time', 'ms']];
+  const boxes = kinds.map(([symbol, meaning]) => {
+    const box = document.createElement('div');
+    box.className = 'curve';
+    box.innerHTML = `<h3><span>${symbol} <small>${meaning}</small></span><output></output></h3><canvas></canvas>`;
+    document.getElementById('curves').append(box);
+    return { box, canvas: box.querySelector('canvas'), output: box.querySelector('output') };
+  });
+  const known = values => values.map(each => each ?? NaN);
+
+  function drawOne({ box, canvas, output }, k, runs) {
+    const last = runs[0]?.past.at(-1)?.[k];
+    box.hidden = kinds[k][0] === 'hits' || last === undefined || Number.isNaN(last);
+    if (box.hidden) return;
+    output.textContent = count.format(last);
+    const { width, height } = canvas.getBoundingClientRect(), scale = devicePixelRatio;
+    canvas.width = Math.max(1, Math.round(width * scale)), canvas.height = Math.max(1, Math.round(height * scale));
+    const pen = canvas.getContext('2d');
+    const top = Math.max(...runs.map(run => run.past.reduce((a, values) => Math.max(a, values[k]), 0))) || 1;
+    pen.fillStyle = look.colour('faint');
+    pen.font = `${10 * scale}px sans-serif`;
+    pen.fillText(count.format(top), 2 * scale, 9 * scale);
+    pen.lineWidth = 1.25 * scale;
+    const across = Math.max(120, ...runs.map(run => run.past.length)) - 1;
+    for (const run of [...runs].reverse()) {
+      pen.strokeStyle = run.colour;
+      pen.beginPath();
+      run.past.forEach((values, at) =>
+        pen.lineTo(at / across * canvas.width, canvas.height - scale - values[k] / top * (canvas.height - 12 * scale)));
+      pen.stroke();
+    }
+  }
+
+  return {
+    /** Of a run: N_u, N_v, N_p, front, hits, N_b where it is counted, milliseconds. */
+    add(run, values) {
+      run.past.push(known(values));
+      if (run.past.length > most) run.past.shift();
+    },
+    draw: runs => boxes.forEach((box, k) => drawOne(box, k, runs)),
+  };
+})();

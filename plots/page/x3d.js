@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The user's scene, in x3dom, with a sensor for each part that has none. Of the file only nodes that x3dom knows come
+// into the page, without addresses, scripts and handlers: nothing in it is executed or fetched.
+'use strict';
+
+const element = id => document.getElementById(id);
+function problem(sentence) {
+  element('problem').textContent = sentence;
+  element('problem').hidden = false;
+}
+
+const page = { contact: null };
+(() => {
+  const data = JSON.parse(element('data').textContent);
+  document.title = element('title').textContent = `bvlab in an X3D browser · ${data.title}`;
+  if (typeof x3dom === 'undefined') return problem('This page was made without x3dom, which shows X3D: experiments/setup gets it from npm.');
+  if (!document.createElement('canvas').getContext('webgl')) return problem('This browser shows no 3D here: WebGL is off or missing.');
+  const read = new DOMParser().parseFromString(data.scene, 'text/xml'), given = read.querySelector('Scene, scene');
+  if (read.querySelector('parsererror') || !given) return problem(`${data.title} is no X3D that can be read here: XML with a Scene is needed. VRML is read by other viewers alone.`);
+
+  const refused = new Set(['anchor', 'inline', 'script', 'composedshader', 'shaderpart', 'externalshape', 'externalgeometry', 'multipart', 'remoteselectiongroup']);
+  const attribute = /^(?!on|url|href|src|style|id$|class$|is$)[a-z][a-z0-9_]*$/i;
+  function copied(from) {
+    const name = from.localName.toLowerCase();
+    if (name !== 'scene' && name !== 'route' && (refused.has(name) || !x3dom.nodeTypesLC[name])) return null;
+    const to = document.createElement(name);
+    for (const { name, value } of from.attributes) if (attribute.test(name)) to.setAttribute(name, value);
+    for (const child of from.children) {
+      const part = copied(child);
+      if (part) to.append(part);
+    }
+    if (name === 'shape' && !to.querySelector('material')) {
+      const appearance = to.querySelector('appearance') ?? to.appendChild(document.createElement('appearance'));
+      appearance.append(document.createElement('material'));
+    }
+    return to;
+  }
+  const scene = copied(given);
+
+  // A sensor beside each part, in the plane of x and y, unless the scene has sensors of its own.
+  if (!scene.querySelector('planesensor, cylindersensor, spheresensor'))
+    [...scene.querySelectorAll('transform')].filter(part => !part.parentElement.closest('transform') && part.querySelector('shape'))
+      .forEach((part, k) => {
+        const group = document.createElement('group'), sensor = document.createElement('planesensor'), route = document.createElement('route');
+        const name = part.getAttribute('DEF') ?? `bvlab-part-${k}`;
+        part.setAttribute('DEF', name);
+        sensor.setAttribute('DEF', `${name}-sensor`);
+        sensor.setAttribute('autoOffset', 'true');
+        sensor.setAttribute('offset', part.getAttribute('translation') ?? '0 0 0');
+        for (const [key, value] of [['fromNode', `${name}-sensor`], ['fromField', 'translation_changed'], ['toNode', name], ['toField', 'set_translation']])
+          route.setAttribute(key, value);
+        part.replaceWith(group);
+        group.append(sensor, part);
+        scene.append(route);
+      });
+  const x3d = document.createElement('x3d');
+  x3d.setAttribute('showLog', 'false');
+  x3d.append(scene);
+  element('stage').append(x3d);
+
+  const ready = () => [...x3d.querySelectorAll('shape')].every(shape => shape._x3domNode?._cf.geometry?.node?._mesh?._positions?.[0]?.length > 0);
+  const names = part => part.getAttribute('DEF') ?? 'a part';
+  async function attach() {
+    if (!x3d.runtime || !ready()) return void setTimeout(attach, 30);
+    try {
+      x3d.runtime.showAll?.('negZ');
+      page.contact = await bvlabX3d(x3d, await engineFrom(data.engine), {
+        onChange: pairs => {
+          const { parts } = page.contact ?? { parts: [] };
+          element('said').textContent = pairs.length === 0 ? 'Nothing touches. Drag a part: what it touches turns red.'
+            : pairs.map(([i, j]) => parts.length ? `${names(parts[i])} touches ${names(parts[j])}` : 'Parts touch').join(', ');
+        } });
+    } catch (error) {
+      problem(error.message);
+    }
+  }
+  addEventListener('load', () => attach());
+})();

@@ -1,0 +1,343 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`plots/live`: the engine in the page says what the program says, by hand, by key and by motion; and where it cannot
+run, the page says why."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+from browser import BVLAB, ROOT, Browser, require_browser
+from selenium.webdriver.common.action_chains import ActionChains
+
+LIVE = [sys.executable, ROOT / "plots" / "live"]
+READY = "return typeof live !== 'undefined' && live.ready"
+
+
+def run(*words):
+    return subprocess.run([*map(str, words)], capture_output=True, text=True, check=False)
+
+
+def setUpModule():
+    require_browser()
+    done = run(ROOT / "experiments" / "live" / "build")
+    if done.returncode == 2:
+        raise unittest.SkipTest(done.stderr.strip())
+    if not (ROOT / "build" / "viewers" / "three.min.js").exists():
+        raise unittest.SkipTest("build/viewers is missing: set_up_viewers of experiments/setup")
+
+
+class LivePages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+        done = run(BVLAB, "scene", "random-walk", "--shape", "torus:400", "--objects", 4, "--frames", 60, "--side", "2body",
+                   "--out", cls.folder / "trace.npy", "--meshes", cls.folder / "meshes")
+        assert done.returncode == 0, done.stderr
+        cls.mesh = next((cls.folder / "meshes").iterdir())
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def page(self, *words, name="live.html"):
+        page = self.folder / name
+        done = run(*LIVE, "--out", page, *words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return page
+
+    def live(self, *words):
+        return self.page("--mesh", self.mesh, *words)
+
+    def program(self, trace, *words):
+        """Answers and totals of `bvlab replay`."""
+        out, totals = self.folder / "out.npy", self.folder / "out.json"
+        done = run(BVLAB, "replay", "--mesh", self.mesh, "--trace", trace, "--count", "on", "--out", out, "--json", totals, *words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return np.load(out), json.loads(totals.read_text())
+
+
+class SaysWhatTheProgramSays(LivePages):
+    def test_numbers_of_a_motion(self):
+        """For each strategy and query the sums over all frames of N_u, N_v, N_p, and hits: to the digit, where the page
+        has as many lanes as the program."""
+        trace, lanes = self.folder / "trace.npy", None
+        strategies = {line.split()[0] for line in run(BVLAB, "list", "strategies").stdout.splitlines() if line}
+        compiled = [name for name in ("recursive", "separation-list", "deferred", "raise", "margins") if name in strategies]
+        with Browser() as browser:
+            for query in ("touching", "contacts", "distance"):
+                browser.open(self.live("--trace", trace, "--query", query, *(word for name in compiled for word in ("--run", name))))
+                self.assertTrue(browser.wait_for(READY))
+                self.assertEqual(browser.errors(), [])
+                found = browser.run(SUMS)
+                lanes = browser.run("return live.engine.lanes")
+                for name, (n_u, n_v, n_p, hits) in zip(compiled, found):
+                    with self.subTest(query=query, strategy=name):
+                        answers, totals = self.program(trace, "--query", query, "--strategy", name)
+                        wanted = {"touching": lambda: answers.sum(), "contacts": lambda: len(answers),
+                                  "distance": lambda: (answers == 0).sum()}[query]()
+                        self.assertEqual(hits, wanted)
+                        if lanes == lanes_of_the_program():
+                            self.assertEqual([n_u, n_v, n_p], [totals["n_u"], totals["n_v"], totals["n_p"]])
+                self.assertNotIn("fault", browser.text("#agreement"))
+
+    def test_a_scripted_drag(self):
+        """Bodies pulled through each other with the mouse: the poses that the page went through, given to the program,
+        have its verdicts."""
+        with Browser() as browser:
+            browser.open(self.live("--bodies", 3, "--query", "touching"))
+            self.assertTrue(browser.wait_for(READY))
+            browser.run("live.recorded = [], live.verdicts = []; const play = live.engine.play;"
+                        "live.engine.play = run => { play(run); if (run === live.runs[0].number)"
+                        " live.verdicts.push(Array.from(live.engine.touching(run))); };")
+            x, y = browser.run(PLACE_OF_BODY)
+            canvas = browser.driver.find_element("id", "scene")
+            box = canvas.rect
+            chain = ActionChains(browser.driver, duration=20)
+            chain.move_to_element_with_offset(canvas, round(x - box["width"] / 2), round(y - box["height"] / 2)).click_and_hold()
+            for _ in range(14):
+                chain.move_by_offset(18, 3)
+            chain.pause(0.3).release().perform()
+            poses, verdicts = browser.run("return [live.recorded, live.verdicts]")
+            self.assertGreater(len(poses), 10)
+            trace = self.folder / "drag.npy"
+            np.save(trace, np.array(poses, float).reshape(len(poses), 3, 7))
+            self.assertGreater(np.abs(np.diff(np.load(trace), axis=0)).max(), 0)
+            answers, _ = self.program(trace, "--query", "touching", "--strategy", "recursive")
+            self.assertEqual(verdicts, answers.tolist())
+            self.assertGreater(answers.sum(), 0)
+            self.assertIn("touch", browser.text("#pair-hint"))
+            browser.keep("live-drag")
+            self.assertEqual(browser.errors(), [])
+
+    def test_the_keyboard_alone(self):
+        with Browser() as browser:
+            browser.open(self.live("--trace", self.folder / "trace.npy"))
+            self.assertTrue(browser.wait_for(READY))
+            keys = ActionChains(browser.driver)
+            keys.send_keys(".").send_keys(".").send_keys(",").perform()
+            self.assertEqual(browser.text("#frame-number"), "frame 1 of 60")
+            before = browser.run("return Array.from(live.poses)")
+            keys.send_keys("n").send_keys("\ue014").send_keys("\ue00e").perform()  # the next body, right, nearer
+            after = browser.run("return Array.from(live.poses)")
+            moved = {k // 7 for k, (x, y) in enumerate(zip(before, after)) if x != y}
+            self.assertEqual(moved, {browser.run("return live.state.pair[0]")})
+            self.assertEqual(browser.text("#frame-number"), "by hand")
+            keys.send_keys(" ").perform()
+            self.assertTrue(browser.wait_for("return live.state.frame > 5 && !live.state.free"))
+            keys.send_keys(" ").perform()
+            self.assertFalse(browser.run("return live.state.playing"))
+            self.assertEqual(browser.errors(), [])
+
+    def test_every_combination_plays_and_agrees(self):
+        """Strategy, volume, kernel, fan-out and query are switched on the page."""
+        with Browser() as browser:
+            browser.open(self.live("--trace", self.folder / "trace.npy", "--run", "margins,sphere", "--run", "recursive,obb,gathered,4",
+                                   "--run", "margins,slab-box,siblings", "--run", "recursive,slab-box,siblings"))
+            self.assertTrue(browser.wait_for(READY))
+            for query in ("touching", "contacts", "distance"):
+                browser.run("const q = document.getElementById('query'); q.value = arguments[0]; q.dispatchEvent(new Event('change'));"
+                            " live.seek(40);", query)
+                counts = browser.run("return live.runs.map(run => run.number === null ? -1 : run.counts.hits)")
+                self.assertEqual(len({count for count in counts if count >= 0}), 1, counts)
+            browser.run("const s = document.querySelector('[aria-label=volume]'); s.value = 'obb'; s.dispatchEvent(new Event('change'));")
+            for which in ("level", "front", "none"):
+                browser.click(f"input[value='{which}']")
+            browser.keep("live-combinations")
+            self.assertEqual(browser.errors(), [])
+
+    def test_entries_that_were_tested_are_lit(self):
+        """A list tests all of its entries where nothing touches; margins, of bodies that hardly move, few."""
+        poses = np.zeros((30, 2, 7))
+        poses[..., 3], poses[:, 1, 0] = 1, 2.2 + np.arange(30) * 1e-4
+        np.save(self.folder / "slow.npy", poses)
+        with Browser() as browser:
+            browser.open(self.live("--trace", self.folder / "slow.npy", "--run", "separation-list", "--run", "margins"))
+            self.assertTrue(browser.wait_for(READY))
+            lit = browser.run("""
+live.seek(20);
+return live.runs.map(run => {
+  live.engine.watch(run.number, 0);
+  live.engine.play(run.number);
+  const front = live.engine.front(run.number);
+  return [front.length / 3, front.filter((x, k) => k % 3 === 2 && x === 1).length];
+});""")
+            (entries, tested), (of_margins, due) = lit
+            self.assertGreater(entries, 1)
+            self.assertEqual(tested, entries)
+            self.assertGreater(of_margins, 1)
+            self.assertLess(due, of_margins / 2)
+
+
+class SaysWhyNot(LivePages):
+    def test_no_webgl(self):
+        with Browser(more_options=["--disable-3d-apis"]) as browser:
+            browser.open(self.live("--trace", self.folder / "trace.npy"))
+            self.assertTrue(browser.wait_for(READY))
+            self.assertIn("WebGL", browser.text("#no-webgl"))
+            browser.click("#step")
+            self.assertEqual(browser.text("#frame-number"), "frame 1 of 60")
+            self.assertEqual(browser.errors(), [])
+
+    def test_no_simd_and_no_webassembly(self):
+        page = self.live()
+        for script, words in (("WebAssembly.validate = () => false;", "no SIMD"), ("delete globalThis.WebAssembly;", "no WebAssembly")):
+            with self.subTest(words), Browser() as browser:
+                browser.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": script})
+                browser.open(page)
+                self.assertTrue(browser.wait_for("return !document.getElementById('problem').hidden"))
+                self.assertIn(words, browser.text("#problem"))
+
+    def test_a_mesh_of_a_million_triangles(self):
+        large = self.folder / "large.off"
+        large.write_text("OFF\n3 1000000 0\n0 0 0\n1 0 0\n0 1 0\n" + "3 0 1 2\n" * 1_000_000)
+        done = run(*LIVE, "--mesh", large, "--out", self.folder / "never.html")
+        self.assertEqual((done.returncode, len(done.stderr.strip().splitlines())), (2, 1))
+        self.assertIn("1000000 triangles", done.stderr)
+        self.assertFalse((self.folder / "never.html").exists())
+
+    def test_refused(self):
+        np.save(self.folder / "flat.npy", np.zeros((3, 7)))
+        for words, said in ((("--mesh", self.folder / "absent.off"), "absent.off"), ((), "--mesh"),
+                            (("--mesh", self.mesh, "--trace", self.folder / "flat.npy"), "flat.npy"),
+                            (("--mesh", self.mesh, "--bodies", 1000), "--bodies 1000")):
+            done = run(*LIVE, *words, "--out", self.folder / "never.html")
+            self.assertEqual((done.returncode, len(done.stderr.strip().splitlines())), (2, 1), done.stderr)
+            self.assertIn(said, done.stderr)
+
+    def test_no_name_is_executed(self):
+        hostile = self.folder / "<img src=x onerror=alert(1)><script>alert(1)<\\script>.off"
+        hostile.write_bytes(self.mesh.read_bytes())
+        with Browser() as browser:
+            browser.open(self.page("--mesh", hostile))
+            self.assertTrue(browser.wait_for(READY))
+            self.assertIn("<img", browser.text("#title"))
+            self.assertEqual(browser.run("return document.querySelectorAll('h1 img, h1 script').length"), 0)
+            self.assertEqual(browser.errors(), [])
+
+
+class InAnX3dBrowser(LivePages):
+    SCENE = ROOT / "experiments" / "live" / "scenes" / "parts.x3d"
+    ATTACHED = "return page.contact !== null"
+
+    def test_what_is_touched_turns_red(self):
+        with Browser() as browser:
+            browser.open(self.page("--x3d", self.SCENE, name="x3d.html"))
+            self.assertTrue(browser.wait_for(self.ATTACHED), browser.text("#problem"))
+            colours = "return page.contact.parts.map(part => part.querySelector('material').getAttribute('diffuseColor'))"
+            self.assertEqual(browser.run("return page.contact.touching"), [])
+            self.assertNotIn("1 0 0", browser.run(colours))
+            # The ball, dragged to the box.
+            canvas = browser.driver.find_element("css selector", "x3d canvas")
+            ball, box = (browser.run("const [x, y, z] = page.contact.parts[arguments[0]].getAttribute('translation').split(' ').map(Number);"
+                                     "return document.querySelector('x3d').runtime.calcCanvasPos(x, y, z)", k) for k in (0, 1))
+            middle = canvas.rect["width"] / 2, canvas.rect["height"] / 2
+            chain = ActionChains(browser.driver, duration=50)
+            chain.move_to_element_with_offset(canvas, round(ball[0] - middle[0]), round(ball[1] - middle[1])).pause(0.3).click_and_hold()
+            for _ in range(10):
+                chain.move_by_offset(round((box[0] - ball[0]) / 11), round((box[1] - ball[1]) / 11)).pause(0.05)
+            chain.pause(0.3).perform()
+            self.assertTrue(browser.wait_for("return page.contact.touching.length > 0", 20))
+            browser.keep("x3d-touching")
+            self.assertEqual(browser.run("return page.contact.touching"), [[0, 1]])
+            self.assertEqual(browser.run(colours)[:2], ["1 0 0", "1 0 0"])
+            self.assertIn("ball touches box", browser.text("#said"))
+            chain.release().perform()
+            browser.run("page.contact.parts[0].setAttribute('translation', '-3 5 0')")
+            self.assertTrue(browser.wait_for("return page.contact.touching.length === 0"))
+            self.assertNotIn("1 0 0", browser.run(colours))
+
+    def test_says_what_it_cannot_show(self):
+        one = "<X3D><Scene><Transform><Shape><Box/></Shape></Transform></Scene></X3D>"
+        scenes = {"#VRML V2.0 utf8\nShape { geometry Box {} }": "no X3D", one: "fewer than two parts"}
+        for scene, words in scenes.items():
+            (self.folder / "scene.x3d").write_text(scene)
+            with self.subTest(words), Browser() as browser:
+                browser.open(self.page("--x3d", self.folder / "scene.x3d", name="x3d.html"))
+                self.assertTrue(browser.wait_for("return !document.getElementById('problem').hidden"))
+                self.assertIn(words, browser.text("#problem"))
+
+    def test_nothing_of_a_scene_is_executed(self):
+        part = ('<Transform DEF="&lt;/script&gt;&lt;script&gt;window.hit=1&lt;/script&gt;{0}" translation="{0} 0 0" '
+                'onclick="window.hit=1"><Shape><Box/></Shape></Transform>')
+        (self.folder / "scene.x3d").write_text(
+            '<X3D><Scene><Script url="javascript:window.hit=1"/><script>window.hit=1</script><img src="x" onerror="window.hit=1"/>'
+            '<Anchor url="javascript:window.hit=1"><Shape><Box/></Shape></Anchor><!-- </script><script>window.hit=1</script> -->'
+            + part.format(0) + part.format(5) + "</Scene></X3D>")
+        with Browser() as browser:
+            browser.open(self.page("--x3d", self.folder / "scene.x3d", name="x3d.html"))
+            self.assertTrue(browser.wait_for(self.ATTACHED), browser.text("#problem"))
+            self.assertIsNone(browser.run("return window.hit ?? null"))
+            self.assertEqual(browser.run("return document.querySelectorAll('x3d script, x3d img, x3d anchor, x3d [onclick]').length"), 0)
+
+
+class IsFast(LivePages):
+    """Times are generous: other work may run beside. They are a browser's that draws nothing meanwhile."""
+
+    def milliseconds(self, objects, side, *words):
+        done = run(BVLAB, "scene", "random-walk", "--objects", objects, "--frames", 60, "--side", side, "--shape", "torus:500", "--out", self.folder / "many.npy", "--meshes", self.folder / "many")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = self.page("--mesh", next((self.folder / "many").iterdir()), "--trace", self.folder / "many.npy", *words)
+        self.assertLess(page.stat().st_size, 4_000_000)
+        with Browser() as browser:
+            start = time.monotonic()
+            browser.open(page)
+            self.assertTrue(browser.wait_for(READY))
+            self.loaded = time.monotonic() - start
+            return browser.run(MILLISECONDS)
+
+    def test_nine_bodies_all_contacts(self):
+        took = self.milliseconds(9, "4body", "--run", "margins,slab-box,siblings", "--query", "contacts")
+        print(f"nine bodies, contacts: {took:.3f} ms; loaded in {self.loaded:.2f} s", file=sys.stderr)
+        self.assertLess(took, 1 * SLACK)
+
+    def test_a_hundred_bodies(self):
+        took = self.milliseconds(100, "9body", "--run", "margins,slab-box,siblings", "--query", "touching")
+        print(f"a hundred bodies, touching: {took:.3f} ms", file=sys.stderr)
+        self.assertLess(took, 4 * SLACK)
+
+
+SLACK = float(os.environ.get("BVLAB_SLACK", "4"))
+
+
+def lanes_of_the_program():
+    said = re.search(r"--fan-out (\d+) \(the lanes", run(BVLAB, "list", "kernels").stdout)
+    return int(said[1]) if said else None
+
+
+# Of each run the sums over all frames of N_u, N_v, N_p and hits.
+SUMS = """
+const sums = live.runs.map(() => [0, 0, 0, 0]);
+for (let f = 0; f < data.motionFrames; ++f) {
+  live.seek(f);
+  live.runs.forEach(({ counts }, k) => [counts.nu, counts.nv, counts.np, counts.hits].forEach((x, i) => { sums[k][i] += x; }));
+}
+return sums;
+"""
+# Where in the canvas the first body can be taken.
+PLACE_OF_BODY = """
+const { x, y } = scene.placeOf(0);
+return [x, y];
+"""
+# The engine's part of a frame: the first run, played through the motion, of which the first ten frames warm up.
+MILLISECONDS = """
+live.seek(0);
+const { number } = live.runs[0];
+let sum = 0;
+for (let f = 1; f < data.motionFrames; ++f) {
+  const before = performance.now();
+  live.engine.setPoses(data.frameOf(f)), live.engine.play(number);
+  if (f > 10) sum += performance.now() - before;
+}
+return sum / (data.motionFrames - 11);
+"""
+
+if __name__ == "__main__":
+    unittest.main()
