@@ -11,9 +11,11 @@
 ///
 ///     C + N_f C_f + N_v C_v + N_p C_p
 ///
-/// with the N counted on the samples and the C below, decides (N_f: entries of fronts). Counts do
-/// not depend on the machine's load, so the choice is repeatable. Where the motion is unknown, the
-/// shape of the triangles decides, and margins are kept.
+/// with the N counted on the samples and the C below, decides (N_f: entries of fronts), together
+/// with the cost of building the trees. A candidate is tried only if the rest of the run can repay
+/// that: short runs take the trees that are built fastest. Counts do not depend on the machine's
+/// load, so the choice is repeatable. Where the motion is unknown, the shape and the number of the
+/// triangles decide, and margins are kept.
 #pragma once
 
 #include <algorithm>
@@ -86,6 +88,7 @@ template <class Best>
 struct RecommendedCandidate {
   using Configuration = Best;
   std::string_view name;
+  double build;  ///< of a triangle's share of the trees, in nanoseconds
   UnitCosts touching, contacts;
 
   /// The unit costs for a query, by its name.
@@ -108,17 +111,49 @@ struct RecommendedCandidate {
 /// within a tenth of the best on all motions of both.
 inline constexpr std::tuple recommended_candidates{
     RecommendedCandidate<Recommended>{
-        "slab-boxes", {35.3, 7.91, 7.98, 1.71}, {53.9, 1.69, 3.2, 5.17}},
+        "slab-boxes", 600, {35.3, 7.91, 7.98, 1.71}, {53.9, 1.69, 3.2, 5.17}},
     RecommendedCandidate<RecommendedRoots>{
-        "slab-boxes from the roots", {1.87, 0, 5.21, 3.42}, {4.14, 0, 2.85, 4.35}},
+        "slab-boxes from the roots", 600, {1.87, 0, 5.21, 3.42}, {4.14, 0, 2.85, 4.35}},
     RecommendedCandidate<RecommendedSmallLeaves>{
-        "slab-boxes in small leaves", {48.8, 1.66, 8.99, 0.622}, {59.8, 0.786, 7.03, 14}},
+        "slab-boxes in small leaves", 4400, {48.8, 1.66, 8.99, 0.622}, {59.8, 0.786, 7.03, 14}},
     RecommendedCandidate<RecommendedOriented>{
-        "oriented boxes", {38.3, 3.99, 8.43, 5.14}, {52.8, 2.17, 10.2, 4.68}},
+        "oriented boxes", 8000, {38.3, 3.99, 8.43, 5.14}, {52.8, 2.17, 10.2, 4.68}},
     RecommendedCandidate<RecommendedOrientedRoots>{
-        "oriented boxes from the roots", {1.74, 0, 10.2, 1.27}, {33.7, 0, 9.05, 5.56}},
+        "oriented boxes from the roots", 8000, {1.74, 0, 10.2, 1.27}, {33.7, 0, 9.05, 5.56}},
     RecommendedCandidate<RecommendedWideOriented>{
-        "wide oriented boxes", {65.9, 1.71, 8, 11.1}, {2.74, 3.05, 7.35, 12.6}}};
+        "wide oriented boxes", 8000, {65.9, 1.71, 8, 11.1}, {2.74, 3.05, 7.35, 12.6}}};
+
+/// Which candidates a run is worth trying: the expected costs of the whole run, in nanoseconds, its
+/// builds included. The trees of a candidate that is tried are built once more for the run.
+class RunCosts {
+ public:
+  /// `triangles` of all meshes together, `pairs` of all frames together.
+  RunCosts(std::size_t triangles, std::size_t pairs)
+      : triangles_(static_cast<double>(triangles)), pairs_(static_cast<double>(pairs)) {}
+
+  /// Whether a candidate with such a build may turn out cheaper than the best so far, if it saves
+  /// most of what a pair costs; before the first one was tried, of what a dear pair costs.
+  bool may_pay(double build) const {
+    constexpr double dear = 3000, most_saved = 0.7;
+    return 2 * build * triangles_ < most_saved * pairs_ * (is_known_ ? pair_ : dear);
+  }
+  /// Notes what a pair is expected to cost with a candidate; returns whether it is the best so far.
+  bool is_best(double build, double pair) {
+    const double all = build * triangles_ + pairs_ * pair;
+    if (is_known_ && !(all < all_)) return false;
+    is_known_ = true, pair_ = pair, all_ = all;
+    return true;
+  }
+
+ private:
+  double triangles_, pairs_, pair_ = 0, all_ = 0;
+  bool is_known_ = false;
+};
+inline std::size_t triangles_of(std::span<const TriangleMesh> meshes) {
+  std::size_t triangles = 0;
+  for (const auto& mesh : meshes) triangles += mesh.triangles.size();
+  return triangles;
+}
 
 /// Calls `what` with each candidate, in order.
 template <class Do>
@@ -155,13 +190,9 @@ struct SampledFrames {
   /// The number of counted frames.
   std::size_t size() const { return frames.size() / run * (run - uncounted); }
 };
-/// The sampled frames for a motion of `frames` frames. None where the meshes have more than 200 000
-/// triangles in all, since building four kinds of trees would take too long.
-inline SampledFrames samples_of(std::span<const TriangleMesh> meshes, std::size_t frames) {
-  std::size_t triangles = 0;
-  for (const auto& mesh : meshes) triangles += mesh.triangles.size();
-  return SampledFrames(triangles > 200'000 ? 0 : frames);
-}
+/// Meshes of more triangles get slab-boxes in unknown motion, whatever their shape: the trees of
+/// oriented boxes take over 50 ms.
+inline constexpr std::size_t many_triangles = 6000;
 
 /// Calls `visit` with std::type_identity of the candidate for these meshes in unknown motion, and
 /// returns what it returns. O(triangles). For example, of bodies that all have one mesh:
@@ -173,8 +204,9 @@ inline SampledFrames samples_of(std::span<const TriangleMesh> meshes, std::size_
 ///     });
 template <class Visit>
 decltype(auto) with_recommended(std::span<const TriangleMesh> meshes, Visit&& visit) {
-  if (elongation(meshes) < long_triangles) return visit(std::type_identity<Recommended>());
-  return visit(std::type_identity<RecommendedOriented>());
+  if (triangles_of(meshes) <= many_triangles && elongation(meshes) >= long_triangles)
+    return visit(std::type_identity<RecommendedOriented>());
+  return visit(std::type_identity<Recommended>());
 }
 
 /// One hierarchy for each mesh. A type for each kind of trees: two kinds may have the same
@@ -209,27 +241,33 @@ double expected_cost(std::span<const typename Best::Shape> shapes,
 }
 
 /// `with_recommended` for a motion that is known: `frames[k]` has the poses of all bodies in frame
-/// k, body i has mesh i modulo the number of meshes. Builds four hierarchies of each mesh.
+/// k, body i has mesh i modulo the number of meshes. Builds up to four hierarchies of each mesh.
 template <class MakeQuery, class Visit>
 decltype(auto) with_recommended(std::span<const TriangleMesh> meshes,
                                 std::span<const std::vector<Pose>> frames, MakeQuery&& make_query,
                                 Visit&& visit) {
   using Query = std::remove_cvref_t<decltype(make_query(std::size_t{0}))>;
   std::vector<std::vector<Pose>> samples;
-  for (const std::size_t frame : samples_of(meshes, frames.size()).frames)
-    samples.push_back(frames[frame]);
-  if (samples.empty()) return with_recommended(meshes, visit);
-  std::vector<double> cost;
+  const SampledFrames sampled(frames.size());
+  for (const std::size_t frame : sampled.frames) samples.push_back(frames[frame]);
+  if (samples.empty()) return visit(std::type_identity<Recommended>());
+  const std::size_t bodies = samples[0].size(), pairs = bodies * (bodies - 1) / 2;
+  RunCosts costs(triangles_of(meshes), pairs * frames.size());
+  std::size_t number = 0, best = 0;
   std::any built;  // of the last candidate
   for_each_candidate([&]<class Best>(const RecommendedCandidate<Best>& candidate) {
+    const std::size_t k = number++;
+    if (!costs.may_pay(candidate.build)) return;
     using Hierarchies = HierarchiesBy<typename Best::Trees>;
     if (!std::any_cast<Hierarchies>(&built)) built.emplace<Hierarchies>(meshes);
     const auto shapes =
         shapes_over(meshes, std::any_cast<Hierarchies>(&built)->of_mesh, samples[0].size());
-    cost.push_back(expected_cost<Best>(shapes, samples, candidate.costs(Query::name), make_query));
+    const double cost =
+        expected_cost<Best>(shapes, samples, candidate.costs(Query::name), make_query);
+    if (costs.is_best(candidate.build, cost / static_cast<double>(sampled.size() * pairs)))
+      best = k;
   });
-  const auto least = std::min_element(cost.begin(), cost.end()) - cost.begin();
-  return with_candidate(static_cast<std::size_t>(least), visit);
+  return with_candidate(best, visit);
 }
 
 }  // namespace bvlab

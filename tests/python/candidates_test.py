@@ -29,13 +29,15 @@ def tool():
 class Expected(unittest.TestCase):
     def test_costs_are_those_of_the_program(self):
         meshes = [bvlab.Mesh(*scenes.torus())]
-        poses = scenes.walk(frames=90, objects=4, side=1.6)
+        poses = scenes.walk(frames=2000, objects=4, side=1.6)
         _, totals = scenes.Files(meshes, poses).replay("--recommended")
         said = re.search(r"expected ns per pair: (.*)\)", totals["recommended"])[1]
         said = {name: float(cost) for name, cost in (each.rsplit(" ", 1) for each in said.split(", "))}
         axis = next(axis["value"] for axis in DEFINITION["axis"] if axis["name"] == "candidate")
         candidates = [each for each in axis if each["name"] != "recommended"]
-        self.assertEqual({each["name"] for each in candidates}, set(said))
+        self.assertGreaterEqual(len(said), 2)  # those that may pay are tried
+        self.assertLessEqual(set(said), {each["name"] for each in candidates})
+        candidates = [each for each in candidates if each["name"] in said]
         lanes = int(re.search(r"--fan-out (\d+)", bvlab.kernels()["siblings"])[1])  # of a register, leaves have no more
         fit = tool()
         problem = types.SimpleNamespace(candidates=list(said))
