@@ -7,6 +7,7 @@
 
 #include "experiments/replay/registry.hpp"
 #include "traversal/all_pairs.hpp"
+#include "traversal/counters.hpp"
 #include "traversal/queries/contacts.hpp"
 #include "traversal/queries/distance.hpp"
 #include "traversal/queries/touching.hpp"
