@@ -134,13 +134,11 @@ ReplayResult recursed(const Scene& scene,
   ReplayOptions options;
   options.count = count;
   ReplayResult result;
-  const auto engine = [&]<class Counter>(std::type_identity<Counter>) {
+  const auto pairs = [&]<class Counter>(std::type_identity<Counter>) {
     using Bodies = AnyBodies<Query, Counter, TypeList<NoFront>>;
-    return AllPairsOf<StrategyPairs<Bodies, Recursive>>(
-        {Bodies(loops()), Recursive()},
-        all_object_pairs(static_cast<std::uint32_t>(scene.trace.objects)));
+    return StrategyPairs<Bodies, Recursive>(Bodies(loops()), Recursive());
   };
-  detail::play_over<Query>(engine, scene.trace, Variant{}, options, result);
+  detail::play_over<Query>(pairs, scene.trace, Variant{}, options, result);
   return result;
 }
 
