@@ -4,8 +4,8 @@
 /// lanes test more than those of one before a query ends. The values of the last axis stand beside each other, each with its "n_u n_v
 /// n_p"; a line has the values of all the other axes, the hits, and a hash of the answers (several
 /// where columns differ). A cell is "-" where the program refuses it, empty where its volume or
-/// strategy was not compiled; a line is left out where its meshes are absent. What is recommended
-/// is left out: it is one of the candidates.
+/// strategy was not compiled or its meshes are absent. What is recommended is left out: it is one
+/// of the candidates.
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
@@ -46,7 +46,6 @@ std::string hash_of(const ReplayResult& result) {
 }
 
 struct Found {
-  bool has_meshes = true;
   std::string counts, answers;  ///< answers: hits and hash
 };
 
@@ -56,7 +55,7 @@ Found found(const Prepared& ready, const Variant& variant) {
   try {
     check(variant);
   } catch (const Unusable&) {
-    return {true, "-", ""};
+    return {"-", ""};
   }
   ReplayOptions options;
   options.count = Count::on;
@@ -82,8 +81,8 @@ std::vector<Found> found_of(const std::vector<Cell>& cells) {
   const auto traces = traces_of(cells);
   side_by_side(traces.size(), cores_allowed(), [&](std::size_t t) {
     const auto ready = prepared_if_there(cells[traces[t][0]]);
-    for (const std::size_t i : traces[t])
-      all[i] = ready ? found(*ready, variant_of(cells[i])) : Found{false, "", ""};
+    if (!ready) return;
+    for (const std::size_t i : traces[t]) all[i] = found(*ready, variant_of(cells[i]));
   });
   return all;
 }
@@ -101,7 +100,6 @@ void print(const Definition& definition, const std::vector<Cell>& cells,
       columns.push_back(label), std::printf(";%s", label.c_str());
   std::puts("");
   for (std::size_t first = 0; first < cells.size(); first += columns.size()) {
-    if (!found[first].has_meshes) continue;
     std::string answers, counts;
     for (std::size_t i = first; i < first + columns.size(); ++i) {
       counts += ';' + found[i].counts;
