@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// golden_table DEFINITION.toml FRAMES: what the cells of a definition count and answer, as CSV on
-/// standard output, after a line that says how many lanes a register has here: steps of several
+/// golden_table DEFINITION.toml FRAMES [AXIS=VALUE;VALUE...]...: what the cells of a definition
+/// (those that have one of the values on each axis named) count and answer, as CSV on standard
+/// output, after a line that says how many lanes a register has here: steps of several
 /// lanes test more than those of one before a query ends. The values of the last axis stand beside each other, each with its "n_u n_v
 /// n_p"; a line has the values of all the other axes, the hits, and a hash of the answers (several
 /// where columns differ). A cell is "-" where the program refuses it, empty where its volume or
@@ -112,10 +113,22 @@ void print(const Definition& definition, const std::vector<Cell>& cells,
   }
 }
 
-void run(const char* file, const char* frames) {
+/// `chosen`: AXIS=VALUE;VALUE, of an axis before the last one, so that lines stay whole.
+bool is_among(const Cell& cell, const std::string& chosen) {
+  const auto equals = chosen.find('=');
+  if (equals == chosen.npos) throw Unusable(chosen + ": not of the form AXIS=VALUE;VALUE");
+  const std::string& label = cell[chosen.substr(0, equals)];
+  return (';' + chosen.substr(equals + 1) + ';').find(';' + label + ';') != chosen.npos;
+}
+
+void run(const char* file, const char* frames, const std::vector<std::string>& choices) {
   const Definition definition = read_definition(file);
   std::vector<Cell> cells = cells_of(definition);
-  std::erase_if(cells, [](const Cell& cell) { return !cell["configuration"].empty(); });
+  std::erase_if(cells, [&](const Cell& cell) {
+    return !cell["configuration"].empty() ||
+           !std::all_of(choices.begin(), choices.end(),
+                        [&](const std::string& chosen) { return is_among(cell, chosen); });
+  });
   for (Cell& cell : cells)
     for (auto& [name, value] : cell.parameters)
       if (name == "frames") value = frames;
@@ -126,12 +139,12 @@ void run(const char* file, const char* frames) {
 }  // namespace bvlab
 
 int main(int count, char** words) {
-  if (count != 3) {
-    std::fprintf(stderr, "usage: golden_table DEFINITION.toml FRAMES\n");
+  if (count < 3) {
+    std::fprintf(stderr, "usage: golden_table DEFINITION.toml FRAMES [AXIS=VALUE;VALUE...]...\n");
     return 2;
   }
   try {
-    bvlab::run(words[1], words[2]);
+    bvlab::run(words[1], words[2], {words + 3, words + count});
   } catch (const bvlab::Unusable& fault) {
     std::fprintf(stderr, "golden_table: %s\n", fault.what());
     return 2;
