@@ -23,9 +23,17 @@ if sys.argv[1] == "replay":
 sys.exit(done.returncode)
 """
 
+# Counts a million instructions of whatever it runs.
+VALGRIND = """#!/bin/sh
+shift 2
+echo "==1== Collected : 1000000" >&2
+exec "$@"
+"""
 
-def run(*words):
-    return subprocess.run([REGRESS, *map(str, words)], capture_output=True, text=True, check=False)
+
+def run(*words, **environment):
+    return subprocess.run([REGRESS, *map(str, words)], capture_output=True, text=True, check=False,
+                          env=os.environ | environment)
 
 
 class Regress(unittest.TestCase):
@@ -46,6 +54,18 @@ class Regress(unittest.TestCase):
         for line in done.stdout.splitlines():
             if line.startswith(("nine", "boxes", "worlds")):
                 self.assertEqual("ANSWERS DIFFER" in line, line.startswith("nine"), line)
+
+    def test_instructions(self):
+        with tempfile.TemporaryDirectory() as folder:
+            valgrind = pathlib.Path(folder) / "valgrind"
+            valgrind.write_text(VALGRIND)
+            valgrind.chmod(0o755)
+            done = run("--programs", BVLAB, BVLAB, "--small", "--instructions", PATH=f"{folder}:{os.environ['PATH']}")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = [line.split() for line in done.stdout.splitlines() if line.startswith(("nine", "boxes", "worlds"))]
+        self.assertGreaterEqual(len(rows), 4)
+        for row in rows:
+            self.assertEqual(row[-3:], ["1.000", "1.000", "1.000"], row)
 
     def test_refused(self):
         for words, said in ((["no-such-commit"], "no such commit"), (["--rounds", "0"], "--rounds"),
