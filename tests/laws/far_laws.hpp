@@ -13,8 +13,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <cmath>
 #include <random>
+#include <string>
 
 #include "experiments/scenes/formula_mesh.hpp"
 #include "hierarchies/builds.hpp"
@@ -73,46 +75,54 @@ Found found(AllPairsOf<Pairs>&& all, const std::vector<Pose>& poses) {
   return found;
 }
 
-template <class Build, class Tree>
-auto shapes_of(const Scene& scene, std::vector<Tree>& trees) {
+/// How trees are built.
+using TopologyOf = Topology (*)(const TriangleMesh&);
+
+template <class Tree>
+auto shapes_of(const Scene& scene, TopologyOf topology, std::vector<Tree>& trees) {
   trees.reserve(scene.meshes.size());
-  for (const auto& mesh : scene.meshes) trees.emplace_back(mesh, Build::topology(mesh, 1));
-  return shapes_over<Tree>(scene.meshes, trees, scene.meshes.size());
+  for (const auto& mesh : scene.meshes) trees.emplace_back(mesh, topology(mesh));
+  return shapes_over(scene.meshes, trees, scene.meshes.size());
 }
 
-template <BoundingVolume V, class Build>
-Found gathered(const Scene& scene, Frame frame) {
+template <BoundingVolume V>
+Found gathered(const Scene& scene, TopologyOf topology, Frame frame) {
   using AllBodies = Bodies<NativeBatch<typename V::scalar>, V>;
   std::vector<Hierarchy<V>> trees;
-  const auto shapes = shapes_of<Build>(scene, trees);
+  const auto shapes = shapes_of(scene, topology, trees);
   return found(AllPairsOf<StrategyPairs<AllBodies, Recursive>>(
                    {AllBodies(shapes, frame), Recursive()},
                    all_object_pairs(static_cast<std::uint32_t>(scene.meshes.size()))),
                scene.poses);
 }
 
-template <BoundingVolume V, int F, class Kernel, class Build>
-Found wide(const Scene& scene) {
+template <BoundingVolume V, int F, class Kernel>
+Found wide(const Scene& scene, TopologyOf topology) {
   using Pairs = WidePairs<V, F, NoMemory, Kernel>;
   std::vector<typename Kernel::template Hierarchy<V, F>> trees;
-  const auto shapes = shapes_of<Build>(scene, trees);
+  const auto shapes = shapes_of(scene, topology, trees);
   const auto pairs = all_object_pairs(static_cast<std::uint32_t>(scene.meshes.size()));
   return found(AllPairsOf<Pairs>(Pairs(shapes), pairs), scene.poses);
 }
 
 /// Calls what(name, find) for each kernel and frame; find(scene) counts.
-template <BoundingVolume V, class Build, class Do>
-void for_each_kernel(const Do& what) {
-  what("world", [](const Scene& scene) { return gathered<V, Build>(scene, Frame::world); });
-  what("body", [](const Scene& scene) { return gathered<V, Build>(scene, Frame::body); });
-  what("siblings", [](const Scene& scene) { return wide<V, 8, SiblingsKernel, Build>(scene); });
+template <BoundingVolume V>
+void for_each_kernel(
+    TopologyOf topology,
+    const std::function<void(const char*, const std::function<Found(const Scene&)>&)>& what) {
+  for (const Frame frame : {Frame::world, Frame::body})
+    what(frame == Frame::world ? "world" : "body",
+         [&](const Scene& scene) { return gathered<V>(scene, topology, frame); });
+  what("siblings",
+       [&](const Scene& scene) { return wide<V, 8, SiblingsKernel>(scene, topology); });
   if constexpr (MixedKernel::takes<V>)
-    what("mixed", [](const Scene& scene) { return wide<V, 4, MixedKernel, Build>(scene); });
+    what("mixed", [&](const Scene& scene) { return wide<V, 4, MixedKernel>(scene, topology); });
 }
 
-template <class Do, class... Build>
-void for_each_build(const Do& what, TypeList<Build...>) {
-  (what.template operator()<Build>(), ...);
+template <class... Build>
+std::vector<std::pair<std::string, TopologyOf>> all_builds(TypeList<Build...>) {
+  return {{std::string(Build::name),
+           [](const TriangleMesh& mesh) { return Build::topology(mesh, 1); }}...};
 }
 
 inline std::vector<std::vector<Contact>> contacts_by_brute_force(const Scene& scene) {
@@ -135,21 +145,18 @@ void expect_equal() {
   };
   const Scene near = scene(Vec3<double>::Zero());
   const auto truth = contacts_by_brute_force(near);
-  for_each_build(
-      [&]<class Build>() {
-        for_each_kernel<V, Build>([&](const char* kernel, const auto& find) {
-          const Found usual = find(near);
-          EXPECT_EQ(usual.contacts, truth);
-          EXPECT_LT(usual.n_p, 30000u);  // of 540 000 pairs of triangles
-          for (const int exponent : {7, 22, 30, 41}) {
-            const Found far = find(scene(shift(exponent)));
-            EXPECT_EQ(far.n_v, usual.n_v) << Build::name << ' ' << kernel << ' ' << exponent;
-            EXPECT_EQ(far.n_p, usual.n_p) << Build::name << ' ' << kernel << ' ' << exponent;
-            EXPECT_EQ(far.contacts, usual.contacts) << Build::name << ' ' << kernel;
-          }
-        });
-      },
-      Builds{});
+  for (const auto& [build, topology] : all_builds(Builds{}))
+    for_each_kernel<V>(topology, [&, &build = build](const char* kernel, const auto& find) {
+      const Found usual = find(near);
+      EXPECT_EQ(usual.contacts, truth);
+      EXPECT_LT(usual.n_p, 30000u);  // of 540 000 pairs of triangles
+      for (const int exponent : {7, 22, 30, 41}) {
+        const Found far = find(scene(shift(exponent)));
+        EXPECT_EQ(far.n_v, usual.n_v) << build << ' ' << kernel << ' ' << exponent;
+        EXPECT_EQ(far.n_p, usual.n_p) << build << ' ' << kernel << ' ' << exponent;
+        EXPECT_EQ(far.contacts, usual.contacts) << build << ' ' << kernel;
+      }
+    });
 }
 
 template <BoundingVolume V>
@@ -176,7 +183,10 @@ void expect_turned() {
   for (const int exponent : {7, 22, 30, 41}) {
     const Scene far = scene(shift(exponent));
     const auto truth = contacts_by_brute_force(far);
-    for_each_kernel<V, builds::TopDownMean>([&](const char* kernel, const auto& find) {
+    const TopologyOf topology = [](const TriangleMesh& mesh) {
+      return builds::TopDownMean::topology(mesh, 1);
+    };
+    for_each_kernel<V>(topology, [&](const char* kernel, const auto& find) {
       const Found usual = find(near), now = find(far);
       EXPECT_EQ(now.contacts, truth) << kernel << ' ' << exponent;
       const double growth = exponent <= 30 ? 1.01 : 1.5;
