@@ -193,7 +193,7 @@ const scene = (() => {
   /** Where in the canvas a body can be taken hold of, in pixels; null where others hide it. */
   function placeOf(i) {
     const { array } = bodies[i].geometry.attributes.position, index = bodies[i].geometry.index.array, ray = new THREE.Raycaster();
-    bodies[i].updateMatrixWorld();
+    for (const each of [camera, ...bodies]) each.updateMatrixWorld();
     for (let t = 0; t + 2 < index.length; t += 3) {
       const middle = [0, 1, 2].map(k => (array[3 * index[t] + k] + array[3 * index[t + 1] + k] + array[3 * index[t + 2] + k]) / 3);
       const at = new THREE.Vector3(...middle).applyMatrix4(bodies[i].matrixWorld).project(camera);
