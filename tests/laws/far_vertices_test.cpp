@@ -168,7 +168,7 @@ void over(const Parts& parts, Counter&, const Do& what) {
   std::vector<typename Configuration::Hierarchy> trees;
   trees.reserve(60);
   for (const auto& mesh : parts.meshes) trees.push_back(Configuration::hierarchy(mesh));
-  what(shapes_over<typename Configuration::Hierarchy>(parts.meshes, trees, 60));
+  what(shapes_over(parts.meshes, trees, 60));
 }
 
 template <class Configuration>

@@ -25,7 +25,7 @@
 #include <string_view>
 #include <vector>
 
-#include "hierarchies/wide/fitting.hpp"
+#include "hierarchies/hierarchy_extent.hpp"
 #include "traversal/queries/query.hpp"
 #include "traversal/wide/early_culling.hpp"
 #include "traversal/wide/front_record.hpp"

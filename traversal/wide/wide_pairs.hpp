@@ -19,6 +19,7 @@
 
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/unless_done.hpp"
+#include "traversal/counters.hpp"
 #include "traversal/shape.hpp"
 #include "traversal/wide/siblings_kernel.hpp"
 #include "traversal/wide/wide_margins.hpp"
