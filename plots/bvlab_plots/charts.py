@@ -6,6 +6,7 @@ import re
 import textwrap
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 from matplotlib.ticker import NullLocator
 
@@ -61,7 +62,7 @@ def declared_grid(figure, names):
                 axes[i, j].set_axis_off()
         if figure.panel_rows:
             axes[i, -1].annotate(line, (1.02, 0.5), xycoords="axes fraction", rotation=270, va="center",
-                                 fontsize=plt.rcParams["legend.fontsize"])
+                                 fontsize=matplotlib.rcParams["legend.fontsize"])
     return drawing, found
 
 
@@ -159,7 +160,7 @@ def y_label_of(quantity, figure, points, given):
 
 def labelled(figure, drawing, axes, x_label, y_label, note):
     """With labels, the legend and the note below it."""
-    size = plt.rcParams["axes.labelsize"]
+    size = matplotlib.rcParams["axes.labelsize"]
     drawing.supylabel(wrapped(y_label, 13 * drawing.get_figheight()), fontsize=size)
     drawing.supxlabel(wrapped(x_label, 13 * drawing.get_figwidth()), fontsize=size)
     handles, names = style.labelled(axes)
