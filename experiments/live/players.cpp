@@ -6,6 +6,7 @@
 #include "experiments/replay/loops_of.hpp"
 #include "experiments/replay/play.hpp"
 #include "experiments/replay/wide_of.hpp"
+#include "hierarchies/wide/slab_box_sibling_test.hpp"
 #include "traversal/queries.hpp"
 
 namespace bvlab::live {
