@@ -11,10 +11,25 @@
 #include <typeinfo>
 
 #include "experiments/live/players.hpp"
+#include "experiments/replay/box_methods.hpp"
 #include "experiments/replay/topology_of.hpp"
 #include "experiments/replay/volume_of.hpp"
+#include "traversal/all_pairs.hpp"
 #include "traversal/primitives/triangle_distance.hpp"
 #include "traversal/queries.hpp"
+
+// What players call of the program's: a page asks about all pairs and counts, which a broad phase
+// is never used for.
+namespace bvlab {
+std::vector<ObjectPair> object_pairs(const Trace& trace) {
+  return all_object_pairs(static_cast<std::uint32_t>(trace.objects));
+}
+bool detail::broad_phase_pays(const Trace&, const ReplayOptions&) { return false; }
+template <>
+std::unique_ptr<AnyMethod<float>> make_method(std::string_view, const MethodSettings&) {
+  return nullptr;
+}
+}  // namespace bvlab
 
 namespace bvlab::live {
 namespace {

@@ -6,6 +6,7 @@
 #include "experiments/replay/loops_of.hpp"
 #include "experiments/replay/play.hpp"
 #include "experiments/replay/wide_of.hpp"
+#include "hierarchies/wide/slab_box_sibling_test.hpp"
 #include "traversal/queries.hpp"
 
 namespace bvlab::live {
@@ -49,15 +50,11 @@ class WatchedLoops final : public detail::BodiesOver<V, Query> {
   Run& run_;
 };
 
-template <class Query, class Engine>
-std::unique_ptr<detail::Player> played(Engine engine, const Trace& trace, Run& run) {
+template <class Query, class Pairs>
+std::unique_ptr<detail::Player> played(Pairs pairs, const Trace& trace, Run& run) {
   const QueryOptions how{triangle_test(run.variant.precision), run.variant.relative_error};
-  return std::make_unique<detail::PlayedBy<Engine, Query, Counting>>(std::move(engine), trace, how,
-                                                                     run.options, run.result);
-}
-
-std::vector<ObjectPair> pairs_of(const Trace& trace) {
-  return all_object_pairs(static_cast<std::uint32_t>(trace.objects));
+  return std::make_unique<detail::PlayedBy<Pairs, Query, Counting>>(std::move(pairs), trace, how,
+                                                                    run.options, run.result);
 }
 
 template <class Query>
@@ -70,19 +67,18 @@ std::unique_ptr<detail::Player> gathered(const Trace& trace, Run& run) {
   if (loops)
     Strategies::with(run.variant.strategy, [&]<class Strategy>(std::type_identity<Strategy>) {
       using Bodies = AnyBodies<Query, Counting, Fronts>;
-      player = played<Query>(AllPairsOf<StrategyPairs<Bodies, Strategy>>(
-                                 {Bodies(std::move(loops)), Strategy{}}, pairs_of(trace)),
+      player = played<Query>(StrategyPairs<Bodies, Strategy>(Bodies(std::move(loops)), Strategy{}),
                              trace, run);
     });
   return player;
 }
 
-/// An engine and the trees that it is over.
-template <class Hierarchies, class Engine>
-class OverOwnTrees : public Engine {
+/// Pairs and the trees that they are over.
+template <class Hierarchies, class Pairs>
+class OverOwnTrees : public Pairs {
  public:
-  OverOwnTrees(std::unique_ptr<Hierarchies> hierarchies, Engine engine)
-      : Engine(std::move(engine)), hierarchies_(std::move(hierarchies)) {}
+  OverOwnTrees(std::unique_ptr<Hierarchies> hierarchies, Pairs pairs)
+      : Pairs(std::move(pairs)), hierarchies_(std::move(hierarchies)) {}
 
  private:
   std::unique_ptr<Hierarchies> hierarchies_;
@@ -94,22 +90,18 @@ std::unique_ptr<detail::Player> siblings(std::span<const TriangleMesh> meshes, c
   std::unique_ptr<detail::Player> player;
   WideVolumes::with(run.variant.volume, [&]<class V>(std::type_identity<V>) {
     constexpr int fan_out = native_fan_out<typename V::scalar>;
-    using Trees = std::vector<typename SiblingsKernel::template Hierarchy<V, fan_out>>;
-    auto trees = std::make_unique<Trees>(
-        detail::wide_hierarchies<typename Trees::value_type>(meshes, run.variant, 1));
-    const auto shapes = shapes_over(meshes, *trees, trace.objects);
-    const auto with = [&]<class Memory>(std::type_identity<Memory>) {
-      using Engine = AllPairsOf<WidePairs<V, fan_out, Memory, SiblingsKernel>>;
-      player = played<Query>(
-          OverOwnTrees<Trees, Engine>(
-              std::move(trees), Engine(WidePairs<V, fan_out, Memory, SiblingsKernel>(shapes),
-                                       pairs_of(trace))),
-          trace, run);
+    using Trees = detail::WideHierarchies<SiblingsKernel::Hierarchy<V, fan_out>>;
+    auto trees = std::make_unique<Trees>(meshes, run.variant, 1);
+    const auto shapes = shapes_over(meshes, trees->all(), trace.objects);
+    const auto with = [&]<class Memory>(const Memory& memory) {
+      using Pairs = WidePairs<V, fan_out, Memory, SiblingsKernel>;
+      player = played<Query>(OverOwnTrees<Trees, Pairs>(std::move(trees), Pairs(shapes, memory)),
+                             trace, run);
     };
     if (run.variant.strategy == WideMargins::name)
-      with(std::type_identity<WideMargins>());
+      with(WideMargins());
     else if (run.variant.strategy == Recursive::name)
-      with(std::type_identity<NoMemory>());
+      with(NoMemory());
   });
   return player;
 }
