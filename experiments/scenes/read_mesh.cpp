@@ -39,7 +39,9 @@ TriangleMesh scaled_mesh(TriangleMesh mesh, const std::string& name, const ReadO
 ParsedMesh parsed_mesh(std::string_view bytes, const std::string& name, const MeshFormat& format,
                        const ReadOptions& options) {
   ParsedMesh parsed = format.parse(bytes, name);
-  if (!parsed.note.empty()) options.say(one_line(name + ": " + parsed.note));
+  // Of a mesh without triangles that is said alone.
+  if (!parsed.note.empty() && !parsed.mesh.triangles.empty())
+    options.say(one_line(name + ": " + parsed.note));
   return parsed;
 }
 
