@@ -351,7 +351,10 @@ void expect_answers_from_the_roots(const MakeQuery& make_query, const AnswerOf& 
                      [&](std::size_t p, const Query& query) { expected[p] = answer_of(query); });
     margins.frame(frames[f], counter, make_query,
                   [&](std::size_t p, const Query& query) { found[p] = answer_of(query); });
-    EXPECT_EQ(found, expected) << f;
+    // Distances that differ by less than 2^-45 count as equal (distance.hpp): which of two such
+    // pairs of triangles is found depends on the order of tests.
+    for (std::size_t p = 0; p < found.size(); ++p)
+      EXPECT_NEAR(found[p], expected[p], 0x1p-44 * expected[p]) << f << ' ' << p;
   }
 }
 
