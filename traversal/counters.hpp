@@ -28,7 +28,8 @@ struct Counting {
   void queried(std::uint64_t before) { considered += tests() != before; }
   /// Adds the counts of another thread.
   void add(const Counting& other) {
-    n_b += other.n_b, n_u += other.n_u, n_v += other.n_v, n_p += other.n_p, considered += other.considered;
+    n_b += other.n_b, n_u += other.n_u, n_v += other.n_v, n_p += other.n_p;
+    considered += other.considered;
   }
 };
 

@@ -11,6 +11,7 @@
 #include "experiments/replay/play.hpp"
 #include "experiments/replay/touching_world.hpp"
 #include "experiments/replay/wide_entry.hpp"
+#include "traversal/strategies/by_cost.hpp"
 #include "traversal/wide/list_memory.hpp"
 #include "traversal/wide/mixed_kernel.hpp"
 #include "traversal/wide/wide_pairs.hpp"
@@ -57,13 +58,6 @@ class WideHierarchies {
   std::unordered_map<const TriangleMesh*, const Hierarchy*> known_;
 };
 
-/// Of "deferred:k", as Deferred(k).
-struct DeferredRule {
-  static constexpr std::string_view name = "deferred";
-  explicit DeferredRule(unsigned defer = 1) : rule(RebuildRule::after_still_runs(defer)) {}
-  RebuildRule rule;
-};
-
 template <class V>
 using KernelsOf = std::conditional_t<MixedKernel::takes<V>, TypeList<SiblingsKernel, MixedKernel>,
                                      TypeList<SiblingsKernel>>;
@@ -84,8 +78,8 @@ void with_memory(const Variant& variant, const With& with) {
   if (name == "margins" || name == "adaptive") return with(WideMargins());
   if (name == "witness") return with(WitnessMemory());
   if (name == "separation-list") return with(ListMemory());
-  if (name == "deferred") return with(ListMemory(made_from<DeferredRule>(variant.strategy).rule));
-  if (name == "by-cost") return with(ListMemory(RebuildRule::by_mean_cost()));
+  if (name == "deferred") return with(ListMemory(made_from<Deferred>(variant.strategy).rule()));
+  if (name == "by-cost") return with(ListMemory(ByCost().rule()));
   if (name == "raise")
     return with(ListMemory(RebuildRule::by_last_rebuild(), ListMemory::Raise::tried));
   with(NoMemory());

@@ -11,37 +11,17 @@
 
 #include <string_view>
 
-#include "traversal/front.hpp"
+#include "traversal/strategies/separation_list.hpp"
 
 namespace bvlab {
 
-class ByCost {
+class ByCost : public RebuiltList {
  public:
   static constexpr std::string_view name = "by-cost";
   static constexpr std::string_view description =
       "separation list, rebuilt once a run costs more than the mean since the last rebuild";
 
-  template <class Pair>
-  TraversalStatistics run(const Pair& pair) {
-    if (front_.empty() || rebuild_due_ || front_.size() > longest_list(pair)) {
-      front_.restart();
-      cost_ = runs_ = 0;
-    }
-    const TraversalStatistics statistics = pair.from_front(front_);
-    const auto tests = static_cast<double>(statistics.volumes);
-    cost_ += tests;
-    runs_ += 1;
-    rebuild_due_ = tests * runs_ > cost_;
-    return statistics;
-  }
-
-  const Front& front() const { return front_; }
-  std::size_t front_size() const { return front_.size(); }
-
- private:
-  Front front_;
-  double cost_ = 0, runs_ = 0;  // since the last rebuild, including it
-  bool rebuild_due_ = false;
+  ByCost() : RebuiltList(RebuildRule::by_mean_cost()) {}
 };
 
 }  // namespace bvlab

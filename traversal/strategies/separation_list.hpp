@@ -20,10 +20,35 @@
 #include <string_view>
 
 #include "traversal/front.hpp"
+#include "traversal/strategies/rebuild_rule.hpp"
 
 namespace bvlab {
 
-class Deferred {
+/// A separation list that a rule rebuilds from the roots.
+class RebuiltList {
+ public:
+  explicit RebuiltList(const RebuildRule& rule) : rule_(rule) {}
+
+  template <class Pair>
+  TraversalStatistics run(const Pair& pair) {
+    if (front_.empty() || rule_.due(front_.size(), longest_list(pair)))
+      front_.restart(), rule_.restart();
+    const std::size_t before = front_.size();
+    const TraversalStatistics statistics = pair.from_front(front_);
+    rule_.ran(front_.size() > before, statistics.volumes);
+    return statistics;
+  }
+
+  const RebuildRule& rule() const { return rule_; }
+  const Front& front() const { return front_; }
+  std::size_t front_size() const { return front_.size(); }
+
+ private:
+  Front front_;
+  RebuildRule rule_;
+};
+
+class Deferred : public RebuiltList {
  public:
   static constexpr std::string_view name = "deferred";
   static constexpr std::string_view description =
@@ -31,28 +56,7 @@ class Deferred {
       "published)";
 
   /// `defer`: how many runs without growth pass before the one that triggers a rebuild.
-  explicit Deferred(unsigned defer = 1) : defer_(defer) {}
-
-  template <class Pair>
-  void run(const Pair& pair) {
-    const bool rebuild = front_.empty() || still_ > defer_;
-    if (rebuild) {
-      front_.restart();
-      still_ = 0;
-    }
-    const std::size_t before = front_.size();
-    pair.from_front(front_);
-    if (rebuild) return;
-    still_ = front_.size() > before ? 0 : still_ + 1;
-  }
-
-  const Front& front() const { return front_; }
-  std::size_t front_size() const { return front_.size(); }
-
- private:
-  Front front_;
-  unsigned defer_;
-  unsigned still_ = 0;  // runs in a row without growth since the last rebuild
+  explicit Deferred(unsigned defer = 1) : RebuiltList(RebuildRule::after_still_runs(defer)) {}
 };
 
 class SeparationList : public Deferred {

@@ -69,7 +69,9 @@ class WideFront {
   }
   bool is_open(LaneOfEntry lane) const { return entries_[lane / 16].opened >> lane % 16 & 1; }
   void open(LaneOfEntry lane) { entries_[lane / 16].opened |= bit(lane); }
-  void close(LaneOfEntry lane) { entries_[lane / 16].opened &= static_cast<std::uint16_t>(~bit(lane)); }
+  void close(LaneOfEntry lane) {
+    entries_[lane / 16].opened &= static_cast<std::uint16_t>(~bit(lane));
+  }
 
   /// Closed entries may rise: where both bodies have come apart, a lane that was opened for an
   /// entry without opened lanes is tested again after 1, 2, 4, ... 16 runs.

@@ -11,10 +11,12 @@
 /// query's own test. If they no longer meet, or no longer with a margin, the bodies are traversed,
 /// first where they touched.
 ///
-/// A pair that was traversed and found apart writes a front (WideFront) in its next traversal.
-/// Later traversals retest only the entries whose gaps may have closed. Where that is over three
-/// quarters of them the pair keeps no front for sixteen traversals, and for four times as many each
-/// time this recurs, at most 256.
+/// A pair that was traversed before, and found apart where one hit is enough, writes a front
+/// (WideFront) in its next traversal. Later traversals retest only the entries whose gaps may have
+/// come down to the query's limit. Where that costs over three quarters of a traversal from the
+/// roots, the pair keeps no front for sixteen traversals, and for four times as many each time this
+/// recurs, at most 256. A distance also keeps the nearest two triangles, which are tested first.
+/// Where all contacts are sought, the verdicts on near triangles become entries, if they last.
 ///
 /// Tried and not kept: to measure no gaps where few traversals were spared lately, as in fast
 /// motion. It gains a tenth there, but single pairs take up to half as long again: they are spared
@@ -23,7 +25,7 @@
 /// Also tried: to open volumes with a small gap, so that the least gap grows. It costs five times
 /// as much, and the least gap stays that of the nearest triangles.
 ///
-/// Also tried: to measure gaps of triangles in other traversals than retests (GapMeasure). A third
+/// Also tried: to measure gaps of triangles in other traversals than retests. A third
 /// of the tests remains, and each gap costs as much as four tests.
 #pragma once
 
@@ -137,7 +139,10 @@ class WideMargins {
       start.touched = kept.touched;
     // A front pays from the second traversal on, unless the last ones wore out at once; where one
     // hit is enough, while the bodies are apart.
-    if (kept.pause.over() && kept.known && (!wants_bound<Query>() || kept.touched) && (!DecidedByOneHit<Query> || kept.was_apart))
+    const bool is_useful = wants_bound<Query>()     ? kept.touched.has_value()
+                           : DecidedByOneHit<Query> ? kept.was_apart
+                                                    : true;
+    if (kept.pause.over() && kept.known && is_useful)
       start.front = &kept.front;
     if constexpr (FindsAllHits<Query>)
       start.verdicts = kept.front.is_complete() && kept.verdicts_pause.over();
