@@ -45,7 +45,7 @@ def draw_errors(rows, out):
                     panels="query", log="none", y_label="predicted / measured time",
                     pool="strategy, motion")
     drawing = charts.draw(figure, points_of(rows, figure))
-    for axis in drawing.axes:
+    for axis in drawing.get_axes():
         axis.axhline(1, color="#8f8f8f", linewidth=0.8, zorder=1)
         axis.set_ylim(0, 1.05 * max(1, axis.get_ylim()[1]))
     return style.save(drawing, out, figure.name)

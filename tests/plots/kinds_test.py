@@ -175,7 +175,7 @@ class Kinds(unittest.TestCase):
             self.assertEqual("Medians of 3 repetitions" in " ".join(seen.texts), not more)
             self.assertIn("mine", " ".join(seen.texts))
             sizes.append((record / "figures" / f"n{len(more)}.png").stat().st_size)
-        self.assertNotEqual(*sizes)
+        self.assertNotEqual(sizes[0], sizes[1])
         self.assertIn("Medians of 3 repetitions", (record / "figures" / "n4.txt").read_text())
         (self.folder / "bad.mplstyle").write_text("axes.labelsize: enormous\n")
         for style, mention in ((str(self.folder / "bad.mplstyle"), "enormous"), ("no-such-style", "no such file")):
