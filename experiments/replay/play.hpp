@@ -119,6 +119,10 @@ class Answers {
   std::vector<List> of_pairs_;
 };
 
+inline bool counts(const ReplayOptions& options) {
+  return options.count == Count::on || options.keep_series;
+}
+
 template <class Pairs, class Query, class Counter>
 class PlayedBy final : public Player {
  public:
@@ -157,9 +161,10 @@ class PlayedBy final : public Player {
   }
 
   void finish() override {
-    result_.n_b += counter_.n_b, result_.n_u += counter_.n_u, result_.n_v += counter_.n_v, result_.n_p += counter_.n_p;
-    result_.considered += counter_.considered;
     result_.hits += answers_.hits();
+    if (!counts(options_)) return;
+    result_.n_b += counter_.n_b, result_.n_u += counter_.n_u, result_.n_v += counter_.n_v;
+    result_.n_p += counter_.n_p, result_.considered += counter_.considered;
   }
 
  private:
@@ -196,17 +201,23 @@ BodiesFor<Strategy, Query, Counter> bodies_for(const VolumeEntry& volume,
       [&](const std::type_info& front) { return own_loop<Query>(volume.name, front); });
 }
 
-/// `pairs` makes the engine's pairs, of none yet, for either way to count.
-template <class Query, class PairsOf>
-void play_over(const PairsOf& pairs, const Trace& trace, const Variant& variant,
+/// `pairs` are of none yet.
+template <class Query, class Counter, class Pairs>
+void play_over(Pairs pairs, const Trace& trace, const Variant& variant,
                const ReplayOptions& options, ReplayResult& result) {
   const QueryOptions how{triangle_test(variant.precision), variant.relative_error};
+  PlayedBy<Pairs, Query, Counter> player(std::move(pairs), trace, how, options, result);
+  play_frames(player, trace, options, result);
+}
+
+/// `pairs` makes them for either way to count.
+template <class Query, class PairsOf>
+void play_counting_or_not(const PairsOf& pairs, const Trace& trace, const Variant& variant,
+                          const ReplayOptions& options, ReplayResult& result) {
   const auto with = [&]<class Counter>(std::type_identity<Counter> counter) {
-    using Pairs = decltype(pairs(counter));
-    PlayedBy<Pairs, Query, Counter> player(pairs(counter), trace, how, options, result);
-    play_frames(player, trace, options, result);
+    play_over<Query, Counter>(pairs(counter), trace, variant, options, result);
   };
-  if (options.count == Count::on || options.keep_series)
+  if (counts(options))
     with(std::type_identity<Counting>());
   else
     with(std::type_identity<NotCounting>());
@@ -221,7 +232,7 @@ void play(const VolumeEntry& volume, const AnyHierarchies& hierarchies, const Tr
         bodies_for<Strategy, Query, Counter>(volume, hierarchies, trace.objects, variant),
         strategy);
   };
-  play_over<Query>(pairs, trace, variant, options, result);
+  play_counting_or_not<Query>(pairs, trace, variant, options, result);
 }
 
 /// Null where the query is no matter of yes or no.

@@ -62,22 +62,19 @@ std::vector<Named> frames() {
 }
 
 std::vector<Named> kernels() {
-  const std::string reasons =
-      ", --frame body; other volumes are not compiled for it (wide_volumes.hpp). Every strategy of "
-      "the list; recursive-both is recursive, and adaptive is margins, which pause where they do not pay";
+  const auto opening = [](std::string_view kernel) {
+    std::uint32_t fan_out = 0;
+    for (const auto* entry : wide_entries()) fan_out = std::max(fan_out, entry->fan_out(kernel));
+    return "--fan-out " + std::to_string(fan_out) + ", --frame body";
+  };
   return {{"gathered",
-           "a register holds pairs of nodes from anywhere in both trees: every volume, strategy, "
-           "query, fan-out and frame"},
-          {"siblings", "a register holds the children of one node, against one volume: --volume " +
-                           text_of(wide_volumes("siblings")) +
-                           ", --fan-out " +
-                           std::to_string(wide_entries()[0]->fan_out("siblings")) +
-                           " (the lanes of a register)" + reasons},
+           "a register holds pairs of nodes from anywhere in both trees: every fan-out and frame"},
+          {"siblings", "a register holds the children of one node, against one volume: " +
+                           opening("siblings")},
           {"mixed",
            "four children against four where nodes are alike in size, else one against sixteen "
-           "grandchildren: --volume " +
-               text_of(wide_volumes("mixed")) + ", --fan-out 4" +
-               reasons}};
+           "grandchildren: " +
+               opening("mixed")}};
 }
 
 std::vector<Named> strategies() {
@@ -114,7 +111,7 @@ const WideEntry& wide_entry(std::string_view volume, std::string_view query) {
   }
   if (!volume_exists)
     throw Unusable("--volume " + std::string(volume) +
-                   ": the kernel siblings is not compiled for it; there is " +
+                   ": the kernel siblings does not take it; there is " +
                    text_of(wide_volumes("siblings")));
   refuse("--query", query, queries());
 }

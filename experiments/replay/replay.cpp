@@ -43,7 +43,7 @@ void check_wide(const Variant& variant) {
   const std::uint32_t fan_out = wide_fan_out(variant.volume, variant.kernel);
   if (fan_out == 0)
     throw Unusable("--volume " + variant.volume + ": the kernel " + variant.kernel +
-                   " is not compiled for it; there is " + volumes);
+                   " does not take it; there is " + volumes);
   if (!wide_entry(variant.volume, variant.query).play)
     throw Unusable("--query " + variant.query + ": not with --kernel " + variant.kernel +
                    ", which culls by whether volumes are disjoint; use --kernel gathered");

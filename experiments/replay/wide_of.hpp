@@ -2,6 +2,7 @@
 /// All that is compiled for a volume in wide trees under one query.
 #pragma once
 
+#include <concepts>
 #include <deque>
 #include <memory>
 #include <type_traits>
@@ -58,16 +59,13 @@ class WideHierarchies {
   std::unordered_map<const TriangleMesh*, const Hierarchy*> known_;
 };
 
-template <class V>
-using KernelsOf = std::conditional_t<MixedKernel::takes<V>, TypeList<SiblingsKernel, MixedKernel>,
-                                     TypeList<SiblingsKernel>>;
+using WideKernels = TypeList<SiblingsKernel, MixedKernel>;
 
-/// Calls `with` with the variant's kernel and its hierarchies.
-template <BoundingVolume V, class With>
-void with_kernel(const Variant& variant, const With& with) {
-  KernelsOf<V>::with(variant.kernel,
-                     [&]<class Kernel>(std::type_identity<Kernel> kernel) { with(kernel); });
-}
+/// Volumes that these kernels take: over float, with a sibling test.
+template <class V>
+concept ForWideTrees = std::same_as<typename V::scalar, float> &&
+                       (requires { typename V::sibling_test; } ||
+                        (std::same_as<Posed<V>, V> && PlacedRelatively<V>));
 
 /// Calls `with` with what pairs keep under the variant's strategy, whose name and parameter have been
 /// checked. Steps of these kernels open one node or both by the nodes' sizes, so that the two ways
@@ -88,7 +86,7 @@ void with_memory(const Variant& variant, const With& with) {
 template <BoundingVolume V, class Query>
 void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
                const ReplayOptions& options, ReplayResult& result) {
-  with_kernel<V>(variant, [&]<class Kernel>(std::type_identity<Kernel>) {
+  WideKernels::with(variant.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
     constexpr int fan_out = fan_out_of<Kernel, typename V::scalar>;
     const auto start = Clock::now();
     const WideHierarchies<typename Kernel::template Hierarchy<V, fan_out>> hierarchies(
@@ -96,10 +94,9 @@ void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const V
     result.build_seconds = seconds_since(start);
     const auto shapes = shapes_over(meshes, hierarchies.all(), trace.objects);
     with_memory(variant, [&]<class Memory>(const Memory& memory) {
-      const auto pairs = [&](auto) {
-        return WidePairs<V, fan_out, Memory, Kernel>(shapes, memory);
-      };
-      play_over<Query>(pairs, trace, variant, options, result);
+      // These pairs count in any case.
+      play_over<Query, Counting>(WidePairs<V, fan_out, Memory, Kernel>(shapes, memory), trace,
+                                 variant, options, result);
     });
   });
 }
@@ -110,7 +107,7 @@ std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, st
                                         const Variant& variant, int threads) {
   std::unique_ptr<WorldEngine> world;
   if constexpr (AnswersYesOrNo<Query>)
-    with_kernel<V>(variant, [&]<class Kernel>(std::type_identity<Kernel>) {
+    WideKernels::with(variant.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
       constexpr int fan_out = fan_out_of<Kernel, typename V::scalar>;
       WideHierarchies<typename Kernel::template Hierarchy<V, fan_out>> hierarchies(meshes, variant,
                                                                                    threads);
@@ -125,10 +122,10 @@ std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, st
   return world;
 }
 
-template <BoundingVolume V>
+template <ForWideTrees V>
 constexpr std::uint32_t fan_out_with(std::string_view kernel) {
   std::uint32_t fan_out = 0;
-  KernelsOf<V>::with(kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+  WideKernels::with(kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
     fan_out = fan_out_of<Kernel, typename V::scalar>;
   });
   return fan_out;
@@ -138,9 +135,14 @@ constexpr std::uint32_t fan_out_with(std::string_view kernel) {
 
 template <BoundingVolume V, class Query>
 constexpr WideEntry wide_of() {
-  WideEntry entry{V::name, V::description, Query::name, detail::fan_out_with<V>, nullptr, nullptr};
-  if constexpr (for_wide_trees<Query>())
-    entry.play = detail::play_wide<V, Query>, entry.world = detail::wide_world<V, Query>;
+  WideEntry entry{V::name, V::description, Query::name, nullptr, nullptr, nullptr};
+  if constexpr (detail::ForWideTrees<V>) {
+    entry.fan_out = detail::fan_out_with<V>;
+    if constexpr (for_wide_trees<Query>())
+      entry.play = detail::play_wide<V, Query>, entry.world = detail::wide_world<V, Query>;
+  } else {
+    entry.fan_out = [](std::string_view) -> std::uint32_t { return 0; };
+  }
   return entry;
 }
 

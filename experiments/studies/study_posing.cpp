@@ -138,7 +138,7 @@ ReplayResult recursed(const Scene& scene,
     using Bodies = AnyBodies<Query, Counter, TypeList<NoFront>>;
     return StrategyPairs<Bodies, Recursive>(Bodies(loops()), Recursive());
   };
-  detail::play_over<Query>(pairs, scene.trace, Variant{}, options, result);
+  detail::play_counting_or_not<Query>(pairs, scene.trace, Variant{}, options, result);
   return result;
 }
 

@@ -8,6 +8,8 @@
 ///                               likeliest to touch come first
 ///   gaps(one, ...)              a lower bound on its distance to each lane
 ///   separation(one, ...)        optional and cheaper: the same, negative where they may overlap
+///   in_lanes(volumes, ...)      a volume of the first body in each lane, posed; in the three tests
+///                               above it can stand for `one`
 ///
 /// A volume V whose posed form is again a V gets the required members from `posed`
 /// (PosedSiblingTest). A volume with a better test declares a `sibling_test` of its own.
@@ -50,13 +52,12 @@ auto centre_of_volume(const V& v) {
 }
 
 /// The overlap test of posed volumes over S. The order is by the distance of the centres relative
-/// to the sum of the sizes.
+/// to `sizes`, the sums of the volumes' sizes.
 template <Scalar S, class P>
 [[gnu::always_inline]] inline OverlapLanes<S> overlap_of_posed(const P& one, const P& lanes,
-                                                               const S& size, const S& sizes) {
+                                                               const S& sizes) {
   const Vec3<S> between = centre_of_volume(one) - centre_of_volume(lanes);
-  const S room = size + sizes;
-  return {disjoint(one, lanes), squared_norm<S>(between) * roughly_one_over<S>(room * room)};
+  return {disjoint(one, lanes), squared_norm<S>(between) * roughly_one_over<S>(sizes * sizes)};
 }
 
 }  // namespace detail
@@ -84,12 +85,28 @@ struct PosedSiblingTest {
   template <Batched S>
   [[gnu::always_inline]] static OverlapLanes<S> overlap(const PosedNode& one, const FrameChange&,
                                                         const Over<V, S>& lanes, const S& sizes) {
-    return detail::overlap_of_posed<S>(in_all_lanes<S>(one.volume), lanes, S(one.size), sizes);
+    return detail::overlap_of_posed<S>(in_all_lanes<S>(one.volume), lanes, sizes + S(one.size));
   }
   template <Batched S>
   [[gnu::always_inline]] static S gaps(const PosedNode& one, const FrameChange&,
                                        const Over<V, S>& lanes) {
     return gap(in_all_lanes<S>(one.volume), lanes);
+  }
+
+  template <class Lanes>
+  [[gnu::always_inline]] static Lanes in_lanes(const Lanes& volumes,
+                                               const FrameChange& frame_change) {
+    return posed(volumes, frame_change);
+  }
+  template <Batched S>
+  [[gnu::always_inline]] static OverlapLanes<S> overlap(const Over<V, S>& one, const FrameChange&,
+                                                        const Over<V, S>& lanes, const S& sizes) {
+    return detail::overlap_of_posed<S>(one, lanes, sizes);
+  }
+  template <Batched S>
+  [[gnu::always_inline]] static S gaps(const Over<V, S>& one, const FrameChange&,
+                                       const Over<V, S>& lanes) {
+    return gap(one, lanes);
   }
 };
 
@@ -107,5 +124,22 @@ struct SiblingTestOf<V> {
 
 template <class V>
 using SiblingTestOf = typename detail::SiblingTestOf<V>::type;
+
+/// The separation of a volume, or of one in each lane, from lanes; `sizes` are the sums of the
+/// volumes' sizes. Where the test has none, gaps and the order of overlaps.
+template <class SiblingTest, Batched S, class One, class FrameChange, class Lanes>
+[[gnu::always_inline]] inline GapLanes<S> separation_of(const One& one,
+                                                        const FrameChange& frame_change,
+                                                        const Lanes& lanes, const S& sizes) {
+  if constexpr (requires {
+                  SiblingTest::template separation<S>(one, frame_change, lanes);
+                }) {
+    const S gap = SiblingTest::template separation<S>(one, frame_change, lanes);
+    return {gap, gap * roughly_one_over<S>(sizes)};
+  } else {
+    return {SiblingTest::template gaps<S>(one, frame_change, lanes),
+            SiblingTest::template overlap<S>(one, frame_change, lanes, sizes).order};
+  }
+}
 
 }  // namespace bvlab

@@ -26,6 +26,7 @@
 /// presumably by mispredicted branches.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -95,10 +96,36 @@ struct SlabBoxSiblingTest<float> {
     return one;
   }
 
-  /// A lower bound on the gap along the best separating axis; negative where they may overlap, and
-  /// then the penetration.
+  /// A posed slab-box in each lane; the numbers of a PosedNode.
   template <Batched S>
-  [[gnu::always_inline]] static S separation(const PosedNode& one, const FrameChange& frame_change,
+  struct PosedLanes {
+    std::array<S, 3> centre, reached, normal, absolute, half, grown;
+    S slab_centre, width;
+  };
+  template <Batched S>
+  [[gnu::always_inline]] static PosedLanes<S> in_lanes(const SlabBox<S>& boxes,
+                                                       const FrameChange& frame_change) {
+    PosedLanes<S> one;
+    for (std::size_t k = 0; k < 3; ++k) {
+      S centre(frame_change.translation[k]), reached(frame_change.margin), normal(0.0f);
+      for (int i = 0; i < 3; ++i) {
+        centre = fused<S>(S(frame_change.column[i][k]), boxes.centre[i], centre);
+        reached = fused<S>(S(frame_change.absolute[i][k]), boxes.half[i], reached);
+        normal = fused<S>(S(frame_change.column[i][k]), boxes.normal[i], normal);
+      }
+      one.centre[k] = centre, one.reached[k] = reached, one.normal[k] = normal;
+      one.absolute[k] = stdx::abs(normal);
+      one.half[k] = boxes.half[static_cast<int>(k)];
+      one.grown[k] = one.half[k] + S(frame_change.margin);
+    }
+    one.slab_centre = boxes.slab_centre, one.width = boxes.width + S(frame_change.margin);
+    return one;
+  }
+
+  /// A lower bound on the gap along the best separating axis; negative where they may overlap, and
+  /// then the penetration. `One` is a PosedNode or PosedLanes.
+  template <Batched S, class One>
+  [[gnu::always_inline]] static S separation(const One& one, const FrameChange& frame_change,
                                              const SlabBox<S>& lanes) {
     using stdx::abs, stdx::max;
     const S x = lanes.centre[0] - S(one.centre[0]), y = lanes.centre[1] - S(one.centre[1]),
@@ -170,11 +197,18 @@ struct SlabBoxSiblingTest<float> {
     const S apart = separation<S>(one, frame_change, lanes);
     return {apart > S(0.0f), apart * roughly_one_over<S>(sizes + S(one.size))};
   }
+  template <Batched S>
+  [[gnu::always_inline]] static OverlapLanes<S> overlap(const PosedLanes<S>& one,
+                                                        const FrameChange& frame_change,
+                                                        const SlabBox<S>& lanes, const S& sizes) {
+    const S apart = separation<S>(one, frame_change, lanes);
+    return {apart > S(0.0f), apart * roughly_one_over<S>(sizes)};
+  }
 
   /// A lower bound on the distance: of boxes along the axes of one of them, or of a slab. Axes and
   /// normals are at most 1 + 4e long, and fewer than ten roundings are made.
-  template <Batched S>
-  [[gnu::always_inline]] static S gaps(const PosedNode& one, const FrameChange& frame_change,
+  template <Batched S, class One>
+  [[gnu::always_inline]] static S gaps(const One& one, const FrameChange& frame_change,
                                        const SlabBox<S>& lanes) {
     using stdx::abs, stdx::max, stdx::min, stdx::sqrt;
     const S zero(0.0f);

@@ -115,8 +115,7 @@ void for_each_kernel(
          [&](const Scene& scene) { return gathered<V>(scene, topology, frame); });
   what("siblings",
        [&](const Scene& scene) { return wide<V, 8, SiblingsKernel>(scene, topology); });
-  if constexpr (MixedKernel::takes<V>)
-    what("mixed", [&](const Scene& scene) { return wide<V, 4, MixedKernel>(scene, topology); });
+  what("mixed", [&](const Scene& scene) { return wide<V, 4, MixedKernel>(scene, topology); });
 }
 
 template <class... Build>

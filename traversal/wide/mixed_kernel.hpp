@@ -15,6 +15,7 @@
 #include <cstring>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "hierarchies/wide/block_hierarchy.hpp"
 #include "traversal/wide/block_triangles.hpp"
@@ -30,12 +31,6 @@ struct MixedKernel {
   static constexpr std::string_view description =
       "four children against four where nodes are alike in size, else one against sixteen "
       "grandchildren";
-  /// Volumes whose sibling test can also pose one volume in each lane.
-  template <class V>
-  static constexpr bool takes = requires(const typename SiblingTestOf<V>::FrameChange& frame_change,
-                                         const Over<V, SixteenLanes>& lanes) {
-    SiblingTestOf<V>::in_lanes(lanes, frame_change);
-  };
   /// Sixteen lanes leave many open pairs: descending to the nearest child of a step, rather than to
   /// the nearest of all open pairs, finds a hit sooner and with fewer stalls.
   static constexpr bool nearest_child_first = true;
@@ -54,7 +49,6 @@ struct MixedKernel {
     using Node = typename Tree::Node;
     using Block = typename Tree::Block;
     using SiblingTest = SiblingTestOf<V>;
-    using FrameChange = typename SiblingTest::FrameChange;
 
    public:
     using S = SixteenLanes;
@@ -81,15 +75,18 @@ struct MixedKernel {
 
       std::uint64_t lanes() const { return used; }
       struct Unused {};
+      using Posed =
+          decltype(SiblingTest::in_lanes(std::declval<const Over<V, S>&>(),
+                                         std::declval<const typename SiblingTest::FrameChange&>()));
       struct LastPosed {
         std::size_t child = 4;
-        Over<V, S> volume;
+        Posed volume;
       };
       /// Where a register has fewer than four lanes, several hold the same child of a: it is posed
       /// once.
       [[no_unique_address]] mutable std::conditional_t<(S::size() < 4), LastPosed, Unused> last =
           {};
-      [[gnu::always_inline]] Over<V, S> posed(std::size_t part) const {
+      [[gnu::always_inline]] Posed posed(std::size_t part) const {
         const auto pose = [&]() __attribute__((always_inline)) {
           return SiblingTest::in_lanes(
               volumes([&](std::size_t k) { return each_of_four(row_a.volume[k].data(), part); }),
@@ -114,8 +111,8 @@ struct MixedKernel {
                                                 others(part), sizes(part));
       }
       [[gnu::always_inline]] GapLanes<S> separation(std::size_t part) const {
-        return separation_by<S>(posed(part), pair_frame.frames_.change[1], others(part),
-                                sizes(part));
+        return separation_of<SiblingTest, S>(posed(part), pair_frame.frames_.change[1],
+                                             others(part), sizes(part));
       }
       [[gnu::always_inline]] S gaps(std::size_t part) const {
         return SiblingTest::template gaps<S>(posed(part), pair_frame.frames_.change[1],
@@ -159,8 +156,8 @@ struct MixedKernel {
                                                 others(part), sizes(part));
       }
       [[gnu::always_inline]] GapLanes<S> separation(std::size_t part) const {
-        return separation_by<S>(posed, pair_frame.frames_.change[side], others(part),
-                                sizes(part) + S(posed.size));
+        return separation_of<SiblingTest, S>(posed, pair_frame.frames_.change[side], others(part),
+                                             sizes(part) + S(posed.size));
       }
       [[gnu::always_inline]] S gaps(std::size_t part) const {
         return SiblingTest::template gaps<S>(posed, pair_frame.frames_.change[side], others(part));
@@ -255,15 +252,6 @@ struct MixedKernel {
         std::memcpy(reinterpret_cast<char*>(&result) + sizeof lanes * k, &lanes, sizeof lanes);
       }
       return result;
-    }
-
-    template <class Lanes, class PosedNode>
-    [[gnu::always_inline]] static GapLanes<Lanes> separation_by(const PosedNode& posed,
-                                                                const FrameChange& frame_change,
-                                                                const Over<V, Lanes>& others,
-                                                                const Lanes& sizes) {
-      const Lanes gap = SiblingTest::template separation<Lanes>(posed, frame_change, others);
-      return {gap, gap * roughly_one_over<Lanes>(sizes)};
     }
 
     /// Pairs of two leaves go to the queue of triangles.

@@ -121,14 +121,8 @@ class RelativeFrame {
   [[gnu::always_inline]] GapLanes<S> separation(std::size_t side, std::uint32_t node,
                                                 const PosedNode& posed) const {
     const auto& lanes = hierarchies_[side]->children(node);
-    if constexpr (requires {
-                    SiblingTest::template separation<S>(posed, frames_.change[side], lanes.volumes);
-                  }) {
-      const S gap = SiblingTest::template separation<S>(posed, frames_.change[side], lanes.volumes);
-      return {gap, gap * roughly_one_over<S>(lanes.size + S(posed.size))};
-    } else {
-      return {gaps(side, node, posed), overlap(side, node, posed).order};
-    }
+    return separation_of<SiblingTest, S>(posed, frames_.change[side], lanes.volumes,
+                                         lanes.size + S(posed.size));
   }
 
   const CornerTransform& a_to_b() const { return frames_.transform[0]; }

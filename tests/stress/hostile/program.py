@@ -29,21 +29,14 @@ def names_of(kind):
 WIDE_KERNELS = ("siblings", "mixed")
 
 
-def wide_volumes(kernel):
-    """The volumes that a kernel is compiled for, as `bvlab list kernels` says."""
-    (line,) = [line for line in lines_of("kernels") if line.startswith(kernel)]
-    return line.split("--volume ")[1].split(", --strategy")[0].split(", ")
-
-
 def ways():
-    """Arguments for every volume under every strategy, on trees of every fan-out and in both frames in turn; and for
-    the kernels that are compiled for some volumes alone."""
+    """Arguments for every volume under every strategy, on trees of every fan-out, in both frames and on all kernels
+    in turn."""
     trees = [[], ["--fan-out", "4", "--frame", "body"], ["--fan-out", "16"], ["--frame", "body"],
-             ["--fan-out", "8", "--frame", "body"]]
+             ["--fan-out", "8", "--frame", "body"], *(["--kernel", kernel] for kernel in WIDE_KERNELS)]
     pairs = [(volume, strategy) for volume in names_of("volumes") for strategy in names_of("strategies")]
     return [["--volume", volume, "--strategy", strategy, *trees[k % len(trees)]]
-            for k, (volume, strategy) in enumerate(pairs)] + \
-        [["--kernel", kernel, "--volume", volume] for kernel in WIDE_KERNELS for volume in wide_volumes(kernel)]
+            for k, (volume, strategy) in enumerate(pairs)]
 
 
 def poses(frames, objects, step=0.1):
