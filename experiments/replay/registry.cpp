@@ -74,7 +74,7 @@ std::vector<Named> kernels() {
           {"mixed",
            "four children against four where nodes are alike in size, else one against sixteen "
            "grandchildren: " +
-               opening("mixed")}};
+               opening("mixed") + ", --volume " + text_of(wide_volumes("mixed"))}};
 }
 
 std::vector<Named> strategies() {

@@ -59,7 +59,19 @@ class WideHierarchies {
   std::unordered_map<const TriangleMesh*, const Hierarchy*> known_;
 };
 
-using WideKernels = TypeList<SiblingsKernel, MixedKernel>;
+/// The kernels that are compiled for a volume: `mixed` for those alone that have a sibling test of
+/// their own, since a kernel takes GCC 12 a processor minute for each volume.
+template <class V>
+struct WideKernelsOf {
+  using type = TypeList<SiblingsKernel>;
+};
+template <class V>
+  requires requires { typename V::sibling_test; }
+struct WideKernelsOf<V> {
+  using type = TypeList<SiblingsKernel, MixedKernel>;
+};
+template <class V>
+using WideKernels = typename WideKernelsOf<V>::type;
 
 /// Volumes that these kernels take: over float, with a sibling test.
 template <class V>
@@ -86,7 +98,7 @@ void with_memory(const Variant& variant, const With& with) {
 template <BoundingVolume V, class Query>
 void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
                const ReplayOptions& options, ReplayResult& result) {
-  WideKernels::with(variant.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+  WideKernels<V>::with(variant.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
     constexpr int fan_out = fan_out_of<Kernel, typename V::scalar>;
     const auto start = Clock::now();
     const WideHierarchies<typename Kernel::template Hierarchy<V, fan_out>> hierarchies(
@@ -107,7 +119,7 @@ std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, st
                                         const Variant& variant, int threads) {
   std::unique_ptr<WorldEngine> world;
   if constexpr (AnswersYesOrNo<Query>)
-    WideKernels::with(variant.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+    WideKernels<V>::with(variant.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
       constexpr int fan_out = fan_out_of<Kernel, typename V::scalar>;
       WideHierarchies<typename Kernel::template Hierarchy<V, fan_out>> hierarchies(meshes, variant,
                                                                                    threads);
@@ -125,7 +137,7 @@ std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, st
 template <ForWideTrees V>
 constexpr std::uint32_t fan_out_with(std::string_view kernel) {
   std::uint32_t fan_out = 0;
-  WideKernels::with(kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+  WideKernels<V>::with(kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
     fan_out = fan_out_of<Kernel, typename V::scalar>;
   });
   return fan_out;

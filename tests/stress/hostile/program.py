@@ -29,14 +29,21 @@ def names_of(kind):
 WIDE_KERNELS = ("siblings", "mixed")
 
 
+def volumes_of(kernel):
+    """The volumes that a kernel is compiled for, as `bvlab list kernels` says."""
+    (line,) = [line for line in lines_of("kernels") if line.startswith(kernel)]
+    return line.split("--volume ")[1].split(", ") if "--volume " in line else names_of("volumes")
+
+
 def ways():
     """Arguments for every volume under every strategy, on trees of every fan-out, in both frames and on all kernels
     in turn."""
     trees = [[], ["--fan-out", "4", "--frame", "body"], ["--fan-out", "16"], ["--frame", "body"],
-             ["--fan-out", "8", "--frame", "body"], *(["--kernel", kernel] for kernel in WIDE_KERNELS)]
+             ["--fan-out", "8", "--frame", "body"], ["--kernel", "siblings"]]
     pairs = [(volume, strategy) for volume in names_of("volumes") for strategy in names_of("strategies")]
     return [["--volume", volume, "--strategy", strategy, *trees[k % len(trees)]]
-            for k, (volume, strategy) in enumerate(pairs)]
+            for k, (volume, strategy) in enumerate(pairs)] + \
+        [["--kernel", "mixed", "--volume", volume] for volume in volumes_of("mixed")]
 
 
 def poses(frames, objects, step=0.1):
