@@ -42,6 +42,7 @@ void print_touching(const char* what, const PairChoice& choice) {
   std::printf("\n");
 }
 
+// Without memory, the program ends. NOLINTNEXTLINE(bugprone-exception-escape)
 int main() {
   print_touching("all pairs", {});
   PairChoice choice;
