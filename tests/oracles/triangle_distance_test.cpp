@@ -67,7 +67,8 @@ void expect_points_rounded_once(const TrianglePair& pair, double distance, long 
   ASSERT_EQ(found.distance, distance) << shown(pair);
   const Triangle at_a = {found.on_a, found.on_a, found.on_a},
                  at_b = {found.on_b, found.on_b, found.on_b};
-  const long double rounding = grain(pair) / 4;  // 2^-51 of the largest coordinate
+  // 2^-51 of the largest coordinate; of a subnormal one, half of the smallest number.
+  const long double rounding = grain(pair) / 4 + std::numeric_limits<double>::denorm_min();
   ASSERT_LE(oracle::distance(at_a, a), rounding) << shown(pair);
   ASSERT_LE(oracle::distance(at_b, b), rounding) << shown(pair);
   ASSERT_LE(std::abs(oracle::distance(at_a, at_b) - truth), 2 * rounding + 1e-14L * truth)
