@@ -22,14 +22,3 @@ foreach(line "apart by 1\\.[0-9]+" "[1-9][0-9]* pairs touch" "boxes 0 and 1 over
     message(FATAL_ERROR "the example does not say '${line}':\n${output}")
   endif()
 endforeach()
-
-# What README shows is a part of this example, to the letter.
-file(READ ${SOURCE}/README.md readme)
-file(READ ${SOURCE}/tests/library/example.cpp example)
-if(NOT readme MATCHES "```cpp\n([^`]*)```")
-  message(FATAL_ERROR "README.md shows no code")
-endif()
-string(FIND "${example}" "${CMAKE_MATCH_1}" place)
-if(place EQUAL -1)
-  message(FATAL_ERROR "README.md shows what is not in tests/library/example.cpp")
-endif()
