@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "hierarchies/geometry/relative_pose.hpp"
-#include "traversal/once.hpp"
+#include "hierarchies/geometry/once.hpp"
 #include "traversal/reference_pose.hpp"
 
 namespace bvlab {

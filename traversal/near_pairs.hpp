@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "broadphase/settings.hpp"
-#include "broadphase/structures/radix_sort.hpp"
+#include "hierarchies/geometry/radix_sort.hpp"
 #include "hierarchies/geometry/morton.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "traversal/pair_choice.hpp"

@@ -16,7 +16,7 @@
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/unless_done.hpp"
 #include "traversal/bodies.hpp"
-#include "traversal/once.hpp"
+#include "hierarchies/geometry/once.hpp"
 
 namespace bvlab {
 

@@ -10,7 +10,7 @@
 #include "hierarchies/wide/obb_sibling_test.hpp"
 #include "hierarchies/wide/slab_box_sibling_test.hpp"
 #include "tests/oracles/every_strategy.hpp"
-#include "traversal/once.hpp"
+#include "hierarchies/geometry/once.hpp"
 #include "traversal/world.hpp"
 
 namespace bvlab {
