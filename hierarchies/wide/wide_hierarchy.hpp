@@ -80,9 +80,8 @@ class WideHierarchy {
   WideHierarchy(const TriangleMesh& mesh, const WideTopology& topology, Fit fit, Threads& threads)
       : WideHierarchy(LocalMesh(mesh), topology, fit, threads) {}
 
-  /// Whether trees can be made on demand: of volumes for which a bound on `reach` is known.
-  static constexpr bool on_demand_exists = FittedToColumns<V>;
-  /// A tree that is made on demand. `mesh` must outlive it.
+  /// A tree that is made on demand, of a volume that is a box in the mesh's own frame: its reach is
+  /// bounded beforehand. `mesh` must outlive it.
   static WideHierarchy on_demand(const TriangleMesh& mesh, std::uint32_t leaf_size,
                                  Threads& threads)
     requires FittedToColumns<V>
@@ -169,7 +168,7 @@ class WideHierarchy {
  private:
   static constexpr std::uint32_t whole = 1, nothing = 0;
   /// Children of nodes above this many triangles are bounded by their boxes alone.
-  static constexpr std::uint32_t large = 8192;
+  static constexpr std::uint32_t large = TriangleColumns::large;
 
   /// What a tree on demand is made of.
   struct Unmade {
