@@ -5,10 +5,9 @@
 ///
 /// Nothing in it depends on a body's pose: bodies of one mesh share it.
 ///
-/// A tree is made whole, or on demand: then its topology is that of MortonOrder, O(n) and cheap,
-/// and a node's children have volumes, and a leaf has triangles, from when a traversal opens it
-/// first
-/// (`require`). Each node is made once, by any thread.
+/// A tree is made whole, or on demand. On demand its topology is that of MortonOrder, O(n), and a
+/// node is made, which is to say the volumes of its children or a leaf's triangles, when a traversal
+/// first opens it (`require`), once, by any thread.
 #pragma once
 
 #include <algorithm>
@@ -167,7 +166,8 @@ class WideHierarchy {
 
  private:
   static constexpr std::uint32_t whole = 1, nothing = 0;
-  /// Children of nodes above this many triangles are bounded by their boxes alone.
+  /// Children of nodes of more triangles are bounded by their boxes alone: 20 ns a triangle, and
+  /// 300 with slabs, which for so many save up to a fifth of the tests.
   static constexpr std::uint32_t large = TriangleColumns::large;
 
   /// What a tree on demand is made of.

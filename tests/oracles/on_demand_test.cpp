@@ -177,7 +177,9 @@ TEST(OnDemand, FailedAllocationsLeaveNothingHalfMade) {
         break;
       } catch (const std::bad_alloc&) {
         successes = -1, ++failures;
-        if (i < 3) EXPECT_EQ(tree.made(), made);
+        if (i < 3) {
+          EXPECT_EQ(tree.made(), made);
+        }
       }
     }
   EXPECT_GT(failures, static_cast<int>(tree.size()) / 2);
