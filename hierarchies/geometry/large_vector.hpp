@@ -39,10 +39,7 @@ class LargeAllocator : public std::allocator<T> {
       return std::allocator<T>::allocate(count);
     if (bytes < pages::worth_huge) {
       T* const memory = std::allocator<T>::allocate(count);
-      if (paging_ == Paging::at_once)
-        pages::bring(memory, memory + count);
-      else
-        pages::advise(memory, memory + count, false);
+      if (paging_ == Paging::at_once) pages::bring(memory, memory + count);
       return memory;
     }
     const std::size_t whole = (bytes + pages::huge - 1) / pages::huge * pages::huge;
