@@ -7,7 +7,9 @@
 #include <string_view>
 
 #include "hierarchies/build/bottom_up.hpp"
+#include "hierarchies/build/morton_order.hpp"
 #include "hierarchies/build/top_down.hpp"
+#include "hierarchies/geometry/local_mesh.hpp"
 #include "hierarchies/geometry/type_list.hpp"
 
 namespace bvlab {
@@ -60,10 +62,27 @@ struct BottomUpLocal {
     return BottomUp{leaf_size}(mesh, threads);
   }
 };
+/// Where a hierarchy has a function `on_demand`, that makes the tree; elsewhere it is made at once,
+/// of the same order.
+struct OnDemand {
+  static constexpr std::string_view name = "on-demand";
+  static constexpr std::string_view description =
+      "Morton order of the centroids, built fastest (Lauterbach 2009); of slab-boxes with kernel "
+      "siblings a node is made when a traversal first opens it";
+  static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size) {
+    Threads alone;
+    return topology(mesh, leaf_size, alone);
+  }
+  static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size, Threads& threads) {
+    const LocalMesh local(mesh);
+    return MortonOrder(local.mesh(), local.box(), threads).binary(leaf_size);
+  }
+};
 
 }  // namespace builds
 
 using Builds = TypeList<builds::TopDownPrincipal, builds::TopDownMean, builds::TopDownMedian,
-                        builds::TopDownMiddle, builds::TopDownSurfaceArea, builds::BottomUpLocal>;
+                        builds::TopDownMiddle, builds::TopDownSurfaceArea, builds::BottomUpLocal,
+                        builds::OnDemand>;
 
 }  // namespace bvlab

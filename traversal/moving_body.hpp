@@ -5,8 +5,8 @@
 
 #include <cstdint>
 
+#include "hierarchies/geometry/once.hpp"
 #include "hierarchies/geometry/relative_pose.hpp"
-#include "traversal/once.hpp"
 #include "traversal/reference_pose.hpp"
 
 namespace bvlab {

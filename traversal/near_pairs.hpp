@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "broadphase/settings.hpp"
-#include "broadphase/structures/radix_sort.hpp"
 #include "hierarchies/geometry/morton.hpp"
+#include "hierarchies/geometry/radix_sort.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "traversal/pair_choice.hpp"
 #include "traversal/rotated_mesh_box.hpp"

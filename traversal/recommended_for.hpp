@@ -13,9 +13,9 @@
 ///
 /// with the N counted on the samples and the C below, decides (N_f: entries of fronts), together
 /// with the cost of building the trees. A candidate is tried only if the rest of the run can repay
-/// that: short runs take the trees that are built fastest. Counts do not depend on the machine's
+/// that: short runs take slab-boxes made on demand (RecommendedOnDemand). Counts do not depend on the machine's
 /// load, so the choice is repeatable. Where the motion is unknown, the shape and the number of the
-/// triangles decide, and margins are kept.
+/// triangles decide between these and oriented boxes, and margins are kept.
 #pragma once
 
 #include <algorithm>
@@ -206,7 +206,7 @@ template <class Visit>
 decltype(auto) with_recommended(std::span<const TriangleMesh> meshes, Visit&& visit) {
   if (triangles_of(meshes) <= many_triangles && elongation(meshes) >= long_triangles)
     return visit(std::type_identity<RecommendedOriented>());
-  return visit(std::type_identity<Recommended>());
+  return visit(std::type_identity<RecommendedOnDemand>());
 }
 
 /// One hierarchy for each mesh. A type for each kind of trees: two kinds may have the same
@@ -250,9 +250,11 @@ decltype(auto) with_recommended(std::span<const TriangleMesh> meshes,
   std::vector<std::vector<Pose>> samples;
   const SampledFrames sampled(frames.size());
   for (const std::size_t frame : sampled.frames) samples.push_back(frames[frame]);
-  if (samples.empty()) return visit(std::type_identity<Recommended>());
+  if (samples.empty()) return visit(std::type_identity<RecommendedOnDemand>());
   const std::size_t bodies = samples[0].size(), pairs = bodies * (bodies - 1) / 2;
   RunCosts costs(triangles_of(meshes), pairs * frames.size());
+  if (!costs.may_pay(std::get<0>(recommended_candidates).build))
+    return visit(std::type_identity<RecommendedOnDemand>());
   std::size_t number = 0, best = 0;
   std::any built;  // of the last candidate
   for_each_candidate([&]<class Best>(const RecommendedCandidate<Best>& candidate) {

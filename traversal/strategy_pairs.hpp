@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
+#include "hierarchies/geometry/once.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/unless_done.hpp"
 #include "traversal/bodies.hpp"
-#include "traversal/once.hpp"
 
 namespace bvlab {
 

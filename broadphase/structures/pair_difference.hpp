@@ -7,7 +7,7 @@
 
 #include "broadphase/settings.hpp"
 #include "broadphase/structures/pair_list.hpp"
-#include "broadphase/structures/radix_sort.hpp"
+#include "hierarchies/geometry/radix_sort.hpp"
 
 namespace bvlab {
 

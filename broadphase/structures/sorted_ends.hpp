@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "broadphase/settings.hpp"
-#include "broadphase/structures/radix_sort.hpp"
+#include "hierarchies/geometry/radix_sort.hpp"
 
 namespace bvlab {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "broadphase/structures/block.hpp"
-#include "broadphase/structures/radix_sort.hpp"
 #include "hierarchies/geometry/large_vector.hpp"
+#include "hierarchies/geometry/radix_sort.hpp"
 #include "hierarchies/geometry/threads.hpp"
 
 namespace bvlab {

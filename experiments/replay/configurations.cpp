@@ -38,7 +38,7 @@ Variant as(Variant variant) {
 /// are sought by the volumes of triangles, which rectangle swept spheres bound best.
 void set_recommended(Variant& variant) {
   if (variant.query != "distance") {
-    variant = as<Recommended>(variant);
+    variant = as<RecommendedOnDemand>(variant);
     return;
   }
   using Best = RecommendedDistances;
@@ -63,8 +63,8 @@ constexpr Configuration list[] = {
      "kernel siblings, built top-down-surface-area, leaves as large as a register; (2) obb, kernel "
      "mixed, built bottom-up, fit tight, leaves of 4; either of them with margins or recursive; "
      "with margins (3) slab-box, kernel siblings, built bottom-up, leaves of 4; (4) obb, kernel "
-     "siblings, built bottom-up, fit tight, leaves of 8. In short runs (1), which is built fastest. Where the motion is not "
-     "known, (1), or (2) for few and long triangles. distance: by the motion one of (1), (2), and rss in binary "
+     "siblings, built bottom-up, fit tight, leaves of 8. In short runs (1), built on-demand. Where the motion is not "
+     "known, that, or (2) for few and long triangles. distance: by the motion one of (1), (2), and rss in binary "
      "trees, frame body, built bottom-up, fit tight, leaves of 1, witness; the last where the motion is not known",
      set_recommended},
     {"as-published",
@@ -102,7 +102,7 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes) {
             "spheres bound best"};
   if (triangles_of(meshes) > many_triangles)
     return {variant, "many triangles (" + std::to_string(triangles_of(meshes)) +
-                         "): slab-boxes are built fastest"};
+                         "): slab-boxes are made on demand"};
   const double elongated = elongation(meshes);
   std::ostringstream measured;
   measured << std::setprecision(3) << elongated;
@@ -140,7 +140,7 @@ Chosen recommended_distances(Variant variant, std::span<const TriangleMesh> mesh
   constexpr double slow = 0.007;
   if (2 * trace.frames * trace.pairs() < triangles_of(meshes) &&
       wide_fan_out(Recommended::Volume::name, Recommended::Kernel::name) > 0)
-    return {as<Recommended>(variant), "the run is too short to repay trees that take longer to build"};
+    return {as<RecommendedOnDemand>(variant), "the run is too short to repay trees that take longer to build"};
   const double moved = mean_motion(meshes, trace);
   std::ostringstream measured;
   measured << std::setprecision(3) << moved;
@@ -162,6 +162,10 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
   const std::vector<Option> all = options_for(variant);
   if (all.empty() || trace.pairs() == 0) return recommended(variant, meshes);
   RunCosts costs(triangles_of(meshes), trace.frames * trace.pairs());
+  if (all[0].name == std::get<0>(recommended_candidates).name &&
+      (samples.frames.empty() || !costs.may_pay(all[0].build)))
+    return {as<RecommendedOnDemand>(variant), std::string(all[0].name) +
+                                                  " on demand: the run is too short to repay whole trees"};
   Chosen best{all[0].variant, std::string(all[0].name) +
                                   ": the run is too short to repay samples, or other trees"};
   if (samples.frames.empty()) return best;

@@ -79,7 +79,9 @@ struct FrameCounts {
 struct ReplayResult {
   double seconds = 0;        ///< posing and querying every frame
   double first_seconds = 0;  ///< the first frame alone
-  double build_seconds = 0;
+  double build_seconds = 0;  ///< before the first frame; what is built on demand is in `seconds`
+  /// Of all trees, those of kernel `siblings`, and how many of them have been made.
+  std::size_t nodes = 0, nodes_made = 0;
   std::uint64_t n_b = 0, n_u = 0, n_v = 0, n_p = 0;  ///< where counted
   std::uint64_t considered = 0;        ///< pairs, over all frames, for which anything was tested
   /// Pairs whose boxes overlap, over all frames; nothing where no broad phase was used.

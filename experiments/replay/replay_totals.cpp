@@ -98,6 +98,10 @@ Totals totals_of(const ReplayResult& result, std::span<const TriangleMesh> meshe
     totals.set("near", *result.near);
   else
     totals.set("near", nullptr);
+  if (result.nodes > 0)
+    totals.set("nodes_made", Totals().set("done", result.nodes_made).set("of", result.nodes));
+  else
+    totals.set("nodes_made", nullptr);
   skipped(totals, variant, options, meshes, trace, result);
   return totals;
 }

@@ -12,6 +12,7 @@
 #include "experiments/replay/play.hpp"
 #include "experiments/replay/touching_world.hpp"
 #include "experiments/replay/wide_entry.hpp"
+#include "hierarchies/builds.hpp"
 #include "traversal/strategies/by_cost.hpp"
 #include "traversal/wide/list_memory.hpp"
 #include "traversal/wide/mixed_kernel.hpp"
@@ -46,6 +47,9 @@ class WideHierarchies {
  private:
   const Hierarchy& build(const TriangleMesh& mesh) {
     Threads several(threads_);
+    if constexpr (requires { Hierarchy::on_demand(mesh, variant_.leaf_size, several); })
+      if (variant_.build == builds::OnDemand::name)
+        return all_.emplace_back(Hierarchy::on_demand(mesh, variant_.leaf_size, several));
     // Leaves are made while the tree is collapsed.
     Variant down_to_triangles = variant_;
     down_to_triangles.leaf_size = 1;
@@ -110,6 +114,9 @@ void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const V
       play_over<Query, Counting>(WidePairs<V, fan_out, Memory, Kernel>(shapes, memory), trace,
                                  variant, options, result);
     });
+    if constexpr (requires { hierarchies.all()[0].made(); })
+      for (const auto& hierarchy : hierarchies.all())
+        result.nodes += hierarchy.size(), result.nodes_made += hierarchy.made();
   });
 }
 

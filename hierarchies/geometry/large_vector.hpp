@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A std::vector for large arrays that are written before they are read: growing does not
 /// initialise elements without a constructor, so that no page is touched twice. Very large arrays
-/// are allocated in whole huge pages.
+/// are allocated in whole huge pages. Where few parts of an array will be written, its pages can be
+/// left to be brought in when they are: those that are not cost nothing.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <new>
 #include <utility>
@@ -13,6 +15,8 @@
 #include "hierarchies/geometry/pages.hpp"
 
 namespace bvlab {
+
+enum class Paging : std::uint8_t { at_once, when_written };
 
 template <class T>
 class LargeAllocator : public std::allocator<T> {
@@ -23,8 +27,10 @@ class LargeAllocator : public std::allocator<T> {
   };
 
   LargeAllocator() = default;
+  explicit LargeAllocator(Paging paging) : paging_(paging) {}
   template <class U>
-  LargeAllocator(const LargeAllocator<U>&) {}
+  LargeAllocator(const LargeAllocator<U>& other) : paging_(other.paging()) {}
+  Paging paging() const { return paging_; }
 
   T* allocate(std::size_t count) {
     constexpr std::size_t worth_asking = std::size_t{1} << 16;
@@ -33,14 +39,14 @@ class LargeAllocator : public std::allocator<T> {
       return std::allocator<T>::allocate(count);
     if (bytes < pages::worth_huge) {
       T* const memory = std::allocator<T>::allocate(count);
-      pages::bring(memory, memory + count);
+      if (paging_ == Paging::at_once) pages::bring(memory, memory + count);
       return memory;
     }
     const std::size_t whole = (bytes + pages::huge - 1) / pages::huge * pages::huge;
     const auto memory =
         static_cast<std::byte*>(::operator new(whole, std::align_val_t(pages::huge)));
-    pages::advise(memory, memory + whole, true);
-    for (std::size_t k = 0; k < whole; k += pages::huge)
+    pages::advise(memory, memory + whole, paging_ == Paging::at_once);
+    for (std::size_t k = 0; paging_ == Paging::at_once && k < whole; k += pages::huge)
       if (!pages::bring(memory + k, memory + k + pages::huge)) {
         // The rest in small pages, but in bulk all the same.
         pages::advise(memory, memory + whole, false);
@@ -63,6 +69,9 @@ class LargeAllocator : public std::allocator<T> {
     else
       ::new (static_cast<void*>(at)) U(std::forward<Values>(values)...);
   }
+
+ private:
+  Paging paging_ = Paging::at_once;
 };
 
 template <class T>

@@ -14,6 +14,7 @@
 ///   16 L along an axis, becomes itself again: its trees are the same, bit for bit.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -31,6 +32,7 @@ class LocalMesh {
       for (const auto v : triangle)
         low = low.cwiseMin(mesh.vertices[v]), high = high.cwiseMax(mesh.vertices[v]);
     origin_ = origin_of(low, high);
+    box_ = {low - origin_, high - origin_};
     const auto outside = [&](const Vec3<double>& v) {
       return (v.array() < low.array()).any() || (v.array() > high.array()).any();
     };
@@ -48,6 +50,8 @@ class LocalMesh {
   /// The triangles relative to origin(). Vertices that no triangle uses are within their box.
   const TriangleMesh& mesh() const { return moved_ ? *moved_ : *mesh_; }
   const Vec3<double>& origin() const { return origin_; }
+  /// Around the triangles, relative to origin(); empty for a mesh as it is given.
+  const Eigen::AlignedBox3d& box() const { return box_; }
 
   static bool has_own_origin(const Vec3<double>& origin) {
     return origin[0] != 0 || origin[1] != 0 || origin[2] != 0;
@@ -72,6 +76,7 @@ class LocalMesh {
 
   const TriangleMesh* mesh_ = nullptr;
   Vec3<double> origin_ = Vec3<double>::Zero();
+  Eigen::AlignedBox3d box_;
   std::optional<TriangleMesh> moved_;
 };
 

@@ -41,6 +41,16 @@ class SlabBoxColumns {
     });
   }
 
+  /// A volume around all that a box holds: its slab is as wide as the box.
+  static SlabBox around(const TriangleColumns::Box& all) {
+    SlabBox box = SlabBox::between(all.low, all.high);
+    box.face(Vec3<double>::UnitX());
+    const Vec3<double> c = box.centre.template cast<double>();
+    const Vec3<double> far = (all.low - c).cwiseAbs().cwiseMax((all.high - c).cwiseAbs());
+    box.bound(all.low[0] - c[0], all.high[0] - c[0], far.sum());
+    return box;
+  }
+
   /// The volume around a range of triangles, whose box is `around`.
   SlabBox volume(std::size_t begin, std::size_t end, const TriangleColumns::Box& around) const {
     SlabBox box = SlabBox::between(around.low, around.high);

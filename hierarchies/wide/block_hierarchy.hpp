@@ -74,7 +74,7 @@ class BlockHierarchy {
     const WideTopology topology =
         collapsed(mesh, binary, fan_out, std::min<std::uint32_t>(leaf_size, fan_out));
     nodes_.resize(topology.nodes.size()), node_spheres_.resize(topology.nodes.size());
-    const OrderedTriangles triangles(mesh, topology, threads);
+    const OrderedTriangles triangles(mesh, topology.primitives, threads);
     std::vector<Reach> reach(threads.count());
     threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
       const auto& node = topology.nodes[i];

@@ -22,17 +22,6 @@
 
 namespace bvlab {
 
-struct WideTopology {
-  struct Node {
-    std::uint32_t first = 0;  ///< of its children, which are adjacent; leaf: of its primitives
-    std::uint32_t count = 0;  ///< the number of children; leaf: of primitives
-    bool leaf = false;
-    std::uint32_t begin = 0, end = 0;  ///< the primitives below it
-  };
-  std::vector<Node> nodes;                ///< the root is node 0; level by level
-  std::vector<std::uint32_t> primitives;  ///< triangle indices; those below a node are contiguous
-};
-
 namespace detail {
 
 class Collapsing {

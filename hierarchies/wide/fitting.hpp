@@ -22,6 +22,10 @@
 
 namespace bvlab {
 
+/// A volume that is fitted to ranges of triangles in columns, as SlabBox.
+template <class V>
+concept FittedToColumns = BoundingVolume<V> && requires { typename V::columns; };
+
 /// A sphere around a mesh, in its frame.
 struct MeshSphere {
   Vec3<double> centre = Vec3<double>::Zero();
@@ -40,7 +44,25 @@ struct MeshSphere {
     for (const auto& corner : corners) radius = std::max(radius, stable_norm(corner - centre));
     radius *= 1 + 16 * unit_roundoff<double>;
   }
+  /// About the centre of the mesh's box, and so larger, in one pass.
+  MeshSphere(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box)
+      : centre(box.min() / 2 + box.max() / 2) {
+    double squared = 0;
+    for (const auto& v : mesh.vertices) squared = std::max(squared, (v - centre).squaredNorm());
+    radius = std::sqrt(squared);
+    if (!(squared > 1e-280 && squared < 1e300))  // squares may over- or underflow
+      for (const auto& v : mesh.vertices) radius = std::max(radius, stable_norm(v - centre));
+    radius *= 1 + 16 * unit_roundoff<double>;
+  }
 };
+
+/// Around all that a box holds.
+inline NodeSphere sphere_around(const TriangleColumns::Box& box) {
+  NodeSphere sphere;
+  const Vec3<double> at = sphere.put_centre(box.low, box.high);
+  sphere.put_radius(stable_norm((box.low - at).cwiseAbs().cwiseMax((box.high - at).cwiseAbs())));
+  return sphere;
+}
 
 /// The sphere around a range of triangles, whose box is `box`. A difference, three products and two
 /// sums have five roundings at most, the root halves them and has one of its own: fewer than 4u.
@@ -61,11 +83,10 @@ inline NodeSphere sphere_around(const TriangleColumns& columns, std::size_t begi
 /// and each vertex is repeated for every triangle that it belongs to.
 class OrderedTriangles {
  public:
-  OrderedTriangles(const TriangleMesh& mesh, const WideTopology& topology, Threads& threads)
-      : triangles_(topology.primitives.size()) {
-    threads.share(triangles_.size(), [&](std::size_t k, std::size_t) {
-      triangles_[k] = mesh.corners(topology.primitives[k]);
-    });
+  OrderedTriangles(const TriangleMesh& mesh, std::span<const std::uint32_t> order, Threads& threads)
+      : triangles_(order.size()) {
+    threads.share(triangles_.size(),
+                  [&](std::size_t k, std::size_t) { triangles_[k] = mesh.corners(order[k]); });
   }
 
   const Triangle& operator[](std::size_t k) const { return triangles_[k]; }
@@ -90,10 +111,12 @@ class OrderedTriangles {
 template <BoundingVolume V>
 class NodeFitting {
  public:
-  NodeFitting(const TriangleMesh& mesh, const WideTopology& topology, Fit fit, Threads& threads)
-      : triangles_(mesh, topology, threads), fit_(fit) {}
+  /// `order`: the topology's primitives, or a part of them.
+  NodeFitting(const TriangleMesh& mesh, std::span<const std::uint32_t> order, Fit fit,
+              Threads& threads)
+      : triangles_(mesh, order, threads), fit_(fit) {}
 
-  /// The volume and the sphere around primitives `begin` to `end` of the topology.
+  /// The volume and the sphere around primitives `begin` to `end` of the order.
   std::pair<V, NodeSphere> around(std::uint32_t begin, std::uint32_t end) const {
     return {triangles_.template volume<V>(begin, end, fit_),
             NodeSphere(triangles_.points(begin, end))};
@@ -124,12 +147,11 @@ class NodeFitting {
 };
 
 /// The same for a volume that is fitted to columns.
-template <BoundingVolume V>
-requires requires { typename V::columns; }
+template <FittedToColumns V>
 class NodeFitting<V> {
  public:
-  NodeFitting(const TriangleMesh& mesh, const WideTopology& topology, Fit, Threads& threads)
-      : columns_(mesh, topology.primitives, threads), volumes_(columns_, threads) {}
+  NodeFitting(const TriangleMesh& mesh, std::span<const std::uint32_t> order, Fit, Threads& threads)
+      : columns_(mesh, order, threads), volumes_(columns_, threads) {}
 
   std::pair<V, NodeSphere> around(std::uint32_t begin, std::uint32_t end) const {
     const TriangleColumns::Box box = columns_.box(begin, end);

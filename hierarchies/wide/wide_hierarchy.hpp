@@ -4,15 +4,27 @@
 /// leaf are its triangles: they have volumes of their own, and corners in lanes.
 ///
 /// Nothing in it depends on a body's pose: bodies of one mesh share it.
+///
+/// A tree is made whole, or on demand. On demand its topology is that of MortonOrder, O(n), and a
+/// node is made, which is to say the volumes of its children or a leaf's triangles, when a traversal
+/// first opens it (`require`), once, by any thread.
 #pragma once
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include "hierarchies/build/morton_order.hpp"
 #include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/local_mesh.hpp"
+#include "hierarchies/geometry/once.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/wide/fitting.hpp"
 #include "hierarchies/wide/lanes.hpp"
@@ -42,6 +54,7 @@ class WideHierarchy {
     std::uint32_t first;  ///< of its children; leaf: of its triangles, see triangle()
     std::uint16_t lanes;  ///< which of its lanes hold a child
     std::uint16_t leaf;   ///< 0 or 1
+    std::uint32_t made;   ///< `whole` once its children are, else see once.hpp
   };
 
   /// The children of a node, one per lane.
@@ -66,6 +79,15 @@ class WideHierarchy {
   WideHierarchy(const TriangleMesh& mesh, const WideTopology& topology, Fit fit, Threads& threads)
       : WideHierarchy(LocalMesh(mesh), topology, fit, threads) {}
 
+  /// A tree that is made on demand, of a volume that is a box in the mesh's own frame: its reach is
+  /// bounded beforehand. `mesh` must outlive it.
+  static WideHierarchy on_demand(const TriangleMesh& mesh, std::uint32_t leaf_size,
+                                 Threads& threads)
+    requires FittedToColumns<V>
+  {
+    return WideHierarchy(LocalMesh(mesh), std::min<std::uint32_t>(leaf_size, F), threads);
+  }
+
  private:
   WideHierarchy(const LocalMesh& local, const WideTopology& topology, Fit fit, Threads& threads)
       : origin_(local.origin()),
@@ -75,18 +97,24 @@ class WideHierarchy {
     nodes_.resize(topology.nodes.size());
     node_spheres_.resize(topology.nodes.size());
     siblings_.resize(topology.nodes.size());
-    const NodeFitting<V> fitting(mesh, topology, fit, threads);
+    const NodeFitting<V> fitting(mesh, topology.primitives, fit, threads);
     std::vector<Reach> reach(threads.count());
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       if (topology.nodes[i].leaf) leaves_.push_back(static_cast<std::uint32_t>(i));
     corners_.resize(leaves_.size());
     triangles_.resize(leaves_.size() * F);
     threads.share(leaves_.size(), [&](std::size_t leaf, std::size_t worker) {
-      put_node(leaves_[leaf], topology, fitting, reach[worker]);
-      put_triangles(leaf, topology, fitting, reach[worker]);
+      const std::uint32_t i = leaves_[leaf];
+      const WideTopology::Node& node = topology.nodes[i];
+      reach[worker].add(put_node(i, node, fitting.around(node.begin, node.end), whole));
+      nodes_[i].first = static_cast<std::uint32_t>(leaf * F);
+      reach[worker].add(
+          put_triangles(i, node, &topology.primitives[node.first], fitting, node.first));
     });
     threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
-      if (!topology.nodes[i].leaf) put_node(i, topology, fitting, reach[worker]);
+      const WideTopology::Node& node = topology.nodes[i];
+      if (!node.leaf)
+        reach[worker].add(put_node(i, node, fitting.around(node.begin, node.end), whole));
     });
     threads.share_out(nodes_.size(), 8, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t i = begin; i < end; ++i)
@@ -115,20 +143,125 @@ class WideHierarchy {
   /// The support map about the sphere's centre.
   const SupportMap& supports() const { return supports_; }
 
- private:
-  void put_node(std::size_t i, const WideTopology& topology, const NodeFitting<V>& fitting,
-                Reach& reach) {
-    const auto& node = topology.nodes[i];
-    assert(node.count <= F);
-    const auto [volume, sphere] = fitting.around(node.begin, node.end);
-    reach.add(volume);
-    const auto lanes = static_cast<std::uint16_t>((1u << node.count) - 1);
-    nodes_[i] = {volume, size_of(volume), node.first, lanes, node.leaf};
-    node_spheres_[i] = sphere;
+  /// To be called before children(i) or the corners of leaf i are read: makes them unless that has
+  /// been done. Any thread may call it. If it throws, for want of memory, they are not made.
+  [[gnu::always_inline]] void require(std::uint32_t i) const {
+    if (!is_done(nodes_[i].made, whole)) [[unlikely]]
+      make(i);
+  }
+  /// The number of nodes that have been made, while no traversal runs.
+  std::size_t made() const {
+    if (!unmade_) return size();
+    std::size_t count = 0;
+    for (std::vector<std::uint32_t> open{0}; !open.empty();) {
+      const Node& node = nodes_[open.back()];
+      open.pop_back();
+      if (!is_done(node.made, whole)) continue;
+      ++count;
+      for (int lane = 0; !node.leaf && node.lanes >> lane & 1; ++lane)
+        open.push_back(node.first + static_cast<std::uint32_t>(lane));
+    }
+    return count;
   }
 
-  /// Fills the lanes of an inner node. All nodes must have their volumes already.
-  void put_children(std::size_t i, std::uint32_t count) {
+ private:
+  static constexpr std::uint32_t whole = 1, nothing = 0;
+  /// Children of nodes of more triangles are bounded by their boxes alone: 20 ns a triangle, and
+  /// 300 with slabs, which for so many save up to a fifth of the tests.
+  static constexpr std::uint32_t large = TriangleColumns::large;
+
+  /// What a tree on demand is made of.
+  struct Unmade {
+    LocalMesh local;
+    WideTopology topology;
+  };
+
+  /// On demand.
+  WideHierarchy(LocalMesh&& local, std::uint32_t leaf_size, Threads& threads)
+      : nodes_(LargeAllocator<Node>(Paging::when_written)),
+        node_spheres_(LargeAllocator<NodeSphere>(Paging::when_written)),
+        siblings_(LargeAllocator<Siblings>(Paging::when_written)),
+        corners_(LargeAllocator<TriangleLanes<scalar, F>>(Paging::when_written)),
+        triangles_(LargeAllocator<std::uint32_t>(Paging::when_written)),
+        origin_(local.origin()),
+        sphere_(local.mesh(), local.box()),
+        supports_(local.mesh(), sphere_.centre, threads) {
+    const Eigen::AlignedBox3d box = local.box();
+    // Of a box [a, b] within one from -m to m, |a + b| / 2 + |b - a| / 2 is at most the root of
+    // |a|^2 + |b|^2, and so of 2 |m|^2. A slab-box is rounded twice.
+    reach_ = std::sqrt(2.0) * stable_norm(box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs())) *
+             (1 + 64 * unit_roundoff<scalar>)+std::numeric_limits<scalar>::min();
+    WideTopology topology = MortonOrder(local.mesh(), box, threads).wide(F, leaf_size);
+    nodes_.resize(topology.nodes.size());
+    node_spheres_.resize(topology.nodes.size());
+    siblings_.resize(topology.nodes.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      if (topology.nodes[i].leaf) leaves_.push_back(static_cast<std::uint32_t>(i));
+    corners_.resize(leaves_.size());
+    triangles_.resize(leaves_.size() * F);
+    const TriangleColumns::Box all{box.min(), box.max()};
+    put_node(0, topology.nodes[0], {V::columns::around(all), sphere_around(all)}, nothing);
+    unmade_ = std::make_shared<const Unmade>(Unmade{std::move(local), std::move(topology)});
+    nodes_[0].first = first_of(0);
+  }
+
+  [[gnu::noinline]] void make(std::uint32_t i) const {
+    if constexpr (FittedToColumns<V>) once(nodes_[i].made, whole, [&] { make_children(i); });
+  }
+  void make_children(std::uint32_t i) const {
+    const auto& [local, topology] = *unmade_;
+    const WideTopology::Node& node = topology.nodes[i];
+    const auto order = std::span(topology.primitives).subspan(node.begin, node.end - node.begin);
+    Threads alone;
+    if (node.leaf) {
+      put_triangles(i, node, order.data(), NodeFitting<V>(local.mesh(), order, {}, alone), 0);
+      return;
+    }
+    std::optional<NodeFitting<V>> fitting;
+    if (order.size() <= large) fitting.emplace(local.mesh(), order, Fit::published, alone);
+    for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
+      const WideTopology::Node& of = topology.nodes[child];
+      if (fitting) {
+        put_node(child, of, fitting->around(of.begin - node.begin, of.end - node.begin), nothing);
+      } else {
+        const TriangleColumns::Box box =
+            box_of(local.mesh(), order.subspan(of.begin - node.begin, of.end - of.begin));
+        put_node(child, of, {V::columns::around(box), sphere_around(box)}, nothing);
+      }
+      nodes_[child].first = first_of(child);
+    }
+    put_children(i, node.count);
+  }
+
+  static TriangleColumns::Box box_of(const TriangleMesh& mesh,
+                                     std::span<const std::uint32_t> triangles) {
+    TriangleColumns::Box box;
+    for (const std::uint32_t triangle : triangles)
+      for (const std::uint32_t v : mesh.triangles[triangle])
+        box.low = box.low.cwiseMin(mesh.vertices[v]),
+        box.high = box.high.cwiseMax(mesh.vertices[v]);
+    return box;
+  }
+
+  /// As in Node. All leaves of a tree on demand are at its end.
+  std::uint32_t first_of(std::uint32_t i) const {
+    const WideTopology::Node& node = unmade_->topology.nodes[i];
+    return node.leaf ? (i - leaves_[0]) * F : node.first;
+  }
+
+  /// Returns the volume's reach.
+  double put_node(std::size_t i, const WideTopology::Node& node,
+                  const std::pair<V, NodeSphere>& around, std::uint32_t made) const {
+    assert(node.count <= F);
+    const auto& [volume, sphere] = around;
+    const auto lanes = static_cast<std::uint16_t>((1u << node.count) - 1);
+    nodes_[i] = {volume, size_of(volume), node.first, lanes, node.leaf, made};
+    node_spheres_[i] = sphere;
+    return static_cast<double>(reach_of(volume));
+  }
+
+  /// Fills the lanes of an inner node. All its children must have their volumes already.
+  void put_children(std::size_t i, std::uint32_t count) const {
     for (int lane = 0; lane < F; ++lane) {
       // Vacant lanes repeat the last child.
       const Node& child =
@@ -138,28 +271,29 @@ class WideHierarchy {
     }
   }
 
-  /// Fills the lanes of a leaf.
-  void put_triangles(std::size_t leaf, const WideTopology& topology, const NodeFitting<V>& fitting,
-                     Reach& reach) {
-    const std::uint32_t i = leaves_[leaf];
-    const WideTopology::Node& node = topology.nodes[i];
-    nodes_[i].first = static_cast<std::uint32_t>(leaf * F);
+  /// Fills the lanes of leaf i, whose first triangle is number `at` of those that are fitted, and
+  /// returns their reach.
+  double put_triangles(std::uint32_t i, const WideTopology::Node& node,
+                       const std::uint32_t* indices, const NodeFitting<V>& fitting,
+                       std::uint32_t at) const {
+    const std::uint32_t first = nodes_[i].first;
     for (std::uint32_t lane = 0; lane < F; ++lane)
-      triangles_[leaf * F + lane] =
-          topology.primitives[node.first + std::min(lane, node.count - 1)];
-    reach.add(fitting.put_each(node.first, node.count, siblings_[i], corners_[leaf]));
+      triangles_[first + lane] = indices[std::min(lane, node.count - 1)];
+    return fitting.put_each(at, node.count, siblings_[i], corners_[first / F]);
   }
 
-  LargeVector<Node> nodes_;
-  LargeVector<NodeSphere> node_spheres_;
-  LargeVector<Siblings> siblings_;
-  LargeVector<TriangleLanes<scalar, F>> corners_;
-  LargeVector<std::uint32_t> triangles_;
+  // Of a tree on demand, what is not made is not written.
+  mutable LargeVector<Node> nodes_;
+  mutable LargeVector<NodeSphere> node_spheres_;
+  mutable LargeVector<Siblings> siblings_;
+  mutable LargeVector<TriangleLanes<scalar, F>> corners_;
+  mutable LargeVector<std::uint32_t> triangles_;
   std::vector<std::uint32_t> leaves_;  // the node of each leaf, in the order of corners_
   double reach_ = 0;
   Vec3<double> origin_;
   MeshSphere sphere_;
   SupportMap supports_;
+  std::shared_ptr<const Unmade> unmade_;
 };
 
 }  // namespace bvlab

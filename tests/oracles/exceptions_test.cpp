@@ -6,11 +6,11 @@
 
 #include <stdexcept>
 
+#include "hierarchies/geometry/once.hpp"
 #include "hierarchies/volumes/slab_box.hpp"
 #include "hierarchies/wide/obb_sibling_test.hpp"
 #include "hierarchies/wide/slab_box_sibling_test.hpp"
 #include "tests/oracles/every_strategy.hpp"
-#include "traversal/once.hpp"
 #include "traversal/world.hpp"
 
 namespace bvlab {

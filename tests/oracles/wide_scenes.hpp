@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <concepts>
 #include <memory>
 #include <random>
 
@@ -210,14 +211,22 @@ inline const std::vector<std::pair<Scene, Truth>>& motions_with_truth() {
 template <class V, int F, class Memory = NoMemory, class Kernel = SiblingsKernel>
 class PlayedWide {
  public:
-  PlayedWide(const Scene& scene, std::uint32_t leaf_size) : scene_(scene) {
-    for (const auto& mesh : scene.meshes)
-      hierarchies_.emplace_back(mesh, builds::BottomUpLocal::topology(mesh, 1), Fit::published,
-                                leaf_size);
+  using Hierarchy = typename Kernel::template Hierarchy<V, F>;
+
+  PlayedWide(const Scene& scene, std::uint32_t leaf_size)
+      : PlayedWide(scene, [leaf_size](const TriangleMesh& mesh) {
+          return Hierarchy(mesh, builds::BottomUpLocal::topology(mesh, 1), Fit::published,
+                           leaf_size);
+        }) {}
+  /// Over the trees that `hierarchy(mesh)` returns.
+  template <class MakeHierarchy>
+  requires std::invocable<MakeHierarchy, const TriangleMesh&>
+  PlayedWide(const Scene& scene, MakeHierarchy&& hierarchy, int threads = 1) : scene_(scene) {
+    for (const auto& mesh : scene.meshes) hierarchies_.push_back(hierarchy(mesh));
     const auto shapes = shapes_over(scene.meshes, hierarchies_, scene.frames[0].size());
     engine_ = std::make_unique<AllPairsOf<WidePairs<V, F, Memory, Kernel>>>(
         WidePairs<V, F, Memory, Kernel>(shapes),
-        all_object_pairs(static_cast<std::uint32_t>(shapes.size())));
+        all_object_pairs(static_cast<std::uint32_t>(shapes.size())), threads);
   }
 
   auto& engine() { return *engine_; }
@@ -276,7 +285,7 @@ class PlayedWide {
   }
 
   const Scene& scene_;
-  std::vector<typename Kernel::template Hierarchy<V, F>> hierarchies_;
+  std::vector<Hierarchy> hierarchies_;
   std::unique_ptr<AllPairsOf<WidePairs<V, F, Memory, Kernel>>> engine_;
 };
 

@@ -38,6 +38,7 @@ class SiblingsSieve {
   [[gnu::noinline]] void sift(const Trees& trees, const CornerTransform& a_to_b,
                               WorkQueue& triangles, ContactBatch& batch, Counter& counter) {
     const std::uint32_t b = triangles.last().b;
+    trees[1]->require(b);
     const auto& leaf = trees[1]->node(b);
     const auto& others = trees[1]->corners(leaf.first);
     const Corners<S> corner = corners_in_lanes<S>(others);

@@ -163,6 +163,7 @@ struct SiblingsKernel {
       const unsigned leaves = a.leaf & b.leaf;
       if constexpr (std::is_same_v<Sieve, ContactSieve> && tests_triangles)
         if (leaves) {
+          hierarchies_[0]->require(pair.a);
           counter.posed(1);
           return test(
               LeafStep{*this, pair, a, b, sieve.leaf_of_a(hierarchies_, a_to_b(), a.first)});
@@ -170,6 +171,7 @@ struct SiblingsKernel {
       const std::size_t side = larger(a, b);
       const std::array<const Node*, 2> nodes{&a, &b};
       const std::array<std::uint32_t, 2> node{pair.a, pair.b};
+      hierarchies_[side]->require(node[side]);
       test(Step{*this, side, node, leaves != 0, *nodes[side],
                 frame_.posed_node(1 - side, node[1 - side], counter)});
     }
@@ -194,7 +196,9 @@ struct SiblingsKernel {
           : pair_frame_(pair_frame),
             pair_(pair),
             lane_(pair.a % F),
-            leaf_(pair_frame.hierarchies_[1]->node(pair.b)) {}
+            leaf_(pair_frame.hierarchies_[1]->node(pair.b)) {
+        pair_frame.hierarchies_[1]->require(pair.b);
+      }
 
       std::uint64_t lanes() const { return leaf_.lanes; }
       NodePair numbers(int lane) const {
