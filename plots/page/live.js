@@ -97,7 +97,7 @@ const live = (() => {
       if (run.times.length > 30) run.times.shift();
       const [nu, nv, np, front, hits, nb] = self.engine.counts(run.number);
       run.counts = { nu, nv, np, front, hits };
-      curves.add(run, [nu, nv, np, front, hits, nb, run.times.reduce((a, b) => a + b) / run.times.length]);
+      curves.add(run, [nu, nv, np, front, hits, nb, [...run.times].sort((a, b) => a - b)[run.times.length >> 1]]);
     }
   }
   const playNow = () => { advance(), draw(); };
