@@ -97,7 +97,7 @@ const live = (() => {
       if (run.times.length > 30) run.times.shift();
       const [nu, nv, np, front, hits, nb] = self.engine.counts(run.number);
       run.counts = { nu, nv, np, front, hits };
-      curves.add(run, [nu, nv, np, front, hits, nb, run.times.reduce((a, b) => a + b) / run.times.length]);
+      curves.add(run, [nu, nv, np, front, hits, nb, [...run.times].sort((a, b) => a - b)[run.times.length >> 1]]);
     }
   }
   const playNow = () => { advance(), draw(); };
@@ -185,6 +185,7 @@ const live = (() => {
     const hits = new Set(runs.filter(run => run.number !== null && run.counts).map(run => run.counts.hits));
     element('agreement').textContent = hits.size > 1 ? 'They find different answers: that is a fault; please report it.'
       : runs.length > 1 ? 'All find the same.' : '';
+    for (const run of runs) run.numbers.innerHTML = run.number === null ? '' : curves.said(run);
     self.drawn = true;
   }
   function sentence() {
@@ -276,7 +277,8 @@ const live = (() => {
   function select(row, label, values, value, act) {
     const made = document.createElement('select');
     made.setAttribute('aria-label', label);
-    for (const each of values) made.append(new Option(each, each, false, each === value));
+    made.title = label;
+    for (const each of values) made.append(new Option(typeof each === 'number' ? `fan-out ${each}` : each, each, false, each === value));
     made.addEventListener('change', () => act(made.value));
     row.append(made);
   }
@@ -309,7 +311,7 @@ const live = (() => {
       });
       run.row.append(away);
     }
-    run.row.append(run.said);
+    run.row.append(run.said, run.numbers);
   }
   /** Another strategy, volume, kernel, fan-out or query: the motion is played again up to here, so that numbers are
    *  those of one strategy from the first frame on. By hand there is no motion: it goes on from here. */
@@ -323,7 +325,7 @@ const live = (() => {
     const used = runs.map(run => run.colour), colour = colours.map(name => look.colour(name)).find(each => !used.includes(each));
     if (!colour) return;
     const run = { strategy: 'margins', volume: 'sphere', kernel: 'gathered', fanOut: 2, ...what, colour, number: null, past: [], times: [],
-      row: document.createElement('p'), said: document.createElement('small') };
+      row: document.createElement('p'), said: document.createElement('small'), numbers: document.createElement('span') };
     run.row.className = 'row run';
     element('runs').append(run.row);
     runs.push(run);
@@ -375,7 +377,6 @@ const live = (() => {
     if (data.objects > 1) choose(touching.size > 0 ? data.pairOf([...touching][0]) : [0, 1]);
     scene.lookAt(null);
     connect();
-    element('legend').textContent = 'Orange bodies touch. Drag one.';
     self.ready = true;
     requestAnimationFrame(tick);
   }

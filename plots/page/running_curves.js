@@ -13,20 +13,22 @@ const curves = (() => {
     document.getElementById('curves').append(box);
     return { box, canvas: box.querySelector('canvas'), output: box.querySelector('output') };
   });
+  const rough = new Intl.NumberFormat('en', { maximumSignificantDigits: 3 });
+  const format = (value, k) => (kinds[k][1] === 'ms' ? rough : count).format(value);
   const known = values => values.map(each => each ?? NaN);
 
+  const lastOf = (run, k) => run?.past.at(-1)?.[k] ?? NaN;
+
   function drawOne({ box, canvas, output }, k, runs) {
-    const last = runs[0]?.past.at(-1)?.[k];
-    box.hidden = kinds[k][0] === 'hits' || last === undefined || Number.isNaN(last);
     if (box.hidden) return;
-    output.textContent = count.format(last);
+    output.textContent = format(lastOf(runs[0], k), k);
     const { width, height } = canvas.getBoundingClientRect(), scale = devicePixelRatio;
     canvas.width = Math.max(1, Math.round(width * scale)), canvas.height = Math.max(1, Math.round(height * scale));
     const pen = canvas.getContext('2d');
     const top = Math.max(...runs.map(run => run.past.reduce((a, values) => Math.max(a, values[k]), 0))) || 1;
     pen.fillStyle = look.colour('faint');
     pen.font = `${10 * scale}px sans-serif`;
-    pen.fillText(count.format(top), 2 * scale, 9 * scale);
+    pen.fillText(format(top, k), 2 * scale, 9 * scale);
     pen.lineWidth = 1.25 * scale;
     const across = Math.max(120, ...runs.map(run => run.past.length)) - 1;
     for (const run of [...runs].reverse()) {
@@ -44,6 +46,13 @@ const curves = (() => {
       run.past.push(known(values));
       if (run.past.length > most) run.past.shift();
     },
-    draw: runs => boxes.forEach((box, k) => drawOne(box, k, runs)),
+    draw(runs) {
+      // What is hidden leaves its room to the others, which is measured after that.
+      boxes.forEach(({ box }, k) => { box.hidden = kinds[k][0] === 'hits' || Number.isNaN(lastOf(runs[0], k)); });
+      boxes.forEach((box, k) => drawOne(box, k, runs));
+    },
+    /** A run's last frame, as HTML. */
+    said: run => Number.isNaN(lastOf(run, 1)) ? ''
+      : [1, 2, 3, 6].map(k => `${kinds[k][0]} ${format(lastOf(run, k), k)}`).join(' · ') + ' ms',
   };
 })();

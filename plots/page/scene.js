@@ -59,13 +59,14 @@ const scene = (() => {
     for (const child of group.children) child.frustumCulled = false, child.renderOrder = 1;
     group.visible = false;
     world.add(group);
-    return { name, group, face, line };
+    return { name, group, face, line, opacity: face.opacity };
   });
 
-  // Segments between points in the world, over everything else.
+  // Segments between points in the world, over everything else: rods, since WebGL draws lines one pixel wide.
+  // Transparent, though solid, since what is transparent is drawn after the rest.
   const lines = ['contact', 'nearest'].map(name => {
-    const material = new THREE.LineBasicMaterial({ depthTest: false });
-    const drawn = new THREE.LineSegments(new THREE.BufferGeometry(), material);
+    const material = new THREE.MeshLambertMaterial({ color: 0, transparent: true, depthTest: false, side: THREE.DoubleSide });
+    const drawn = new THREE.Mesh(new THREE.BufferGeometry(), material);
     drawn.frustumCulled = false, drawn.renderOrder = 3;
     world.add(drawn);
     return { name, drawn, material };
@@ -74,13 +75,24 @@ const scene = (() => {
   function showLines(name, corners) {
     const { drawn } = lines.find(each => each.name === name);
     if (drawn.geometry.attributes.position?.count > 0 || corners.length > 0) changed = true;
+    const thick = Math.max(...geometries.map(geometry => geometry.boundingSphere.radius)) / 90, sides = [];
+    for (let k = 0; k + 5 < corners.length; k += 6) {
+      const from = corners.slice(k, k + 3), to = corners.slice(k + 3, k + 6), [u, v] = across(unit3(add3(to, from, -1)));
+      const edges = [0, 1, 2].map(e => 2 * Math.PI * e / 3).map(angle =>
+        [from, to].map(end => add3(add3(end, u, thick * Math.cos(angle)), v, thick * Math.sin(angle))));
+      edges.forEach(([a, b], e) => {
+        const [c, d] = edges[(e + 1) % 3];
+        sides.push(...a, ...c, ...b, ...b, ...c, ...d);
+      });
+    }
     drawn.geometry.dispose();
     drawn.geometry = new THREE.BufferGeometry();
-    drawn.geometry.setAttribute('position', new THREE.BufferAttribute(Float32Array.from(corners), 3));
+    drawn.geometry.setAttribute('position', new THREE.BufferAttribute(Float32Array.from(sides), 3));
+    drawn.geometry.computeVertexNormals();
   }
 
   function colours() {
-    for (const { name, material } of lines) material.color.set(look.colour(name));
+    for (const { name, material } of lines) material.emissive.set(look.colour(name));
     for (const name of names)
       for (const faded of [false, true]) materials[name + faded].color.set(look.colour(name));
     for (const { name, face, line } of shown) face.color.set(look.colour(name)), line.color.set(look.colour(name));
@@ -119,9 +131,12 @@ const scene = (() => {
 
   /** Draws these nodes' volumes of the pair's two bodies (or nothing); nodes of both that are lit come after. */
   function showVolumes(pair, nodes) {
-    shown.forEach(({ group }, side) => {
+    shown.forEach(({ group, face, line, opacity }, side) => {
       group.visible = pair !== null && (nodes[side]?.length ?? 0) > 0;
       if (!group.visible) return;
+      // Bodies and contacts are to be seen through them; what is lit, over the rest.
+      const many = nodes[side].length;
+      face.opacity = opacity * Math.min(1, 8 / many), line.opacity = 0.75 * Math.max(side < 2 ? 0.06 : 0.2, Math.min(1, 20 / many));
       const i = pair[side % 2], body = bodies[i];
       const { corners, normals, lines } = volumes.shape(data.meshIndexOf(i), nodes[side], volumes.realigned ? rowsOf(body) : null);
       const [faces, outline] = group.children;

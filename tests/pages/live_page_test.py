@@ -66,8 +66,9 @@ class LivePages(unittest.TestCase):
 
 class SaysWhatTheProgramSays(LivePages):
     def test_numbers_of_a_motion(self):
-        """For each strategy and query the sums over all frames of N_u, N_v, N_p, and hits: to the digit, where the page
-        has as many lanes as the program."""
+        """For each strategy and query the sums over all frames of N_u, N_v, N_p, and hits. Where the page has as many lanes as
+        the program, counts are the same to the digit, but for searches that end early: these visit in an order that depends on the
+        processor (experiments/live/README.md)."""
         trace, lanes = self.folder / "trace.npy", None
         strategies = {line.split()[0] for line in run(BVLAB, "list", "strategies").stdout.splitlines() if line}
         compiled = [name for name in ("recursive", "separation-list", "deferred", "raise", "margins") if name in strategies]
@@ -85,7 +86,8 @@ class SaysWhatTheProgramSays(LivePages):
                                   "distance": lambda: (answers == 0).sum()}[query]()
                         self.assertEqual(hits, wanted)
                         if lanes == lanes_of_the_program():
-                            self.assertEqual([n_u, n_v, n_p], [totals["n_u"], totals["n_v"], totals["n_p"]])
+                            for found_here, known in zip((n_u, n_v, n_p), (totals["n_u"], totals["n_v"], totals["n_p"])):
+                                self.assertAlmostEqual(found_here, known, delta=0 if query == "contacts" else 0.005 * known)
                 self.assertNotIn("fault", browser.text("#agreement"))
 
     def test_a_scripted_drag(self):
@@ -156,7 +158,8 @@ class SaysWhatTheProgramSays(LivePages):
     def test_entries_that_were_tested_are_lit(self):
         """A list tests all of its entries where nothing touches; margins, of bodies that hardly move, few."""
         poses = np.zeros((30, 2, 7))
-        poses[..., 3], poses[:, 1, 0] = 1, 2.2 + np.arange(30) * 1e-4
+        # One over the other: their spheres overlap, so that the front is below the roots.
+        poses[..., 3], poses[:, 1, 2] = 1, 0.7 + np.arange(30) * 1e-4
         np.save(self.folder / "slow.npy", poses)
         with Browser() as browser:
             browser.open(self.live("--trace", self.folder / "slow.npy", "--run", "separation-list", "--run", "margins"))
@@ -279,7 +282,8 @@ class InAnX3dBrowser(LivePages):
 
 
 class IsFast(LivePages):
-    """Times are generous: other work may run beside. They are a browser's that draws nothing meanwhile."""
+    """Times are generous: other work may run beside. They are medians over frames of a browser that draws nothing meanwhile:
+    a mean would hold the frames in which the browser did not run."""
 
     def milliseconds(self, objects, side, *words):
         done = run(BVLAB, "scene", "random-walk", "--objects", objects, "--frames", 60, "--side", side, "--shape", "torus:500", "--out", self.folder / "many.npy", "--meshes", self.folder / "many")
@@ -295,7 +299,7 @@ class IsFast(LivePages):
 
     def test_nine_bodies_all_contacts(self):
         took = self.milliseconds(9, "4body", "--run", "margins,slab-box,siblings", "--query", "contacts")
-        print(f"nine bodies, contacts: {took:.3f} ms; loaded in {self.loaded:.2f} s", file=sys.stderr)
+        print(f"nine bodies, contacts: {took:.3f} ms; ready in {self.loaded:.2f} s", file=sys.stderr)
         self.assertLess(took, 1 * SLACK)
 
     def test_a_hundred_bodies(self):
@@ -326,17 +330,17 @@ PLACE_OF_BODY = """
 const { x, y } = scene.placeOf(0);
 return [x, y];
 """
-# The engine's part of a frame: the first run, played through the motion, of which the first ten frames warm up.
+# The engine's part of a frame, the median: the first run, played through the motion, of which the first ten frames warm up.
 MILLISECONDS = """
 live.seek(0);
 const { number } = live.runs[0];
-let sum = 0;
+const took = [];
 for (let f = 1; f < data.motionFrames; ++f) {
   const before = performance.now();
   live.engine.setPoses(data.frameOf(f)), live.engine.play(number);
-  if (f > 10) sum += performance.now() - before;
+  if (f > 10) took.push(performance.now() - before);
 }
-return sum / (data.motionFrames - 11);
+return took.sort((a, b) => a - b)[took.length >> 1];
 """
 
 if __name__ == "__main__":
