@@ -4,6 +4,7 @@
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
