@@ -77,8 +77,9 @@ struct SceneGraph {
 /// What assimp adds at the root to turn a file's axes and unit into its own.
 enum class Conversion { none, of_assimp };
 
-/// By assimp, from a file (which may refer to others beside it) and from memory.
-SceneGraph read_with_assimp(const std::filesystem::path& path);
+/// By assimp, from a file of these bytes (which may refer to others beside it) and from memory. It
+/// runs in a process of its own (experiments/files/guarded.hpp).
+SceneGraph read_with_assimp(const std::filesystem::path& path, std::string_view bytes);
 SceneGraph parse_with_assimp(std::string_view bytes, const std::string& name,
                              Conversion conversion = Conversion::none);
 

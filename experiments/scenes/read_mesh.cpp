@@ -55,7 +55,7 @@ std::string bytes_of(const std::filesystem::path& path, const ReadOptions& optio
 SceneGraph scene_of(const std::filesystem::path& path, std::string_view bytes) {
   // A pipe is read only once; of texts with a byte-order mark assimp does not read all.
   const bool is_file = std::filesystem::is_regular_file(path) && !has_mark(bytes);
-  return is_file ? read_with_assimp(path) : parse_with_assimp(bytes, path.string());
+  return is_file ? read_with_assimp(path, bytes) : parse_with_assimp(bytes, path.string());
 }
 
 void ReadOptions::say_on_standard_error(const std::string& line) {

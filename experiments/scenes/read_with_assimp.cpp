@@ -8,11 +8,15 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <csignal>
+#include <cstring>
 
+#include "experiments/files/guarded.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/mesh_formats.hpp"
 #include "experiments/scenes/polygon.hpp"
 #include "experiments/scenes/text_encoding.hpp"
+#include "experiments/scenes/text_scanner.hpp"
 
 namespace bvlab {
 namespace {
@@ -140,7 +144,118 @@ SceneGraph gathered(const Assimp::Importer& importer, const aiScene* scene, cons
   return Gatherer(*scene, name).gathered(root);
 }
 
-}  // namespace
+/// A scene as bytes, from the process that reads it to this one.
+class Packed {
+ public:
+  Packed() = default;
+  explicit Packed(std::string bytes) : bytes_(std::move(bytes)) {}
+
+  template <class T>
+  void put(const T* values, std::size_t count) {
+    bytes_.append(reinterpret_cast<const char*>(&count), sizeof count);
+    bytes_.append(reinterpret_cast<const char*>(values), count * sizeof *values);
+  }
+  template <class List>
+  void put(const List& list) {
+    put(list.data(), list.size());
+  }
+  template <class List>
+  void take(List& list) {
+    std::size_t count;
+    copy(&count, sizeof count);
+    list.resize(count);
+    copy(list.data(), count * sizeof list[0]);
+  }
+  bool is_empty() const { return at_ == bytes_.size(); }
+  std::string bytes() && { return std::move(bytes_); }
+
+ private:
+  void copy(void* to, std::size_t size) {
+    if (size > 0) std::memcpy(to, bytes_.data() + at_, size);
+    at_ += size;
+  }
+
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
+
+std::string packed(const SceneGraph& scene) {
+  Packed packed;
+  packed.put(std::vector<std::size_t>{scene.meshes.size()});
+  for (const TriangleMesh& mesh : scene.meshes) {
+    packed.put(mesh.vertices);
+    packed.put(mesh.triangles);
+  }
+  for (const SceneNode& node : scene.nodes) {
+    packed.put(node.name);
+    packed.put(node.meshes);
+    packed.put(node.to_world.data(), 12);
+  }
+  return std::move(packed).bytes();
+}
+
+SceneGraph unpacked(std::string bytes) {
+  Packed packed(std::move(bytes));
+  std::vector<std::size_t> meshes;
+  packed.take(meshes);
+  SceneGraph scene;
+  scene.meshes.resize(meshes.at(0));
+  for (TriangleMesh& mesh : scene.meshes) {
+    packed.take(mesh.vertices);
+    packed.take(mesh.triangles);
+  }
+  while (!packed.is_empty()) {
+    SceneNode& node = scene.nodes.emplace_back();
+    std::vector<double> numbers;
+    packed.take(node.name);
+    packed.take(node.meshes);
+    packed.take(numbers);
+    node.to_world = Eigen::Map<const Transformation>(numbers.data());
+  }
+  return scene;
+}
+
+/// Throws Unusable where a list of indices of a DAE holds anything else: at other bytes assimp does
+/// not go on, and of a number below 0 it makes 0.
+void require_indices(std::string_view bytes, const std::string& name) {
+  if (bytes.substr(0, 4096).find("<COLLADA") == bytes.npos) return;
+  for (const std::string_view tag : {"<p>", "<h>", "<v>", "<vcount>"})
+    for (std::size_t at = 0; (at = bytes.find(tag, at)) != bytes.npos;) {
+      at += tag.size();
+      const std::size_t wrong = bytes.find_first_not_of("0123456789 \t\r\n", at);
+      if (wrong == bytes.npos || bytes[wrong] == '<') continue;
+      const std::size_t end = bytes.find_first_of("< \t\r\n", wrong);
+      const auto line = 1 + std::count(bytes.begin(), bytes.begin() + static_cast<long>(wrong), '\n');
+      throw Unusable(name, "line " + std::to_string(line) + ": " + std::string(tag) + ": " +
+                               TextScanner::shown(bytes.substr(wrong, end - wrong)) +
+                               " is not an index");
+    }
+}
+
+/// What `read` makes of a file of so many bytes. assimp's readers of some formats crash or do not
+/// end where a file is damaged.
+template <class Read>
+SceneGraph read_guarded(const std::string& name, std::size_t size, const Read& read) {
+  // Refused files begin with another letter than those that were read.
+  const auto work = [&] {
+    try {
+      return 's' + packed(read());
+    } catch (const Unusable& refusal) {
+      return 'u' + std::string(refusal.what());
+    }
+  };
+  constexpr std::size_t mega = 1 << 20;
+  const Guard guard{static_cast<unsigned>(30 + size / mega), 2048 * mega + 200 * size};
+  Guarded found = guarded(guard, work);
+  if (found.signal != 0)
+    throw Unusable(name, found.signal == SIGXCPU || found.signal == SIGKILL
+                             ? "assimp does not come to its end: damaged?"
+                             : "assimp breaks off: damaged?");
+  if (found.bytes.starts_with('u')) throw Unusable(found.bytes.substr(1));
+  return unpacked(found.bytes.substr(1));
+}
+
+/}  // namespace
 
 void SceneGraph::append(TriangleMesh& result, const SceneNode& node, const Transformation& to,
                         const std::string& name) const {
@@ -166,24 +281,23 @@ TriangleMesh SceneGraph::joined(const std::string& name) const {
   return result;
 }
 
-// No post-processing: all of assimp's steps may merge, drop or reorder.
-SceneGraph read_with_assimp(const std::filesystem::path& path) {
-  Assimp::Importer importer;
-  importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
-  const aiScene* scene = importer.ReadFile(path.string(), 0);
-  return gathered(importer, scene, path.string(), Conversion::none);
+SceneGraph read_with_assimp(const std::filesystem::path& path, std::string_view bytes) {
+  require_indices(bytes, path.string());
+  return imported(path.string(), bytes.size(), Conversion::none, [&](Assimp::Importer& importer) {
+    return importer.ReadFile(path.string(), 0);
+  });
 }
 
 SceneGraph parse_with_assimp(std::string_view bytes, const std::string& name,
                              Conversion conversion) {
   std::string room;
   if (has_mark(bytes)) bytes = as_utf8(bytes, room, name);
-  Assimp::Importer importer;
-  importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
+  require_indices(bytes, name);
   const std::string extension = std::filesystem::path(name).extension().string();
   const char* hint = extension.empty() ? "" : extension.c_str() + 1;
-  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, hint);
-  return gathered(importer, scene, name, conversion);
+  return imported(name, bytes.size(), conversion, [&](Assimp::Importer& importer) {
+    return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, hint);
+  });
 }
 
 }  // namespace bvlab

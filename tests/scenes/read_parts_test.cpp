@@ -3,8 +3,10 @@
 /// axes nor unit.
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <string>
 
+#include "experiments/files/guarded.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 
@@ -109,6 +111,66 @@ TEST(ReadParts, NodesOfAScene) {
   std::string without_a_name = dae("");
   without_a_name.replace(without_a_name.find(" name=\"part\""), 12, "");
   EXPECT_EQ(parse_parts(without_a_name, "a.dae").at(0).name, "n");
+}
+
+std::string refusal(const std::string& bytes, const std::string& name) {
+  try {
+    parse_mesh(bytes, name);
+    return "";
+  } catch (const Unusable& error) {
+    return error.what();
+  }
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+/// assimp 5.2 does not go on at what is no digit, takes numbers below 0 for 0, and crashes without
+/// a count.
+TEST(ReadParts, DamagedLists) {
+  const std::string lists = "2 1 0 1 3";
+  for (const std::string wrong : {"#", "x", "1.0", "\xff", "-1", "-", "+", "1,2", "[", "0x1"})
+    EXPECT_EQ(refusal(replaced(dae(""), lists, "2 " + wrong + " 0 1 3"), "a.dae"),
+              "a.dae: line 10: <p>: '" + (wrong == "\xff" ? "?" : wrong) + "' is not an index");
+  EXPECT_EQ(refusal(replaced(dae(""), lists, "2\n1\r\n\t0 1 3"), "a.dae"), "");
+  EXPECT_TRUE(refusal(replaced(dae(""), lists, "2 99 0 1 3"), "a.dae").starts_with("a.dae: "));
+  EXPECT_EQ(refusal(replaced(dae(""), "id=\"pa\" count", "id=\"pa\" cosnt"), "a.dae"),
+            "a.dae: assimp breaks off: damaged?");
+}
+
+/// However a scene's nodes refer to each other, and whatever it counts, reading it ends.
+TEST(ReadParts, CyclesAndHugeCounts) {
+  for (const char* nodes : {R"([{"mesh": 0, "children": [0]}])",
+                            R"([{"mesh": 0, "children": [1]}, {"mesh": 0, "children": [0]}])"})
+    EXPECT_NE(refusal(gltf("[0]", nodes), "a.gltf"), "") << nodes;
+  const std::string one = gltf("[0]", R"([{"mesh": 0}])");
+  for (const char* count : {"4", "4000000000", "-1", "1e300"})
+    for (const char* what : {"\"count\": 3", "\"byteLength\": 36}],"})
+      EXPECT_NE(refusal(replaced(one, what, replaced(what, what[1] == 'c' ? "3" : "36", count)),
+                        "a.gltf"),
+                "")
+          << what << count;
+  const std::string instance = "<instance_node url=\"#n\"/>";
+  EXPECT_NE(refusal(dae("", instance), "a.dae"), "");
+  for (const std::string& text : {one, dae("")})
+    for (std::size_t length = 0; length + 10 < text.size(); length += 37)
+      EXPECT_NE(refusal(text.substr(0, length), &text == &one ? "a.gltf" : "a.dae"), "");
+}
+
+TEST(Guarded, TellsHowWorkEnded) {
+  const Guard guard{1, 1 << 28};
+  const std::string large(3000000, 'x');
+  EXPECT_EQ(guarded(guard, [&] { return large; }).bytes, large);
+  EXPECT_EQ(guarded(guard, [] { return std::string(); }).signal, 0);
+  const auto endless = [] {
+    for (volatile int i = 0;; i = i + 1) {
+    }
+    return std::string();
+  };
+  EXPECT_EQ(guarded(guard, endless).signal, SIGXCPU);
+  EXPECT_EQ(guarded(guard, [] { return raise(SIGSEGV), std::string(); }).signal, SIGSEGV);
+  EXPECT_EQ(guarded(guard, [] { return std::string(std::size_t{1} << 30, 'x'); }).signal, SIGABRT);
 }
 
 TEST(ReadParts, MarksAndEncodings) {
