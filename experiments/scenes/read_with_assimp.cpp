@@ -225,7 +225,8 @@ void require_indices(std::string_view bytes, const std::string& name) {
       const std::size_t wrong = bytes.find_first_not_of("0123456789 \t\r\n", at);
       if (wrong == bytes.npos || bytes[wrong] == '<') continue;
       const std::size_t end = bytes.find_first_of("< \t\r\n", wrong);
-      const auto line = 1 + std::count(bytes.begin(), bytes.begin() + static_cast<long>(wrong), '\n');
+      const auto line =
+          1 + std::count(bytes.begin(), bytes.begin() + static_cast<long>(wrong), '\n');
       throw Unusable(name, "line " + std::to_string(line) + ": " + std::string(tag) + ": " +
                                TextScanner::shown(bytes.substr(wrong, end - wrong)) +
                                " is not an index");
@@ -255,7 +256,18 @@ SceneGraph read_guarded(const std::string& name, std::size_t size, const Read& r
   return unpacked(found.bytes.substr(1));
 }
 
-/}  // namespace
+/// No post-processing: all of assimp's steps may merge, drop or reorder.
+template <class Import>
+SceneGraph imported(const std::string& name, std::size_t size, Conversion conversion,
+                    const Import& import) {
+  return read_guarded(name, size, [&] {
+    Assimp::Importer importer;
+    importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
+    return gathered(importer, import(importer), name, conversion);
+  });
+}
+
+}  // namespace
 
 void SceneGraph::append(TriangleMesh& result, const SceneNode& node, const Transformation& to,
                         const std::string& name) const {
@@ -283,9 +295,8 @@ TriangleMesh SceneGraph::joined(const std::string& name) const {
 
 SceneGraph read_with_assimp(const std::filesystem::path& path, std::string_view bytes) {
   require_indices(bytes, path.string());
-  return imported(path.string(), bytes.size(), Conversion::none, [&](Assimp::Importer& importer) {
-    return importer.ReadFile(path.string(), 0);
-  });
+  return imported(path.string(), bytes.size(), Conversion::none,
+                  [&](Assimp::Importer& importer) { return importer.ReadFile(path.string(), 0); });
 }
 
 SceneGraph parse_with_assimp(std::string_view bytes, const std::string& name,
