@@ -224,11 +224,12 @@ void require_indices(std::string_view bytes, const std::string& name) {
       at += tag.size();
       const std::size_t wrong = bytes.find_first_not_of("0123456789 \t\r\n", at);
       if (wrong == bytes.npos || bytes[wrong] == '<') continue;
+      const std::size_t begin = bytes.find_last_of("> \t\r\n", wrong) + 1;
       const std::size_t end = bytes.find_first_of("< \t\r\n", wrong);
       const auto line =
           1 + std::count(bytes.begin(), bytes.begin() + static_cast<long>(wrong), '\n');
       throw Unusable(name, "line " + std::to_string(line) + ": " + std::string(tag) + ": " +
-                               TextScanner::shown(bytes.substr(wrong, end - wrong)) +
+                               TextScanner::shown(bytes.substr(begin, end - begin)) +
                                " is not an index");
     }
 }

@@ -132,7 +132,7 @@ TEST(ReadParts, DamagedLists) {
   const std::string lists = "2 1 0 1 3";
   for (const std::string wrong : {"#", "x", "1.0", "\xff", "-1", "-", "+", "1,2", "[", "0x1"})
     EXPECT_EQ(refusal(replaced(dae(""), lists, "2 " + wrong + " 0 1 3"), "a.dae"),
-              "a.dae: line 10: <p>: '" + (wrong == "\xff" ? "?" : wrong) + "' is not an index");
+              "a.dae: line 9: <p>: '" + (wrong == "\xff" ? "?" : wrong) + "' is not an index");
   EXPECT_EQ(refusal(replaced(dae(""), lists, "2\n1\r\n\t0 1 3"), "a.dae"), "");
   EXPECT_TRUE(refusal(replaced(dae(""), lists, "2 99 0 1 3"), "a.dae").starts_with("a.dae: "));
   EXPECT_EQ(refusal(replaced(dae(""), "id=\"pa\" count", "id=\"pa\" cosnt"), "a.dae"),
