@@ -83,12 +83,12 @@ using Recommended =
     MarginsOver<WideTrees<SlabBox<float>, native_fan_out<float>, SiblingsKernel,
                           builds::TopDownSurfaceArea, Fit::published, native_fan_out<float>>>;
 
-/// The same over trees that are made on demand, for runs that may end before whole ones are repaid.
-/// The first verdict of two tori of 8000 to 40 000 triangles takes about a tenth of the time; later
-/// ones make 1.4 to 1.8 times the tests from the roots, and 2 to 8 times those with margins. Pairs,
-/// hierarchies and shapes have the types of `Recommended`; meshes must outlive hierarchies.
+/// Slab-boxes in trees that are made on demand, from the roots, for runs that end before whole ones
+/// are repaid. The first verdict of two tori of 8000 to 40 000 triangles takes about a tenth of the
+/// time; later ones make 1.4 to 1.8 times the tests, and 2 to 8 times with margins. Hierarchies and
+/// shapes have the types of `Recommended`; meshes must outlive hierarchies.
 using RecommendedOnDemand =
-    MarginsOver<WideTrees<SlabBox<float>, native_fan_out<float>, SiblingsKernel, builds::OnDemand,
+    RootsOf<WideTrees<SlabBox<float>, native_fan_out<float>, SiblingsKernel, builds::OnDemand,
                           Fit::published, native_fan_out<float>>>;
 
 }  // namespace bvlab

@@ -13,9 +13,9 @@
 ///
 /// with the N counted on the samples and the C below, decides (N_f: entries of fronts), together
 /// with the cost of building the trees. A candidate is tried only if the rest of the run can repay
-/// that: short runs take slab-boxes made on demand (RecommendedOnDemand). Counts do not depend on the machine's
-/// load, so the choice is repeatable. Where the motion is unknown, the shape and the number of the
-/// triangles decide between these and oriented boxes, and margins are kept.
+/// that: short runs take slab-boxes made on demand (RecommendedOnDemand). Counts do not depend on the
+/// load of the machine, so the choice is repeatable. Where the motion is unknown, the shape and the number of the
+/// triangles decide, and margins are kept.
 #pragma once
 
 #include <algorithm>
@@ -206,7 +206,7 @@ template <class Visit>
 decltype(auto) with_recommended(std::span<const TriangleMesh> meshes, Visit&& visit) {
   if (triangles_of(meshes) <= many_triangles && elongation(meshes) >= long_triangles)
     return visit(std::type_identity<RecommendedOriented>());
-  return visit(std::type_identity<RecommendedOnDemand>());
+  return visit(std::type_identity<Recommended>());
 }
 
 /// One hierarchy for each mesh. A type for each kind of trees: two kinds may have the same

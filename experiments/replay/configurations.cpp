@@ -38,7 +38,7 @@ Variant as(Variant variant) {
 /// are sought by the volumes of triangles, which rectangle swept spheres bound best.
 void set_recommended(Variant& variant) {
   if (variant.query != "distance") {
-    variant = as<RecommendedOnDemand>(variant);
+    variant = as<Recommended>(variant);
     return;
   }
   using Best = RecommendedDistances;
@@ -63,8 +63,8 @@ constexpr Configuration list[] = {
      "kernel siblings, built top-down-surface-area, leaves as large as a register; (2) obb, kernel "
      "mixed, built bottom-up, fit tight, leaves of 4; either of them with margins or recursive; "
      "with margins (3) slab-box, kernel siblings, built bottom-up, leaves of 4; (4) obb, kernel "
-     "siblings, built bottom-up, fit tight, leaves of 8. In short runs (1), built on-demand. Where the motion is not "
-     "known, that, or (2) for few and long triangles. distance: by the motion one of (1), (2), and rss in binary "
+     "siblings, built bottom-up, fit tight, leaves of 8. In short runs slab-box, built on-demand, recursive. Where the motion is not "
+     "known, (1), or (2) for few and long triangles. distance: by the motion one of (1), (2), and rss in binary "
      "trees, frame body, built bottom-up, fit tight, leaves of 1, witness; the last where the motion is not known",
      set_recommended},
     {"as-published",
@@ -102,7 +102,7 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes) {
             "spheres bound best"};
   if (triangles_of(meshes) > many_triangles)
     return {variant, "many triangles (" + std::to_string(triangles_of(meshes)) +
-                         "): slab-boxes are made on demand"};
+                         "): slab-boxes are built fastest"};
   const double elongated = elongation(meshes);
   std::ostringstream measured;
   measured << std::setprecision(3) << elongated;
