@@ -80,10 +80,11 @@ class Reporter {
     std::mutex mutex;
     std::unique_lock lock(mutex);
     const auto every = std::chrono::duration<double>(every_);
-    for (bool has_spoken = false;; has_spoken = true) {
+    for (bool has_spoken = false;;) {
       wake_.wait_for(lock, stop, every, [] { return false; });
       if (stop.stop_requested() && !has_spoken) return;
-      std::fprintf(stderr, "bvlab: %s\n", text().c_str());
+      // Not before it is known how many there are: figures are checked first.
+      if (all_ > 0) std::fprintf(stderr, "bvlab: %s\n", text().c_str()), has_spoken = true;
       if (stop.stop_requested()) return;
     }
   }

@@ -338,7 +338,7 @@ class Values(ProgramTest):
         for volume in names_of("volumes"):
             if volume in ("sphere", "aabb") or volume.startswith("kdop"):
                 self.refuse(*self.replay, "--volume", volume, "--fit", "tight", mentions=["--fit tight", volume])
-                self.refuse("predict", *self.replay[1:], "--volume", volume, "--fit", "tight", mentions=["--fit tight", volume])
+                self.refuse("predict", "--mesh", "mesh.off", "--trace", "poses.npy", "--volume", volume, "--fit", "tight", mentions=["--fit tight", volume])
 
     def test_whole_numbers(self):
         wrong = ("0", "-1", "-4294967295", "-18446744073709551615", *NOT_NUMBERS)
