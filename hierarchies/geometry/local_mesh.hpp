@@ -61,7 +61,7 @@ class LocalMesh {
   LocalMesh() = default;
 
   static Vec3<double> origin_of(const Vec3<double>& low, const Vec3<double>& high) {
-    const Vec3<double> centre = low / 2 + high / 2;
+    Vec3<double> centre = low / 2 + high / 2;
     const double longest = (high - low).maxCoeff();
     if (!(centre.cwiseAbs().maxCoeff() > 16 * longest)) return Vec3<double>::Zero();
     if (longest == 0) return centre;

@@ -76,7 +76,10 @@ class FrontRecord {
     if constexpr (kept == Keeps::list)
       if (sweeps_) return sweep_all(traversal);
     if constexpr (kept == Keeps::gaps)
-      if (sweeps_ && !(worn_ = find_due(traversal))) return sweep_due(traversal);
+      if (sweeps_) {
+        worn_ = find_due(traversal);
+        if (!worn_) return sweep_due(traversal);
+      }
     if (worn_) start_.front->clear(), start_.front = nullptr, sweeps_ = false;
     traversal.pair().start(start_.expect);
     return false;
