@@ -171,7 +171,7 @@ struct SeenFromTheOther {
       apart |= any_of(SiblingTest::template overlap<S>(turned, change, lanes, S(T(1))).apart);
       gap = std::max(gap,
                      static_cast<double>(SiblingTest::template gaps<S>(turned, change, lanes)[0]));
-      const S separation = SiblingTest::template separation<S>(turned, change, lanes);
+      const S separation = separation_of<SiblingTest, S>(turned, change, lanes, S(T(1))).gap;
       gap = std::max(gap, static_cast<double>(separation[0]));
     }
   }
