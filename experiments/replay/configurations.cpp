@@ -93,6 +93,12 @@ std::vector<Option> options_for(const Variant& variant) {
   return options;
 }
 
+/// Whether the program has it: it may have been configured without some volumes.
+template <class Best>
+bool is_compiled() {
+  return wide_fan_out(Best::Volume::name, Best::Kernel::name) > 0;
+}
+
 /// Of a motion that is not known.
 Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes) {
   set_recommended(variant);
@@ -139,13 +145,14 @@ Chosen recommended_distances(Variant variant, std::span<const TriangleMesh> mesh
                              const Trace& trace) {
   constexpr double slow = 0.007;
   if (2 * trace.frames * trace.pairs() < triangles_of(meshes) &&
-      wide_fan_out(Recommended::Volume::name, Recommended::Kernel::name) > 0)
-    return {as<RecommendedOnDemand>(variant), "the run is too short to repay trees that take longer to build"};
+      is_compiled<RecommendedOnDemand>())
+    return {as<RecommendedOnDemand>(variant),
+            "the run is too short to repay trees that take longer to build"};
   const double moved = mean_motion(meshes, trace);
   std::ostringstream measured;
   measured << std::setprecision(3) << moved;
   if (moved < slow &&
-      wide_fan_out(RecommendedOriented::Volume::name, RecommendedOriented::Kernel::name) > 0)
+      is_compiled<RecommendedOriented>())
     return {as<RecommendedOriented>(variant), "bodies move slowly (" + measured.str() +
                                                   " radii and radians a frame): margins on oriented "
                                                   "boxes skip most tests"};
@@ -162,10 +169,10 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
   const std::vector<Option> all = options_for(variant);
   if (all.empty() || trace.pairs() == 0) return recommended(variant, meshes);
   RunCosts costs(triangles_of(meshes), trace.frames * trace.pairs());
-  if (all[0].name == std::get<0>(recommended_candidates).name &&
+  if (is_compiled<RecommendedOnDemand>() &&
       (samples.frames.empty() || !costs.may_pay(all[0].build)))
-    return {as<RecommendedOnDemand>(variant), std::string(all[0].name) +
-                                                  " on demand: the run is too short to repay whole trees"};
+    return {as<RecommendedOnDemand>(variant),
+            std::string(all[0].name) + " on demand: the run is too short to repay whole trees"};
   Chosen best{all[0].variant, std::string(all[0].name) +
                                   ": the run is too short to repay samples, or other trees"};
   if (samples.frames.empty()) return best;

@@ -62,19 +62,19 @@ std::vector<Named> frames() {
 }
 
 std::vector<Named> kernels() {
-  const auto opening = [](std::string_view kernel) {
-    std::uint32_t fan_out = 0;
-    for (const auto* entry : wide_entries()) fan_out = std::max(fan_out, entry->fan_out(kernel));
-    return "--fan-out " + std::to_string(fan_out) + ", --frame body";
+  const auto fan_out = [](std::string_view kernel) {
+    std::uint32_t most = 0;
+    for (const auto* entry : wide_entries()) most = std::max(most, entry->fan_out(kernel));
+    return "--fan-out " + std::to_string(most);
   };
   return {{"gathered",
            "a register holds pairs of nodes from anywhere in both trees: every fan-out and frame"},
           {"siblings", "a register holds the children of one node, against one volume: " +
-                           opening("siblings")},
+                           fan_out("siblings") + " (the lanes of a register), --frame body"},
           {"mixed",
            "four children against four where nodes are alike in size, else one against sixteen "
            "grandchildren: " +
-               opening("mixed") + ", --volume " + text_of(wide_volumes("mixed"))}};
+               fan_out("mixed") + ", --frame body, --volume " + text_of(wide_volumes("mixed"))}};
 }
 
 std::vector<Named> strategies() {

@@ -66,22 +66,15 @@ class WideHierarchies {
 /// The kernels that are compiled for a volume: `mixed` for those alone that have a sibling test of
 /// their own, since a kernel takes GCC 12 a processor minute for each volume.
 template <class V>
-struct WideKernelsOf {
-  using type = TypeList<SiblingsKernel>;
-};
-template <class V>
-  requires requires { typename V::sibling_test; }
-struct WideKernelsOf<V> {
-  using type = TypeList<SiblingsKernel, MixedKernel>;
-};
-template <class V>
-using WideKernels = typename WideKernelsOf<V>::type;
+using WideKernels =
+    std::conditional_t<HasSiblingTest<V>, TypeList<SiblingsKernel, MixedKernel>,
+                       TypeList<SiblingsKernel>>;
 
-/// Volumes that these kernels take: over float, with a sibling test.
+/// Volumes that these kernels take: over float, with a sibling test of their own or PosedSiblingTest.
 template <class V>
-concept ForWideTrees = std::same_as<typename V::scalar, float> &&
-                       (requires { typename V::sibling_test; } ||
-                        (std::same_as<Posed<V>, V> && PlacedRelatively<V>));
+concept WideVolume =
+    std::same_as<typename V::scalar, float> &&
+    (HasSiblingTest<V> || (std::same_as<Posed<V>, V> && PlacedRelatively<V>));
 
 /// Calls `with` with what pairs keep under the variant's strategy, whose name and parameter have been
 /// checked. Steps of these kernels open one node or both by the nodes' sizes, so that the two ways
@@ -141,12 +134,13 @@ std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, st
   return world;
 }
 
-template <ForWideTrees V>
+template <BoundingVolume V>
 constexpr std::uint32_t fan_out_with(std::string_view kernel) {
   std::uint32_t fan_out = 0;
-  WideKernels<V>::with(kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
-    fan_out = fan_out_of<Kernel, typename V::scalar>;
-  });
+  if constexpr (WideVolume<V>)
+    WideKernels<V>::with(kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+      fan_out = fan_out_of<Kernel, typename V::scalar>;
+    });
   return fan_out;
 }
 
@@ -154,14 +148,9 @@ constexpr std::uint32_t fan_out_with(std::string_view kernel) {
 
 template <BoundingVolume V, class Query>
 constexpr WideEntry wide_of() {
-  WideEntry entry{V::name, V::description, Query::name, nullptr, nullptr, nullptr};
-  if constexpr (detail::ForWideTrees<V>) {
-    entry.fan_out = detail::fan_out_with<V>;
-    if constexpr (for_wide_trees<Query>())
-      entry.play = detail::play_wide<V, Query>, entry.world = detail::wide_world<V, Query>;
-  } else {
-    entry.fan_out = [](std::string_view) -> std::uint32_t { return 0; };
-  }
+  WideEntry entry{V::name, V::description, Query::name, detail::fan_out_with<V>, nullptr, nullptr};
+  if constexpr (detail::WideVolume<V> && for_wide_trees<Query>())
+    entry.play = detail::play_wide<V, Query>, entry.world = detail::wide_world<V, Query>;
   return entry;
 }
 

@@ -26,18 +26,20 @@ class MortonOrder {
   /// `box` is around all triangles, of which there is at least one.
   MortonOrder(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box, Threads& threads)
       : items_(mesh.triangles.size()) {
-    // Cells are cubes, so that a flat mesh spends no bits on its thin axis.
-    const MortonCells cells(box.min(), (box.max() - box.min()).maxCoeff());
-    const auto centroid = [&](std::size_t k) {
+    // Of a cube, so that a flat mesh spends no bits on its thin axis.
+    const double side = (box.max() - box.min()).maxCoeff();
+    const Eigen::AlignedBox3d cube(box.min(), box.min() + Vec3<double>::Constant(side));
+    const auto code = [&](std::size_t k) {
       const auto& [a, b, c] = mesh.triangles[k];
-      return Vec3<double>((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3);
+      return morton_code((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3, cube);
     };
     threads.share_out(items_.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t k = begin; k < end; ++k)
-        items_[k] = {cells.coarse(centroid(k)), static_cast<std::uint32_t>(k)};
+        items_[k] = {static_cast<std::uint32_t>(code(k) >> (63 - coarse_bits)),
+                     static_cast<std::uint32_t>(k)};
     });
     LargeVector<Item> spare;
-    radix_sort(items_, spare, MortonCells::coarse_bits, threads);
+    radix_sort(items_, spare, coarse_bits, threads);
     for (std::size_t k = 0; k + crowd < items_.size();) {
       if (items_[k + crowd].key != items_[k].key) {
         ++k;
@@ -46,7 +48,7 @@ class MortonOrder {
       std::vector<Keyed<std::uint64_t>> run;
       const std::size_t first = k;
       for (; k < items_.size() && items_[k].key == items_[first].key; ++k)
-        run.push_back({cells.fine(centroid(items_[k].id)), items_[k].id});
+        run.push_back({code(items_[k].id), items_[k].id});
       std::sort(run.begin(), run.end(), [](const auto& a, const auto& b) {
         return a.key != b.key ? a.key < b.key : a.id < b.id;
       });
@@ -122,6 +124,7 @@ class MortonOrder {
  private:
   using Item = Keyed<std::uint32_t>;
   static constexpr std::size_t crowd = 16;
+  static constexpr int coarse_bits = 30;
 
   /// The codes' highest different bit between the triangles before and after a cut.
   std::uint32_t change(std::uint32_t cut) const {

@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 
 #include "hierarchies/geometry/scalar.hpp"
 
@@ -39,35 +38,5 @@ inline std::uint64_t morton_code(const Vec3<double>& point, const Eigen::Aligned
   }
   return code;
 }
-
-/// Cells that are cubes, 2^21 a side of one from `low` on; the codes of points in them, in full or
-/// their first bits.
-class MortonCells {
- public:
-  static constexpr int coarse_bits = 30;
-
-  MortonCells(const Vec3<double>& low, double side) : low_(low), scale_(last / side) {
-    if (!(scale_ < std::numeric_limits<double>::infinity())) scale_ = 0;
-  }
-
-  std::uint64_t fine(const Vec3<double>& point) const {
-    std::uint64_t code = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double at = (point[axis] - low_[axis]) * scale_;
-      const double cell = at > 0 ? std::min(at, last) : 0;  // 0 where it is not a number
-      code |= detail::spread_bits(static_cast<std::uint32_t>(cell)) << axis;
-    }
-    return code;
-  }
-  std::uint32_t coarse(const Vec3<double>& point) const {
-    return static_cast<std::uint32_t>(fine(point) >> (63 - coarse_bits));
-  }
-
- private:
-  static constexpr double last = (1 << 21) - 1;
-
-  Vec3<double> low_;
-  double scale_;
-};
 
 }  // namespace bvlab

@@ -23,6 +23,10 @@
 
 namespace bvlab {
 
+/// A volume that declares a sibling test of its own.
+template <class V>
+concept HasSiblingTest = requires { typename V::sibling_test; };
+
 /// For each lane, whether it is disjoint, and its order: the least is tested first.
 template <Scalar S>
 struct OverlapLanes {
@@ -115,8 +119,7 @@ template <class V>
 struct SiblingTestOf {
   using type = PosedSiblingTest<V>;
 };
-template <class V>
-  requires requires { typename V::sibling_test; }
+template <HasSiblingTest V>
 struct SiblingTestOf<V> {
   using type = typename V::sibling_test;
 };

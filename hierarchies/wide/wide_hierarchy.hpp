@@ -94,15 +94,9 @@ class WideHierarchy {
         sphere_(local.mesh()),
         supports_(local.mesh(), sphere_.centre, threads) {
     const TriangleMesh& mesh = local.mesh();
-    nodes_.resize(topology.nodes.size());
-    node_spheres_.resize(topology.nodes.size());
-    siblings_.resize(topology.nodes.size());
+    make_room(topology);
     const NodeFitting<V> fitting(mesh, topology.primitives, fit, threads);
     std::vector<Reach> reach(threads.count());
-    for (std::size_t i = 0; i < nodes_.size(); ++i)
-      if (topology.nodes[i].leaf) leaves_.push_back(static_cast<std::uint32_t>(i));
-    corners_.resize(leaves_.size());
-    triangles_.resize(leaves_.size() * F);
     threads.share(leaves_.size(), [&](std::size_t leaf, std::size_t worker) {
       const std::uint32_t i = leaves_[leaf];
       const WideTopology::Node& node = topology.nodes[i];
@@ -192,15 +186,8 @@ class WideHierarchy {
     reach_ = std::sqrt(2.0) * stable_norm(box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs())) *
              (1 + 64 * unit_roundoff<scalar>)+std::numeric_limits<scalar>::min();
     WideTopology topology = MortonOrder(local.mesh(), box, threads).wide(F, leaf_size);
-    nodes_.resize(topology.nodes.size());
-    node_spheres_.resize(topology.nodes.size());
-    siblings_.resize(topology.nodes.size());
-    for (std::size_t i = 0; i < nodes_.size(); ++i)
-      if (topology.nodes[i].leaf) leaves_.push_back(static_cast<std::uint32_t>(i));
-    corners_.resize(leaves_.size());
-    triangles_.resize(leaves_.size() * F);
-    const TriangleColumns::Box all{box.min(), box.max()};
-    put_node(0, topology.nodes[0], {V::columns::around(all), sphere_around(all)}, nothing);
+    make_room(topology);
+    put_node(0, topology.nodes[0], around({box.min(), box.max()}), nothing);
     unmade_ = std::make_shared<const Unmade>(Unmade{std::move(local), std::move(topology)});
     nodes_[0].first = first_of(0);
   }
@@ -221,18 +208,19 @@ class WideHierarchy {
     if (order.size() <= large) fitting.emplace(local.mesh(), order, Fit::published, alone);
     for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
       const WideTopology::Node& of = topology.nodes[child];
-      if (fitting) {
-        put_node(child, of, fitting->around(of.begin - node.begin, of.end - node.begin), nothing);
-      } else {
-        const TriangleColumns::Box box =
-            box_of(local.mesh(), order.subspan(of.begin - node.begin, of.end - of.begin));
-        put_node(child, of, {V::columns::around(box), sphere_around(box)}, nothing);
-      }
+      const std::uint32_t begin = of.begin - node.begin, end = of.end - node.begin;
+      put_node(child, of,
+               fitting ? fitting->around(begin, end)
+                       : around(box_of(local.mesh(), order.subspan(begin, end - begin))),
+               nothing);
       nodes_[child].first = first_of(child);
     }
     put_children(i, node.count);
   }
 
+  static std::pair<V, NodeSphere> around(const TriangleColumns::Box& box) {
+    return {V::columns::around(box), sphere_around(box)};
+  }
   static TriangleColumns::Box box_of(const TriangleMesh& mesh,
                                      std::span<const std::uint32_t> triangles) {
     TriangleColumns::Box box;
@@ -247,6 +235,16 @@ class WideHierarchy {
   std::uint32_t first_of(std::uint32_t i) const {
     const WideTopology::Node& node = unmade_->topology.nodes[i];
     return node.leaf ? (i - leaves_[0]) * F : node.first;
+  }
+
+  void make_room(const WideTopology& topology) {
+    nodes_.resize(topology.nodes.size());
+    node_spheres_.resize(topology.nodes.size());
+    siblings_.resize(topology.nodes.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      if (topology.nodes[i].leaf) leaves_.push_back(static_cast<std::uint32_t>(i));
+    corners_.resize(leaves_.size());
+    triangles_.resize(leaves_.size() * F);
   }
 
   /// Returns the volume's reach.

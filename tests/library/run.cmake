@@ -22,3 +22,9 @@ foreach(line "apart by 1\\.[0-9]+" "[1-9][0-9]* pairs touch" "boxes 0 and 1 over
     message(FATAL_ERROR "the example does not say '${line}':\n${output}")
   endif()
 endforeach()
+
+# README shows no code of its own: it points to this example.
+file(READ ${SOURCE}/README.md readme)
+if(NOT readme MATCHES "\\(tests/library/example\\.cpp\\)")
+  message(FATAL_ERROR "README.md does not point to tests/library/example.cpp")
+endif()

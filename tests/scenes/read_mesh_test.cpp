@@ -12,20 +12,12 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/random.hpp"
+#include "tests/scenes/refusal.hpp"
 
 namespace bvlab {
 namespace {
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
-
-std::string refusal(const std::string& bytes, const std::string& name) {
-  try {
-    parse_mesh(bytes, name);
-    return "";
-  } catch (const Unusable& error) {
-    return error.what();
-  }
-}
 
 TEST(ReadMesh, OffKeepsEveryDigitAndTheOrder) {
   const TriangleMesh mesh = parse_mesh(

@@ -9,6 +9,7 @@
 #include "experiments/files/guarded.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/read_mesh.hpp"
+#include "tests/scenes/refusal.hpp"
 
 namespace bvlab {
 namespace {
@@ -111,15 +112,6 @@ TEST(ReadParts, NodesOfAScene) {
   std::string without_a_name = dae("");
   without_a_name.replace(without_a_name.find(" name=\"part\""), 12, "");
   EXPECT_EQ(parse_parts(without_a_name, "a.dae").at(0).name, "n");
-}
-
-std::string refusal(const std::string& bytes, const std::string& name) {
-  try {
-    parse_mesh(bytes, name);
-    return "";
-  } catch (const Unusable& error) {
-    return error.what();
-  }
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

@@ -4,7 +4,7 @@
 /// two pairs interleaved. Answers come first for pairs that were decided early, then for those that
 /// are traversed, as they end.
 ///
-/// The Memory says what pairs keep from frame to frame: NoMemory or WideMargins. The Kernel says
+/// The Memory says what pairs keep from frame to frame: NoMemory, a list (list_memory.hpp) or WideMargins. The Kernel says
 /// what one step of a traversal tests (kernels.hpp).
 #pragma once
 
