@@ -9,8 +9,8 @@
 ///   from_roots<Roots>(s)  the recursive algorithm; Roots is NoFront or NoFrontBoth, s is whether
 ///                         the roots are known to overlap
 ///   count_bodies()        counts a test of the two bodies as a whole
-/// from_front and from_roots return the statistics of the traversal. `AnyPair` of the bvlab program has the same
-/// members without naming a volume.
+/// from_front and from_roots return the statistics of the traversal. `AnyPair` of the bvlab program
+/// has the same members without naming a volume.
 #pragma once
 
 #include "traversal/no_front.hpp"

@@ -89,6 +89,6 @@ using Recommended =
 /// shapes have the types of `Recommended`; meshes must outlive hierarchies.
 using RecommendedOnDemand =
     RootsOf<WideTrees<SlabBox<float>, native_fan_out<float>, SiblingsKernel, builds::OnDemand,
-                          Fit::published, native_fan_out<float>>>;
+                      Fit::published, native_fan_out<float>>>;
 
 }  // namespace bvlab

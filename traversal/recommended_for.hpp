@@ -13,9 +13,9 @@
 ///
 /// with the N counted on the samples and the C below, decides (N_f: entries of fronts), together
 /// with the cost of building the trees. A candidate is tried only if the rest of the run can repay
-/// that: short runs take slab-boxes made on demand (RecommendedOnDemand). Counts do not depend on the
-/// load of the machine, so the choice is repeatable. Where the motion is unknown, the shape and the number of the
-/// triangles decide, and margins are kept.
+/// that: short runs take slab-boxes made on demand (RecommendedOnDemand). Counts do not depend on
+/// the load of the machine, so the choice is repeatable. Where the motion is unknown, the shape and
+/// the number of the triangles decide, and margins are kept.
 #pragma once
 
 #include <algorithm>

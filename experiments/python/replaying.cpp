@@ -219,7 +219,8 @@ A structured array; None unless series=True. pandas.DataFrame(result.series) has
   };
   static constexpr Field fields[] = {
       {"seconds", "Posing and querying every frame, in s; no building."},
-      {"build_seconds", "Building the hierarchies before the first frame, in s; on demand, the rest is in frames."},
+      {"build_seconds",
+       "Building the hierarchies before the first frame, in s; on demand, the rest is in frames."},
       {"first_seconds", "The first frame alone, in s."},
       {"n_u", "Volumes posed; None unless count=True."},
       {"n_v", "Pairs of volumes tested; None unless count=True."},

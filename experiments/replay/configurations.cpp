@@ -59,13 +59,17 @@ void set_as_published(Variant& variant) {
 
 constexpr Configuration list[] = {
     {"recommended",
-     "touching and contacts: the cheapest, builds included, in counted samples of the motion, of (1) slab-box, "
+     "touching and contacts: the cheapest, builds included, in counted samples of the motion, of "
+     "(1) slab-box, "
      "kernel siblings, built top-down-surface-area, leaves as large as a register; (2) obb, kernel "
      "mixed, built bottom-up, fit tight, leaves of 4; either of them with margins or recursive; "
      "with margins (3) slab-box, kernel siblings, built bottom-up, leaves of 4; (4) obb, kernel "
-     "siblings, built bottom-up, fit tight, leaves of 8. In short runs slab-box, built on-demand, recursive. Where the motion is not "
-     "known, (1), or (2) for few and long triangles. distance: by the motion one of (1), (2), and rss in binary "
-     "trees, frame body, built bottom-up, fit tight, leaves of 1, witness; the last where the motion is not known",
+     "siblings, built bottom-up, fit tight, leaves of 8. In short runs slab-box, built on-demand, "
+     "recursive. Where the motion is not "
+     "known, (1), or (2) for few and long triangles. distance: by the motion one of (1), (2), and "
+     "rss in binary "
+     "trees, frame body, built bottom-up, fit tight, leaves of 1, witness; the last where the "
+     "motion is not known",
      set_recommended},
     {"as-published",
      "the talk's (Li and Chen 1998): spheres in binary trees, one triangle per leaf, and a "
@@ -144,15 +148,13 @@ double mean_motion(std::span<const TriangleMesh> meshes, const Trace& trace) {
 Chosen recommended_distances(Variant variant, std::span<const TriangleMesh> meshes,
                              const Trace& trace) {
   constexpr double slow = 0.007;
-  if (2 * trace.frames * trace.pairs() < triangles_of(meshes) &&
-      is_compiled<RecommendedOnDemand>())
+  if (2 * trace.frames * trace.pairs() < triangles_of(meshes) && is_compiled<RecommendedOnDemand>())
     return {as<RecommendedOnDemand>(variant),
             "the run is too short to repay trees that take longer to build"};
   const double moved = mean_motion(meshes, trace);
   std::ostringstream measured;
   measured << std::setprecision(3) << moved;
-  if (moved < slow &&
-      is_compiled<RecommendedOriented>())
+  if (moved < slow && is_compiled<RecommendedOriented>())
     return {as<RecommendedOriented>(variant), "bodies move slowly (" + measured.str() +
                                                   " radii and radians a frame): margins on oriented "
                                                   "boxes skip most tests"};

@@ -66,15 +66,14 @@ class WideHierarchies {
 /// The kernels that are compiled for a volume: `mixed` for those alone that have a sibling test of
 /// their own, since a kernel takes GCC 12 a processor minute for each volume.
 template <class V>
-using WideKernels =
-    std::conditional_t<HasSiblingTest<V>, TypeList<SiblingsKernel, MixedKernel>,
-                       TypeList<SiblingsKernel>>;
+using WideKernels = std::conditional_t<HasSiblingTest<V>, TypeList<SiblingsKernel, MixedKernel>,
+                                       TypeList<SiblingsKernel>>;
 
-/// Volumes that these kernels take: over float, with a sibling test of their own or PosedSiblingTest.
+/// Volumes that these kernels take: over float, with a sibling test of their own or
+/// PosedSiblingTest.
 template <class V>
-concept WideVolume =
-    std::same_as<typename V::scalar, float> &&
-    (HasSiblingTest<V> || (std::same_as<Posed<V>, V> && PlacedRelatively<V>));
+concept WideVolume = std::same_as<typename V::scalar, float> &&
+                     (HasSiblingTest<V> || (std::same_as<Posed<V>, V> && PlacedRelatively<V>));
 
 /// Calls `with` with what pairs keep under the variant's strategy, whose name and parameter have been
 /// checked. Steps of these kernels open one node or both by the nodes' sizes, so that the two ways

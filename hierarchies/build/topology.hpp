@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Trees over a mesh's triangles, without volumes: a binary one, the result of a builder, and a wide
-/// one. Any volume can be fitted to any topology.
+/// Trees over a mesh's triangles, without volumes: a binary one, the result of a builder, and a
+/// wide one. Any volume can be fitted to any topology.
 #pragma once
 
 #include <cstdint>

@@ -134,9 +134,7 @@ template <class SiblingTest, Batched S, class One, class FrameChange, class Lane
 [[gnu::always_inline]] inline GapLanes<S> separation_of(const One& one,
                                                         const FrameChange& frame_change,
                                                         const Lanes& lanes, const S& sizes) {
-  if constexpr (requires {
-                  SiblingTest::template separation<S>(one, frame_change, lanes);
-                }) {
+  if constexpr (requires { SiblingTest::template separation<S>(one, frame_change, lanes); }) {
     const S gap = SiblingTest::template separation<S>(one, frame_change, lanes);
     return {gap, gap * roughly_one_over<S>(sizes)};
   } else {

@@ -6,8 +6,8 @@
 /// Nothing in it depends on a body's pose: bodies of one mesh share it.
 ///
 /// A tree is made whole, or on demand. On demand its topology is that of MortonOrder, O(n), and a
-/// node is made, which is to say the volumes of its children or a leaf's triangles, when a traversal
-/// first opens it (`require`), once, by any thread.
+/// node is made, which is to say the volumes of its children or a leaf's triangles, when a
+/// traversal first opens it (`require`), once, by any thread.
 #pragma once
 
 #include <algorithm>

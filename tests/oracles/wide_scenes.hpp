@@ -220,7 +220,7 @@ class PlayedWide {
         }) {}
   /// Over the trees that `hierarchy(mesh)` returns.
   template <class MakeHierarchy>
-  requires std::invocable<MakeHierarchy, const TriangleMesh&>
+    requires std::invocable<MakeHierarchy, const TriangleMesh&>
   PlayedWide(const Scene& scene, MakeHierarchy&& hierarchy, int threads = 1) : scene_(scene) {
     for (const auto& mesh : scene.meshes) hierarchies_.push_back(hierarchy(mesh));
     const auto shapes = shapes_over(scene.meshes, hierarchies_, scene.frames[0].size());

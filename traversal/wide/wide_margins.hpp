@@ -142,8 +142,7 @@ class WideMargins {
     const bool is_useful = wants_bound<Query>()     ? kept.touched.has_value()
                            : DecidedByOneHit<Query> ? kept.was_apart
                                                     : true;
-    if (kept.pause.over() && kept.known && is_useful)
-      start.front = &kept.front;
+    if (kept.pause.over() && kept.known && is_useful) start.front = &kept.front;
     if constexpr (FindsAllHits<Query>)
       start.verdicts = kept.front.is_complete() && kept.verdicts_pause.over();
     start.rotation = bodies_.rotation(pair);

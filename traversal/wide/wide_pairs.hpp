@@ -4,8 +4,8 @@
 /// two pairs interleaved. Answers come first for pairs that were decided early, then for those that
 /// are traversed, as they end.
 ///
-/// The Memory says what pairs keep from frame to frame: NoMemory, a list (list_memory.hpp) or WideMargins. The Kernel says
-/// what one step of a traversal tests (kernels.hpp).
+/// The Memory says what pairs keep from frame to frame: NoMemory, a list (list_memory.hpp) or
+/// WideMargins. The Kernel says what one step of a traversal tests (kernels.hpp).
 #pragma once
 
 #include <array>
