@@ -79,7 +79,8 @@ class WorldOf {
   ///
   /// A slot belongs to a pair as long as its boxes overlap. With one thread, up to two queries are
   /// made before the first of them is taken. With more, all of them are; `make_query` is called on
-  /// any thread, concurrently, and may take the slot, too: `make_query(pair, slot)`. `take` and
+  /// any thread, concurrently, and may take the slot, too: `make_query(pair, slot)`, or
+  /// `make_query(slot, pair)`. `take` and
   /// `leave` are called on the caller's thread. WorldContacts keeps a list of contacts for each
   /// slot.
   ///
@@ -88,20 +89,18 @@ class WorldOf {
   /// world must not be used again. `leave` must not throw.
   template <class Counter, class MakeQuery, class Take, class Leave>
   void update(Counter& counter, MakeQuery&& make_query, Take&& take, Leave&& leave) {
-    const auto make = [&make_query](std::uint32_t slot, const ObjectPair& pair) {
-      if constexpr (std::is_invocable_v<MakeQuery&, const ObjectPair&, std::uint32_t>)
-        return make_query(pair, slot);
-      else
-        return make_query(pair);
-    };
-    using Query = std::remove_cvref_t<decltype(make(0, ObjectPair()))>;
-    pairs_.template begin<Query>(near_.movers(), near_.poses(), near_.origin(), near_.threads());
-    near_.update([&](std::uint32_t i) { pairs_.set_pose(i); },
-                 [&](std::uint32_t slot, const ObjectPair& pair) { pairs_.put(slot, pair); },
-                 [&](std::uint32_t slot) { leave(slot), pairs_.drop(slot); });
-    answers_.run_pairs(pairs_, near_.threads(), near_.due(), near_.slots(), counter, make, take);
-    queried_ = near_.due().size();
-    near_.settle();
+    if constexpr (std::is_invocable_v<MakeQuery&, std::uint32_t, const ObjectPair&>)
+      update_by_slots(counter, make_query, take, leave);
+    else
+      update_by_slots(
+          counter,
+          [&make_query](std::uint32_t slot, const ObjectPair& pair) {
+            if constexpr (std::is_invocable_v<MakeQuery&, const ObjectPair&, std::uint32_t>)
+              return make_query(pair, slot);
+            else
+              return make_query(pair);
+          },
+          take, leave);
   }
 
   /// The number of chosen pairs whose boxes overlap.
@@ -117,6 +116,18 @@ class WorldOf {
   }
 
  private:
+  template <class Counter, class MakeQuery, class Take, class Leave>
+  void update_by_slots(Counter& counter, MakeQuery&& make, Take& take, Leave& leave) {
+    using Query = std::remove_cvref_t<decltype(make(0, ObjectPair()))>;
+    pairs_.template begin<Query>(near_.movers(), near_.poses(), near_.origin(), near_.threads());
+    near_.update([&](std::uint32_t i) { pairs_.set_pose(i); },
+                 [&](std::uint32_t slot, const ObjectPair& pair) { pairs_.put(slot, pair); },
+                 [&](std::uint32_t slot) { leave(slot), pairs_.drop(slot); });
+    answers_.run_pairs(pairs_, near_.threads(), near_.due(), near_.slots(), counter, make, take);
+    queried_ = near_.due().size();
+    near_.settle();
+  }
+
   Pairs pairs_;
   NearPairs<Method> near_;
   AnswersInOrder answers_;

@@ -5,6 +5,7 @@
 /// starts from, so that none of them is named here.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -162,11 +163,16 @@ class AnyBodies {
   }
   void cull_roots(std::span<const ObjectPair> pairs, std::span<const std::uint32_t> fresh,
                   Query& query, Counter& counter, std::uint8_t* apart) {
-    if constexpr (Counter::counts)
-      for (const auto p : fresh)
-        if (loops_->frame() == Frame::body || bodies_[pairs[p].i]->is_far() ||
-            bodies_[pairs[p].j]->is_far())
-          counter.posed(1);
+    if constexpr (Counter::counts) {
+      const auto is_far = [&](std::size_t i) { return bodies_[i]->is_far(); };
+      if (loops_->frame() == Frame::body)
+        counter.posed(fresh.size());
+      else if (std::any_of(bodies_.begin(), bodies_.end(), [](auto* b) { return b->is_far(); }))
+        counter.posed(static_cast<std::uint64_t>(
+            std::count_if(fresh.begin(), fresh.end(), [&](std::uint32_t p) {
+              return is_far(pairs[p].i) || is_far(pairs[p].j);
+            })));
+    }
     loops_->cull_roots(pairs, fresh, query, apart);
   }
   /// Counts what has been posed since this was called last.

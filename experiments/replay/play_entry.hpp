@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string_view>
 
 #include "experiments/replay/replay.hpp"
@@ -17,8 +18,9 @@ struct PlayEntry {
   /// Throws Unusable where the strategy's parameter in "name:parameter" is none.
   void (*check)(std::string_view strategy);
   /// Adds to the result; hierarchies are of the volume.
-  void (*play)(const VolumeEntry& volume, const AnyHierarchies& hierarchies, const Trace& trace,
-               const Variant& variant, const ReplayOptions& options, ReplayResult& result);
+  void (*play)(const VolumeEntry& volume, std::unique_ptr<AnyHierarchies> hierarchies,
+               std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
+               const ReplayOptions& options, ReplayResult& result);
   /// A whole scene of that strategy; null for a query that is not answered by yes or no.
   std::unique_ptr<WorldEngine> (*world)(const VolumeEntry& volume,
                                         std::unique_ptr<AnyHierarchies> hierarchies,

@@ -127,10 +127,10 @@ ReplayResult replay(std::span<const TriangleMesh> meshes, const Trace& trace,
   }
   const VolumeEntry& volume = volume_entry(variant.volume);
   const auto start = Clock::now();
-  const auto hierarchies = volume.hierarchies(meshes, variant);
+  auto hierarchies = volume.hierarchies(meshes, variant);
   result.build_seconds = seconds_since(start);
   play_entry(name_of(variant.strategy), variant.query)
-      .play(volume, *hierarchies, trace, variant, options, result);
+      .play(volume, std::move(hierarchies), meshes, trace, variant, options, result);
   return result;
 }
 

@@ -2,10 +2,11 @@
 /// A whole scene that says which pairs touch, over pairs of any kind.
 #pragma once
 
+#include <memory>
 #include <utility>
 
+#include "experiments/replay/any_pairs.hpp"
 #include "experiments/replay/near_boxes.hpp"
-#include "experiments/replay/triangle_test.hpp"
 #include "experiments/replay/world_frames.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries/query.hpp"
@@ -15,30 +16,23 @@ namespace bvlab {
 
 namespace detail {
 
-/// `Hierarchies` holds those of all meshes; `of(mesh)` is what Pairs has for a body of a mesh, for
-/// which it builds one that was not there.
-template <class Pairs, AnswersYesOrNo Query, class Hierarchies>
+template <AnswersYesOrNo Query>
 class TouchingWorld final : public WorldEngine {
  public:
-  /// `pairs` are of bodies over what `hierarchies` holds.
-  TouchingWorld(Hierarchies hierarchies, Pairs pairs, const Variant& variant, int threads)
-      : hierarchies_(std::move(hierarchies)),
-        world_(std::move(pairs), threads),
-        how_{triangle_test(variant.precision), 0} {}
+  TouchingWorld(std::unique_ptr<AnyPairs<Query>> pairs, const QueryOptions& how, int threads)
+      : world_(PairsAsked<Query>(std::move(pairs)), threads),
+        asking_{.how = how, .touching = &touching_} {}
+  TouchingWorld(const TouchingWorld&) = delete;
+  TouchingWorld& operator=(const TouchingWorld&) = delete;
 
   void choose(const PairChoice& choice) override { world_.choose(choice); }
   void move(std::uint32_t object, const Pose& pose) override { world_.move(object, pose); }
-  void add(const TriangleMesh& mesh) override { world_.add(hierarchies_.of(mesh)); }
+  void add(const TriangleMesh& mesh) override { world_.add(mesh); }
   void remove(std::uint32_t object) override { world_.remove(object); }
 
   void update() override {
     NotCounting counter;
-    world_.update(
-        counter, [&](const ObjectPair&) { return Query::from_options(how_); },
-        [&](std::uint32_t slot, const ObjectPair& pair, const Query& query) {
-          touching_.put(slot, pair, query.answer());
-        },
-        [&](std::uint32_t slot) { touching_.drop(slot); });
+    world_.update(counter, asking_, asking_, [&](std::uint32_t slot) { touching_.drop(slot); });
   }
 
   std::span<const ObjectPair> touching() override { return touching_.pairs(); }
@@ -46,10 +40,9 @@ class TouchingWorld final : public WorldEngine {
   std::size_t queried() const override { return world_.queried(); }
 
  private:
-  Hierarchies hierarchies_;
-  WorldOf<Pairs, NearBoxes> world_;
+  WorldOf<PairsAsked<Query>, NearBoxes> world_;
   TouchingPairs touching_;
-  QueryOptions how_;
+  Asking<Query> asking_;
 };
 
 }  // namespace detail

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "experiments/files/unusable.hpp"
+#include "experiments/replay/any_pairs.hpp"
 #include "experiments/replay/near_boxes.hpp"
 #include "experiments/replay/player.hpp"
 #include "experiments/replay/replay.hpp"
@@ -71,12 +72,11 @@ class PlacesOfPairs {
   std::unordered_map<std::uint64_t, std::size_t> places_;
 };
 
-/// Pairs is as in AllPairsOf and WorldOf.
-template <class Pairs>
+template <class Query>
 class TracePairs {
  public:
   /// `pairs` has the bodies, and no pairs yet.
-  TracePairs(Pairs pairs, const Trace& trace, BroadPhase broad_phase, int threads)
+  TracePairs(PairsAsked<Query> pairs, const Trace& trace, BroadPhase broad_phase, int threads)
       : pairs_(std::move(pairs)),
         threads_(broad_phase == BroadPhase::on ? 1 : threads),
         place_of_(trace) {
@@ -89,43 +89,36 @@ class TracePairs {
     const std::vector<ObjectPair> all = object_pairs(trace);
     // The last slot first: room for all is made at once.
     for (std::size_t p = all.size(); p-- > 0;) pairs_.put(static_cast<std::uint32_t>(p), all[p]);
-    pairs_.make_room(threads_);
+    (*pairs_).make_room(threads_);
     slots_.resize(all.size());
     std::iota(slots_.begin(), slots_.end(), 0u);
   }
   TracePairs(const TracePairs&) = delete;
   TracePairs& operator=(const TracePairs&) = delete;
 
-  /// As AllPairsOf::frame; `take(p, pair, query)` receives the pairs that are queried.
-  template <class Counter, class MakeQuery, class Take>
-  void frame(std::span<const Pose> poses, Counter& counter, MakeQuery&& make_query, Take&& take) {
-    const auto make = [&](std::uint32_t slot, const ObjectPair&) {
-      return make_query(place(slot));
-    };
+  /// Moves all bodies, and queries the pairs.
+  void frame(std::span<const Pose> poses, Counting& counter, Answers<Query>& answers) {
+    Asking<Query> asking{.how = {}, .answers = &answers};
     if (near_) {
-      find_near<std::remove_cvref_t<decltype(make_query(0))>>(poses);
+      asking.places = &places_;
+      find_near(poses);
     } else {
       if (!origin_) origin_ = centre_of(poses);
-      pairs_.begin_all(poses, *origin_, threads_, counter, make);
+      (*pairs_).begin_all(poses, *origin_, threads_, counter, asking);
     }
     answers_.run_pairs(pairs_, near_ ? near_->threads() : threads_,
-                       std::span<const std::uint32_t>(slots_), pairs_.pairs().size(), counter, make,
-                       [&](std::uint32_t slot, const ObjectPair& pair, auto&& query) {
-                         take(place(slot), pair, query);
-                       });
+                       std::span<const std::uint32_t>(slots_), pairs_.pairs().size(), counter,
+                       asking, asking);
     if (near_) near_->settle();
   }
 
-  Pairs& pairs() { return pairs_; }
+  AnyPairs<Query>& pairs() const { return *pairs_; }
   /// The pairs whose boxes overlapped in the last frame, where a broad phase finds them.
   std::optional<std::size_t> near() const {
     return near_ ? std::optional(near_->size()) : std::nullopt;
   }
 
  private:
-  std::size_t place(std::uint32_t slot) const { return near_ ? places_[slot] : slot; }
-
-  template <class Query>
   void find_near(std::span<const Pose> poses) {
     for (std::size_t i = 0; i < poses.size(); ++i)
       near_->move(static_cast<std::uint32_t>(i), poses[i]);
@@ -143,7 +136,7 @@ class TracePairs {
       if (near_->taken(slot)) slots_.push_back(slot);
   }
 
-  Pairs pairs_;
+  PairsAsked<Query> pairs_;
   Threads threads_;
   PlacesOfPairs place_of_;
   AnswersInOrder answers_;

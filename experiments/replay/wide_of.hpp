@@ -2,15 +2,17 @@
 /// All that is compiled for a volume in wide trees under one query.
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <deque>
 #include <memory>
 #include <type_traits>
 #include <unordered_map>
 
+#include "experiments/replay/any_pairs.hpp"
 #include "experiments/replay/hierarchies_of.hpp"
-#include "experiments/replay/play.hpp"
-#include "experiments/replay/touching_world.hpp"
+#include "experiments/replay/play_pairs.hpp"
+#include "experiments/replay/strategy_text.hpp"
 #include "experiments/replay/wide_entry.hpp"
 #include "hierarchies/builds.hpp"
 #include "traversal/strategies/by_cost.hpp"
@@ -43,6 +45,14 @@ class WideHierarchies {
     return {&mesh, known_[&mesh] = &build(mesh)};
   }
   const std::deque<Hierarchy>& all() const { return all_; }
+  /// All, and those that have been made.
+  std::array<std::size_t, 2> nodes() const
+    requires requires(const Hierarchy& hierarchy) { hierarchy.made(); }
+  {
+    std::array<std::size_t, 2> sum{};
+    for (const auto& hierarchy : all_) sum[0] += hierarchy.size(), sum[1] += hierarchy.made();
+    return sum;
+  }
 
  private:
   const Hierarchy& build(const TriangleMesh& mesh) {
@@ -91,46 +101,44 @@ void with_memory(const Variant& variant, const With& with) {
   with(NoMemory());
 }
 
+/// Adds the time to build to `build_seconds`.
+template <BoundingVolume V, class Query>
+std::unique_ptr<AnyPairs<Query>> wide_pairs(std::span<const TriangleMesh> meshes,
+                                            std::size_t objects, const Variant& variant,
+                                            int threads, double& build_seconds) {
+  std::unique_ptr<AnyPairs<Query>> made;
+  WideKernels<V>::with(variant.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+    constexpr int fan_out = fan_out_of<Kernel, typename V::scalar>;
+    using Hierarchies = WideHierarchies<typename Kernel::template Hierarchy<V, fan_out>>;
+    const auto start = Clock::now();
+    Hierarchies hierarchies(meshes, variant, threads);
+    build_seconds += seconds_since(start);
+    // Shapes point to what it holds, wherever it is moved.
+    const auto shapes = shapes_over(meshes, hierarchies.all(), objects);
+    with_memory(variant, [&]<class Memory>(const Memory& memory) {
+      using Pairs = WidePairs<V, fan_out, Memory, Kernel>;
+      made = std::make_unique<PairsOver<Pairs, Query, Hierarchies>>(std::move(hierarchies),
+                                                                    Pairs(shapes, memory));
+    });
+  });
+  return made;
+}
+
 template <BoundingVolume V, class Query>
 void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
                const ReplayOptions& options, ReplayResult& result) {
-  WideKernels<V>::with(variant.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
-    constexpr int fan_out = fan_out_of<Kernel, typename V::scalar>;
-    const auto start = Clock::now();
-    const WideHierarchies<typename Kernel::template Hierarchy<V, fan_out>> hierarchies(
-        meshes, variant, static_cast<int>(options.threads));
-    result.build_seconds = seconds_since(start);
-    const auto shapes = shapes_over(meshes, hierarchies.all(), trace.objects);
-    with_memory(variant, [&]<class Memory>(const Memory& memory) {
-      // These pairs count in any case.
-      play_over<Query, Counting>(WidePairs<V, fan_out, Memory, Kernel>(shapes, memory), trace,
-                                 variant, options, result);
-    });
-    if constexpr (requires { hierarchies.all()[0].made(); })
-      for (const auto& hierarchy : hierarchies.all())
-        result.nodes += hierarchy.size(), result.nodes_made += hierarchy.made();
-  });
+  play_pairs(wide_pairs<V, Query>(meshes, trace.objects, variant,
+                                  static_cast<int>(options.threads), result.build_seconds),
+             meshes, trace, variant, options, result);
 }
 
 /// Null where the query is no matter of yes or no.
 template <BoundingVolume V, class Query>
 std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, std::size_t objects,
                                         const Variant& variant, int threads) {
-  std::unique_ptr<WorldEngine> world;
-  if constexpr (AnswersYesOrNo<Query>)
-    WideKernels<V>::with(variant.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
-      constexpr int fan_out = fan_out_of<Kernel, typename V::scalar>;
-      WideHierarchies<typename Kernel::template Hierarchy<V, fan_out>> hierarchies(meshes, variant,
-                                                                                   threads);
-      // Shapes point to what it holds, wherever it is moved.
-      const auto shapes = shapes_over(meshes, hierarchies.all(), objects);
-      with_memory(variant, [&]<class Memory>(const Memory& memory) {
-        using Pairs = WidePairs<V, fan_out, Memory, Kernel>;
-        world = std::make_unique<TouchingWorld<Pairs, Query, decltype(hierarchies)>>(
-            std::move(hierarchies), Pairs(shapes, memory), variant, threads);
-      });
-    });
-  return world;
+  double build_seconds = 0;
+  return world_of_pairs(wide_pairs<V, Query>(meshes, objects, variant, threads, build_seconds),
+                        variant, threads);
 }
 
 template <BoundingVolume V>

@@ -8,6 +8,7 @@
 /// mesh's convex hull, found by climbing. Elsewhere pose_ns is C_u, averaged over all volumes of
 /// the hierarchy, timed apart (those near the root have more corners than the rest).
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 #include <map>
 #include <memory>
@@ -126,19 +127,22 @@ ReplayResult fastest_of(const std::function<ReplayResult()>& play) {
   return fastest;
 }
 
+/// In place of hierarchies by mesh: no body is added.
+struct NothingIsAdded {
+  static OneOfHierarchies of(const TriangleMesh&) { std::abort(); }
+};
+
 /// Recursion over bodies whose volume is not in the list, started as over one that is.
 template <class Query>
-ReplayResult recursed(const Scene& scene,
-                      const std::function<std::unique_ptr<BodyLoops<Query>>()>& loops,
-                      Count count) {
+ReplayResult recursed(const Scene& scene, std::unique_ptr<BodyLoops<Query>> loops, Count count) {
   ReplayOptions options;
   options.count = count;
   ReplayResult result;
-  const auto pairs = [&]<class Counter>(std::type_identity<Counter>) {
-    using Bodies = AnyBodies<Query, Counter, TypeList<NoFront>>;
-    return StrategyPairs<Bodies, Recursive>(Bodies(loops()), Recursive());
-  };
-  detail::play_counting_or_not<Query>(pairs, scene.trace, Variant{}, options, result);
+  using Bodies = AnyBodies<Query, Counting, TypeList<NoFront>>;
+  using Pairs = StrategyPairs<Bodies, Recursive>;
+  detail::play_pairs<Query>(std::make_unique<detail::PairsOver<Pairs, Query, NothingIsAdded>>(
+                                NothingIsAdded(), Pairs(Bodies(std::move(loops)), Recursive())),
+                            scene.meshes, scene.trace, Variant{}, options, result);
   return result;
 }
 
@@ -146,8 +150,7 @@ template <class V, class Query>
 ReplayResult engine_of_its_own(const Scene& scene, const Hierarchy<V>& hierarchy, Count count) {
   const std::vector<Shape<V>> shapes(scene.trace.objects, {&scene.meshes[0], &hierarchy});
   using Loops = detail::LoopsOver<V, Query, TypeList<NoFront>>;
-  return recursed<Query>(
-      scene, [&] { return std::make_unique<Loops>(shapes, Frame::world); }, count);
+  return recursed<Query>(scene, std::make_unique<Loops>(shapes, Frame::world), count);
 }
 
 template <class V, class Query>
