@@ -23,22 +23,12 @@ struct Configuration {
   void (*set)(Variant&);
 };
 
-/// A candidate of the library (traversal/recommended_for.hpp), in the program's names.
-template <class Best>
-Variant as(Variant variant) {
-  set_kernel(variant, Best::Kernel::name);
-  variant.volume = Best::Volume::name, variant.strategy = Best::Memory::name;
-  variant.build = Best::Build::name, variant.leaf_size = Best::leaf_size;
-  variant.fit = name_of(Best::fit);
-  return variant;
-}
-
 /// Where the motion is not known. Margins save more than they cost wherever pairs are quiet: up to
 /// nine tenths of the time from the roots, where they cost up to a third more if none is. Distances
 /// are sought by the volumes of triangles, which rectangle swept spheres bound best.
 void set_recommended(Variant& variant) {
   if (variant.query != "distance") {
-    variant = as<Recommended>(variant);
+    variant = variant_of<Recommended>(variant);
     return;
   }
   using Best = RecommendedDistances;
@@ -87,7 +77,7 @@ struct Option {
 std::vector<Option> options_for(const Variant& variant) {
   std::vector<Option> options;
   for_each_candidate([&]<class Best>(const RecommendedCandidate<Best>& candidate) {
-    options.push_back({as<Best>(variant), candidate.name, candidate.build,
+    options.push_back({variant_of<Best>(variant), candidate.name, candidate.build,
                        candidate.costs(variant.query)});
   });
   // The program may have been configured without some volumes.
@@ -119,7 +109,7 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes) {
   if (elongated < long_triangles)
     return {variant, "triangles are hardly longer than wide (" + measured.str() +
                          "): boxes along the mesh's axes, cut by a slab, fit them and cost least"};
-  return {as<RecommendedOriented>(variant),
+  return {variant_of<RecommendedOriented>(variant),
           "triangles are long (" + measured.str() +
               "): oriented boxes fit them, others are mostly empty"};
 }
@@ -149,13 +139,13 @@ Chosen recommended_distances(Variant variant, std::span<const TriangleMesh> mesh
                              const Trace& trace) {
   constexpr double slow = 0.007;
   if (2 * trace.frames * trace.pairs() < triangles_of(meshes) && is_compiled<RecommendedOnDemand>())
-    return {as<RecommendedOnDemand>(variant),
+    return {variant_of<RecommendedOnDemand>(variant),
             "the run is too short to repay trees that take longer to build"};
   const double moved = mean_motion(meshes, trace);
   std::ostringstream measured;
   measured << std::setprecision(3) << moved;
   if (moved < slow && is_compiled<RecommendedOriented>())
-    return {as<RecommendedOriented>(variant), "bodies move slowly (" + measured.str() +
+    return {variant_of<RecommendedOriented>(variant), "bodies move slowly (" + measured.str() +
                                                   " radii and radians a frame): margins on oriented "
                                                   "boxes skip most tests"};
   Chosen chosen = recommended(std::move(variant), meshes);
@@ -173,7 +163,7 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
   RunCosts costs(triangles_of(meshes), trace.frames * trace.pairs());
   if (is_compiled<RecommendedOnDemand>() &&
       (samples.frames.empty() || !costs.may_pay(all[0].build)))
-    return {as<RecommendedOnDemand>(variant),
+    return {variant_of<RecommendedOnDemand>(variant),
             std::string(all[0].name) + " on demand: the run is too short to repay whole trees"};
   Chosen best{all[0].variant, std::string(all[0].name) +
                                   ": the run is too short to repay samples, or other trees"};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "experiments/replay/registry.hpp"
+#include "hierarchies/fitting.hpp"
 
 namespace bvlab {
 
@@ -25,6 +26,16 @@ inline constexpr std::string_view set_by_configuration[] = {
 /// say (query, precision, relative error) stays. Throws Unusable where there is none of that name.
 /// `recommended` is then what is best for meshes whose triangles are about as long as wide.
 Variant configured(Variant variant, std::string_view configuration);
+
+/// A configuration of the library (traversal/recommended.hpp and the like) as a variant.
+template <class Best>
+Variant variant_of(Variant variant) {
+  set_kernel(variant, Best::Kernel::name);
+  variant.volume = Best::Volume::name, variant.strategy = Best::Memory::name;
+  variant.build = Best::Build::name, variant.leaf_size = Best::leaf_size;
+  variant.fit = name_of(Best::fit);
+  return variant;
+}
 
 /// The same for these meshes and, where it is known, their motion: `recommended` depends on both.
 /// With the reason, a sentence that is empty where there is no choice. Samples of the motion are

@@ -8,8 +8,8 @@
 #include <limits>
 #include <random>
 
+#include "experiments/replay/configurations.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
-#include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries.hpp"
 #include "traversal/recommended_distances.hpp"
@@ -163,54 +163,36 @@ struct Parts {
 /// Vertices are rounded otherwise there, so that trees of symmetric meshes split ties otherwise.
 void expect_no_more(std::uint64_t tests, std::uint64_t usual) { EXPECT_LE(tests, 2 * usual + 20); }
 
-template <class Configuration, class Counter, class Do>
-void over(const Parts& parts, Counter&, const Do& what) {
-  std::vector<typename Configuration::Hierarchy> trees;
-  trees.reserve(60);
-  for (const auto& mesh : parts.meshes) trees.push_back(Configuration::hierarchy(mesh));
-  what(shapes_over(parts.meshes, trees, 60));
-}
-
-template <class Configuration>
-std::pair<Counting, std::vector<bool>> touching(const Parts& parts) {
-  std::pair<Counting, std::vector<bool>> result;
-  over<Configuration>(parts, result.first, [&](const auto& shapes) {
-    AllPairsOf all(typename Configuration::Pairs(shapes), all_object_pairs(60));
-    result.second.resize(all.pairs().size());
-    all.frame(
-        parts.poses, result.first, [](std::size_t) { return Touching(); },
-        [&](std::size_t p, const Touching& query) { result.second[p] = query.touching(); });
-  });
-  return result;
+/// One frame, counted.
+ReplayResult played(const Parts& parts, const Variant& variant) {
+  Trace trace{1, parts.poses.size(), {}};
+  for (std::size_t i = 0; i < parts.poses.size(); ++i)
+    for (const double number : {0, 0, 0, 1, 0, 0, 0}) trace.values.push_back(number);
+  ReplayOptions options;
+  options.count = Count::on;
+  return replay(parts.meshes, trace, variant, options);
 }
 
 TEST(FarVertices, EveryRecommendedConfigurationIsAsNearZero) {
   const Parts near(Vec3<double>::Zero()), far(survey);
   for_each_candidate([&]<class Best>(const RecommendedCandidate<Best>& candidate) {
-    const auto [usual, truth] = touching<Best>(near);
-    const auto [now, found] = touching<Best>(far);
-    EXPECT_EQ(found, truth) << candidate.name;
-    EXPECT_GE(std::count(truth.begin(), truth.end(), true), 5) << candidate.name;
+    const auto usual = played(near, variant_of<Best>({})), now = played(far, variant_of<Best>({}));
+    EXPECT_EQ(now.touching, usual.touching) << candidate.name;
+    EXPECT_GE(usual.hits, 5u) << candidate.name;
     expect_no_more(now.n_p, usual.n_p), expect_no_more(now.n_v, usual.n_v);
   });
 }
 
 TEST(FarVertices, DistancesTakeNoMoreTests) {
-  const auto distances = [](const Parts& parts) {
-    std::pair<Counting, std::vector<double>> result;
-    over<RecommendedDistances>(parts, result.first, [&](const auto& shapes) {
-      AllPairsOf all(RecommendedDistances::Pairs(shapes), all_object_pairs(60));
-      result.second.resize(all.pairs().size());
-      all.frame(
-          parts.poses, result.first, [](std::size_t) { return Distance(); },
-          [&](std::size_t p, const Distance& query) { result.second[p] = query.distance(); });
-    });
-    return result;
-  };
-  const auto [usual, truth] = distances(Parts(Vec3<double>::Zero()));
-  const auto [now, found] = distances(Parts(survey));
+  Variant variant;
+  variant.query = Distance::name;
+  variant = configured(variant, "recommended");
+  const auto usual = played(Parts(Vec3<double>::Zero()), variant),
+             now = played(Parts(survey), variant);
   // Vertices are a millionth of a millionth of the survey coordinates elsewhere, at most.
-  for (std::size_t p = 0; p < truth.size(); ++p) EXPECT_NEAR(found[p], truth[p], 1e-8);
+  for (std::size_t p = 0; p < usual.distances.size(); ++p)
+    EXPECT_NEAR(now.distances[p], usual.distances[p], 1e-8);
+  EXPECT_EQ(usual.distances.size(), 1770u);
   expect_no_more(now.n_p, usual.n_p), expect_no_more(now.n_v, usual.n_v);
 }
 
@@ -218,17 +200,19 @@ TEST(FarVertices, WorldsFindNoMorePairs) {
   const auto play = [](const Parts& parts) {
     std::array<std::uint64_t, 4> found{};  // near, touching, N_v, N_p
     Counting counter;
-    over<Recommended>(parts, counter, [&](const auto& shapes) {
-      World world(shapes);
-      for (std::uint32_t i = 0; i < 60; ++i) world.move(i, parts.poses[i]);
-      world.update(
-          counter, [](const ObjectPair&) { return Touching(); },
-          [&](std::uint32_t, const ObjectPair&, const Touching& query) {
-            found[1] += query.touching();
-          },
-          [](std::uint32_t) {});
-      found[0] = world.near();
-    });
+    std::vector<Recommended::Hierarchy> trees;
+    trees.reserve(60);
+    for (const auto& mesh : parts.meshes) trees.push_back(Recommended::hierarchy(mesh));
+    const auto shapes = shapes_over(parts.meshes, trees, 60);
+    World world(shapes);
+    for (std::uint32_t i = 0; i < 60; ++i) world.move(i, parts.poses[i]);
+    world.update(
+        counter, [](const ObjectPair&) { return Touching(); },
+        [&](std::uint32_t, const ObjectPair&, const Touching& query) {
+          found[1] += query.touching();
+        },
+        [](std::uint32_t) {});
+    found[0] = world.near();
     found[2] = counter.n_v, found[3] = counter.n_p;
     return found;
   };

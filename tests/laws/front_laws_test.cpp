@@ -3,8 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
 #include <random>
+#include <tuple>
 
+#include "experiments/replay/any_bodies.hpp"
+#include "experiments/replay/hierarchies_of.hpp"
+#include "experiments/replay/registry.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes.hpp"
@@ -19,45 +26,73 @@ namespace {
 
 static_assert(std::is_empty_v<NotCounting>);
 
+/// Bodies of one volume, asked by the loops of the program.
+template <class V>
+class AskedBodies {
+ public:
+  AskedBodies(std::span<const TriangleMesh> meshes, std::size_t bodies, std::uint32_t fan_out = 2,
+              Frame frame = Frame::world) {
+    Variant variant;
+    variant.build = builds::TopDownPrincipal::name, variant.fan_out = fan_out;
+    hierarchies_ = volume_entry(V::name).hierarchies(meshes, variant);
+    const auto make = [&]<class Query>(std::optional<AnyBodies<Query, Counting>>& of_query) {
+      of_query.emplace(loops_of<Query>(V::name).bodies(*hierarchies_, bodies, frame));
+    };
+    std::apply([&](auto&... of_query) { (make(of_query), ...); }, all_);
+  }
+
+  const Hierarchy<V>& hierarchy() const {
+    return static_cast<const HierarchiesOf<V>&>(*hierarchies_)[0];
+  }
+  void move(std::size_t i, const Pose& pose) {
+    std::apply([&](auto&... bodies) { (bodies->move(i, pose, Vec3<double>::Zero()), ...); }, all_);
+  }
+  template <class Strategy, class Query>
+  void run(Strategy&& strategy, const ObjectPair& pair, Query& query, Counting& counter) {
+    auto& bodies = *std::get<std::optional<AnyBodies<Query, Counting>>>(all_);
+    strategy.run(bodies.pair(pair, query, counter));
+    bodies.count_posed(counter);
+  }
+
+ private:
+  std::unique_ptr<AnyHierarchies> hierarchies_;
+  std::tuple<std::optional<AnyBodies<Touching, Counting>>,
+             std::optional<AnyBodies<Contacts, Counting>>,
+             std::optional<AnyBodies<Distance, Counting>>>
+      all_;
+};
+
 template <class V>
 class FrontLaws : public ::testing::Test {
  protected:
-  using B = Batch<typename V::scalar, 8>;
   TriangleMesh mesh_ = formula_mesh("star", 120);
-  Hierarchy<V> hierarchy_{mesh_, builds::TopDownPrincipal::topology(mesh_, 1)};
-  Body<V> a_{mesh_, hierarchy_}, b_{mesh_, hierarchy_};
-  Workspace workspace_;
+  std::optional<AskedBodies<V>> bodies_{std::in_place, std::span(&mesh_, 1), 4};
 
-  template <class Query, class Counter>
-  BodyPair<B, V, Query, Counter> pair(Query& query, Counter& counter) {
-    return {a_, b_, query, counter, workspace_};
+  template <class Strategy, class Query>
+  void run(Strategy&& strategy, Query& query, Counting& counter) {
+    bodies_->run(strategy, {0, 1}, query, counter);
   }
 
   /// All contacts that a strategy finds, sorted.
-  template <class Strategy, class Counter>
-  std::vector<Contact> contacts(Strategy&& strategy, Counter& counter) {
+  template <class Strategy>
+  std::vector<Contact> contacts(Strategy&& strategy, Counting& counter) {
     std::vector<Contact> found;
     Contacts query(found);
-    strategy.run(pair(query, counter));
+    run(strategy, query, counter);
     std::sort(found.begin(), found.end());
     return found;
   }
 
   /// Of the same mesh, from now on.
   void use(std::uint32_t fan_out, Frame frame) {
-    hierarchy_ = Hierarchy<V>(
-        mesh_, collapsed(mesh_, builds::TopDownPrincipal::topology(mesh_, 1), fan_out, 1));
-    a_ = Body<V>(mesh_, hierarchy_, frame), b_ = Body<V>(mesh_, hierarchy_, frame);
+    bodies_.emplace(std::span(&mesh_, 1), 4, fan_out, frame);
   }
 
-  void place(const Pose& a, const Pose& b) {
-    a_.move(a, Vec3<double>::Zero());
-    b_.move(b, Vec3<double>::Zero());
-  }
+  void place(const Pose& a, const Pose& b) { bodies_->move(0, a), bodies_->move(1, b); }
 
   /// Leaves below a node, by their primitives' places.
   void leaves(std::uint32_t node, std::vector<std::uint32_t>& places) const {
-    const auto& n = hierarchy_.node(node);
+    const auto& n = bodies_->hierarchy().node(node);
     if (n.count) places.push_back(n.first);
     for (std::uint32_t k = 0; k < n.children; ++k) leaves(n.first + k, places);
   }
@@ -89,21 +124,21 @@ TYPED_TEST(FrontLaws, BodiesThatStayCostOneTestForEachEntry) {
     Counting recursive, first, later, last;
     std::vector<Contact> found;
     Contacts query(found);
-    Recursive().run(this->pair(query, recursive));
+    this->run(Recursive(), query, recursive);
     Deferred deferred(1);
-    deferred.run(this->pair(query, first));
+    this->run(deferred, query, first);
     const std::uint64_t n = deferred.front_size();
     EXPECT_EQ(recursive.n_v, 2 * n - 1);
     EXPECT_EQ(first.n_v, 2 * n - 1);
     for (int run = 0; run < 2; ++run) {  // 1 + k runs without growth are let pass
       Counting still;
-      deferred.run(this->pair(query, still));
+      this->run(deferred, query, still);
       EXPECT_EQ(still.n_v, n);
       EXPECT_EQ(still.n_u, 0u);
       EXPECT_EQ(still.n_p, recursive.n_p);
     }
     Counting rebuilt;
-    deferred.run(this->pair(query, rebuilt));
+    this->run(deferred, query, rebuilt);
     EXPECT_EQ(rebuilt.n_v, 2 * n - 1);
     EXPECT_EQ(deferred.front_size(), n);
   }
@@ -116,7 +151,7 @@ TYPED_TEST(FrontLaws, DeferringByKSpreadsARebuildOverKPlusTwoRuns) {
     std::vector<Contact> found;
     Contacts query(found);
     Deferred deferred(k);
-    for (unsigned run = 0; run < 10 * (k + 2); ++run) deferred.run(this->pair(query, counter));
+    for (unsigned run = 0; run < 10 * (k + 2); ++run) this->run(deferred, query, counter);
     const std::uint64_t n = deferred.front_size();
     EXPECT_EQ(counter.n_v, 10 * ((2 * n - 1) + (k + 1) * n));
   }
@@ -129,15 +164,15 @@ TYPED_TEST(FrontLaws, AListSavesLessTheWiderTheTree) {
   for (const std::uint32_t fan_out : {2u, 4u, 16u})
     for (const Frame frame : {Frame::world, Frame::body}) {
       this->use(fan_out, frame);
-      ASSERT_LE(this->hierarchy_.fan_out(), fan_out);
+      ASSERT_LE(this->bodies_->hierarchy().fan_out(), fan_out);
       this->place(Pose{}, at(1.3, 0.7));
       std::vector<Contact> found;
       Contacts query(found);
       Counting recursive, first, still;
-      Recursive().run(this->pair(query, recursive));
+      this->run(Recursive(), query, recursive);
       Deferred deferred(1);
-      deferred.run(this->pair(query, first));
-      deferred.run(this->pair(query, still));
+      this->run(deferred, query, first);
+      this->run(deferred, query, still);
       const std::uint64_t n = deferred.front_size();
       EXPECT_EQ(first.n_v, recursive.n_v);
       EXPECT_EQ(still.n_v, n);
@@ -157,14 +192,14 @@ TYPED_TEST(FrontLaws, EveryFrontIsAPartitionOnTreesOfEveryFanOut) {
         std::mt19937_64 random(fan_out);
         std::uniform_real_distribution<double> anywhere(-2, 2), step(-0.05, 0.05);
         Strategy strategy;
-        NotCounting counter;
+        Counting counter;
         double x = 0, angle = 0;
         for (int frame = 0; frame < 100; ++frame) {
           x = frame % 20 ? x + step(random) : anywhere(random);
           angle += step(random);
           this->place(Pose{}, at(x, angle));
           Touching query;
-          strategy.run(this->pair(query, counter));
+          this->run(strategy, query, counter);
           if (strategy.front_size() > 0) this->expect_partition(strategy.front(), Strategy::name);
         }
       }
@@ -175,16 +210,16 @@ TYPED_TEST(FrontLaws, EveryFrontIsAPartitionOnTreesOfEveryFanOut) {
 TYPED_TEST(FrontLaws, AFrontRisesToTheRootsWhenBodiesPart) {
   for (const std::uint32_t fan_out : {2u, 4u, 16u}) {
     this->use(fan_out, Frame::world);
-    NotCounting counter;
+    Counting counter;
     std::vector<Contact> found;
     Contacts query(found);
     Raise raise;
     this->place(Pose{}, at(1.3, 0.7));
-    for (int run = 0; run < 10; ++run) raise.run(this->pair(query, counter));
+    for (int run = 0; run < 10; ++run) this->run(raise, query, counter);
     EXPECT_GT(raise.front_size(), 10u);
     for (int run = 0; run < 400; ++run) {
       this->place(Pose{}, at(1.3 + 0.02 * run, 0.7));
-      raise.run(this->pair(query, counter));
+      this->run(raise, query, counter);
     }
     EXPECT_EQ(raise.front_size(), 1u);
   }
@@ -199,13 +234,13 @@ TYPED_TEST(FrontLaws, TheFrontStaysAPartitionWhateverCutsARunShort) {
       std::mt19937_64 random(7);
       std::uniform_real_distribution<double> anywhere(-2, 2), angle(0, 6);
       Strategy strategy;
-      NotCounting counter;
+      Counting counter;
       int hits = 0;
       constexpr int frames = 150;
       for (int frame = 0; frame < frames; ++frame) {
         this->place(at(anywhere(random), angle(random)), at(anywhere(random), angle(random)));
         Touching query;
-        strategy.run(this->pair(query, counter));
+        this->run(strategy, query, counter);
         hits += query.touching();
         // A strategy may go without a front for a while.
         if (strategy.front_size() > 0) this->expect_partition(strategy.front(), Strategy::name);
@@ -221,26 +256,22 @@ TYPED_TEST(FrontLaws, TheFrontStaysAPartitionWhateverCutsARunShort) {
 /// it measured whenever the query changes. The pairs rotate at different speeds, so that its sums
 /// over frames fall from one run to the next.
 TYPED_TEST(FrontLaws, NoVerdictOfOtherBodiesIsReused) {
-  Body<TypeParam> fast_a(this->mesh_, this->hierarchy_), fast_b(this->mesh_, this->hierarchy_);
-  using B = typename TestFixture::B;
   Strategies::for_each([&]<class Strategy>(std::type_identity<Strategy>) {
     Strategy strategy;
-    NotCounting counter;
+    Counting counter;
     std::size_t contacts = 0;
     for (int frame = 0; frame < 100; ++frame) {
       const double x = 1.3 - 0.002 * frame;
       this->place(Pose{}, at(x, 0.7 + 0.002 * frame));
-      fast_a.move(at(0, 0.7 * frame), Vec3<double>::Zero());
-      fast_b.move(at(x, 0.5), Vec3<double>::Zero());
+      this->bodies_->move(2, at(0, 0.7 * frame));
+      this->bodies_->move(3, at(x, 0.5));
       const std::vector<Contact> found = this->contacts(strategy, counter);
       ASSERT_EQ(found, this->contacts(Recursive(), counter))
           << Strategy::name << " in frame " << frame;
       contacts += found.size();
       Touching one, from_roots;
-      strategy.run(BodyPair<B, TypeParam, Touching, NotCounting>(fast_a, fast_b, one, counter,
-                                                                 this->workspace_));
-      Recursive().run(BodyPair<B, TypeParam, Touching, NotCounting>(fast_a, fast_b, from_roots,
-                                                                    counter, this->workspace_));
+      this->bodies_->run(strategy, {2, 3}, one, counter);
+      this->bodies_->run(Recursive(), {2, 3}, from_roots, counter);
       ASSERT_EQ(one.touching(), from_roots.touching()) << Strategy::name << " in frame " << frame;
     }
     EXPECT_GT(contacts, 100u);
@@ -251,7 +282,7 @@ TYPED_TEST(FrontLaws, NoVerdictOfOtherBodiesIsReused) {
 /// begin again.
 TYPED_TEST(FrontLaws, OnlyGapsThatLastAreMeasured) {
   Margins margins, touching;
-  NotCounting counter;
+  Counting counter;
   std::size_t contacts = 0;
   std::array<int, 2> runs_that_measured{};  // fast, slow
   double angle = 0;
@@ -264,7 +295,7 @@ TYPED_TEST(FrontLaws, OnlyGapsThatLastAreMeasured) {
       ASSERT_EQ(this->contacts(margins, counter), expected)
           << "in frame " << frame << ", run " << runs;
       Touching yes_or_no;
-      touching.run(this->pair(yes_or_no, counter));
+      this->run(touching, yes_or_no, counter);
       ASSERT_EQ(yes_or_no.touching(), !expected.empty()) << "in frame " << frame;
       if (runs > 0) continue;
       std::size_t known = 0;
@@ -282,25 +313,23 @@ TYPED_TEST(FrontLaws, OnlyGapsThatLastAreMeasured) {
 
 /// Beside large triangles margins open the small nodes, and only where that widens gaps.
 TYPED_TEST(FrontLaws, LargeTrianglesDoNotLengthenFrontsOfMargins) {
-  using B = typename TestFixture::B;
-  TriangleMesh ground;
+  std::array<TriangleMesh, 2> meshes{TriangleMesh{}, this->mesh_};
+  TriangleMesh& ground = meshes[0];
   ground.vertices = {{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}};
   ground.triangles = {{0, 1, 2}, {0, 2, 3}};
-  const Hierarchy<TypeParam> tree(ground, builds::TopDownPrincipal::topology(ground, 1));
-  Body<TypeParam> below(ground, tree);
-  below.move(Pose{}, Vec3<double>::Zero());
+  AskedBodies<TypeParam> bodies(meshes, 2);
+  bodies.move(0, Pose{});
   Margins margins;
   SeparationList list;
   std::size_t of_margins = 0, of_list = 0;
-  NotCounting counter;
+  Counting counter;
   for (int frame = 0; frame < 200; ++frame) {
     Pose pose = at(0.1 * frame, 0.1 * frame);
     pose.translation[2] = 1.2 + 0.3 * std::sin(0.1 * frame);
-    this->a_.move(pose, Vec3<double>::Zero());
+    bodies.move(1, pose);
     const auto touching = [&](auto&& strategy) {
       Touching query;
-      strategy.run(BodyPair<B, TypeParam, Touching, NotCounting>(below, this->a_, query, counter,
-                                                                 this->workspace_));
+      bodies.run(strategy, {0, 1}, query, counter);
       return query.touching();
     };
     const bool expected = touching(Recursive());
@@ -337,19 +366,24 @@ class FirstHit : public Touching {
 };
 
 TYPED_TEST(FrontLaws, MarginsRepeatAHitThatStillTouches) {
+  Body<TypeParam> a(this->mesh_, this->bodies_->hierarchy()), b(this->mesh_, a.hierarchy());
+  a.move(Pose{}, Vec3<double>::Zero());
+  Workspace workspace;
   for (const double step : {0.001, 0.004, 0.02}) {
     Margins margins;
-    NotCounting counter;
+    Counting counter;
     std::size_t quiet = 0;
     for (int frame = 0; frame < 400; ++frame) {
       const Pose pose = at(0.5 + 0.3 * std::sin(step * frame), step * frame);
       this->place(Pose{}, pose);
+      b.move(pose, Vec3<double>::Zero());
       std::vector<Contact> contacts;
       Contacts all(contacts);
-      Recursive().run(this->pair(all, counter));
+      this->run(Recursive(), all, counter);
       FirstHit query;
       Counting counted;
-      margins.run(this->pair(query, counted));
+      margins.run(BodyPair<NativeBatch<typename TypeParam::scalar>, TypeParam, FirstHit, Counting>(
+          a, b, query, counted, workspace));
       ASSERT_EQ(query.touching(), !contacts.empty()) << frame;
       if (!query.touching()) continue;
       quiet += counted.n_v + counted.n_p == 0;
@@ -373,14 +407,14 @@ TYPED_TEST(FrontLaws, SpheresOfEnlargedBodiesAreEnlarged) {
     a.rotation = scale * towards(1), b.rotation = scale * towards(-1);
     Strategies::for_each([&]<class Strategy>(std::type_identity<Strategy>) {
       Strategy strategy;
-      NotCounting counter;
+      Counting counter;
       std::size_t touching = 0;
       for (int frame = 0; frame < 60; ++frame) {
         b.translation[0] = 2 * tip.norm() * (1 + (scale - 1) * (frame / 3 % 2 ? 0.3 : 1.5));
         this->place(a, b);
         Touching query, from_roots;
-        strategy.run(this->pair(query, counter));
-        Recursive().run(this->pair(from_roots, counter));
+        this->run(strategy, query, counter);
+        this->run(Recursive(), from_roots, counter);
         EXPECT_EQ(query.touching(), from_roots.touching()) << Strategy::name << ' ' << scale;
         touching += from_roots.touching();
       }
@@ -416,7 +450,7 @@ TYPED_TEST(FrontLaws, ARisingFrontStaysAPartitionWhateverIsRaised) {
   std::mt19937_64 random(8);
   std::uniform_real_distribution<double> anywhere(-2, 2), step(-0.02, 0.02);
   Raise raise;
-  NotCounting counter;
+  Counting counter;
   std::vector<Contact> found;
   int partial = 0;
   double x = 0, angle = 0;
@@ -428,9 +462,9 @@ TYPED_TEST(FrontLaws, ARisingFrontStaysAPartitionWhateverIsRaised) {
     Touching touching;
     Contacts contacts(found);
     if (frame % 3)
-      raise.run(this->pair(touching, counter));
+      this->run(raise, touching, counter);
     else
-      raise.run(this->pair(contacts, counter));
+      this->run(raise, contacts, counter);
     if (raise.front().empty()) continue;  // dropped: it does not pay now
     this->expect_partition(raise.front(), Raise::name);
     partial += touching.touching();
@@ -445,12 +479,12 @@ TYPED_TEST(FrontLaws, AFrontAtRestTriesParentsLessAndLess) {
     Contacts query(found);
     Raise raise;
     Counting first;
-    raise.run(this->pair(query, first));
+    this->run(raise, query, first);
     const std::uint64_t n = raise.front_size();
     EXPECT_EQ(first.n_v, 2 * n - 1);
     for (int run = 1; run <= 96; ++run) {
       Counting still;
-      raise.run(this->pair(query, still));
+      this->run(raise, query, still);
       EXPECT_EQ(still.n_p, first.n_p);
       EXPECT_LE(still.n_v, n + n / 2);
       EXPECT_GE(still.n_v, n);
@@ -468,8 +502,8 @@ TYPED_TEST(FrontLaws, AHitIsTheFirstToBeTestedNextTime) {
   Deferred deferred(1);
   Counting first, again;
   Touching one, two;
-  deferred.run(this->pair(one, first));
-  deferred.run(this->pair(two, again));
+  this->run(deferred, one, first);
+  this->run(deferred, two, again);
   EXPECT_TRUE(one.touching() && two.touching());
   EXPECT_EQ(again.n_p, 1u);
   EXPECT_EQ(again.n_v, 1u);
@@ -480,8 +514,8 @@ TYPED_TEST(FrontLaws, AWitnessDecidesBeforeAnyVolumeIsTested) {
   Witness witness;
   Counting first, again, other;
   Touching one, two;
-  witness.run(this->pair(one, first));
-  witness.run(this->pair(two, again));
+  this->run(witness, one, first);
+  this->run(witness, two, again);
   EXPECT_TRUE(one.touching() && two.touching());
   EXPECT_GT(first.n_v, 0u);
   EXPECT_EQ(again.n_v, 0u);
@@ -492,7 +526,7 @@ TYPED_TEST(FrontLaws, AWitnessDecidesBeforeAnyVolumeIsTested) {
   EXPECT_EQ(this->contacts(witness, other), expected);
   this->place(Pose{}, at(9));
   Touching apart;
-  witness.run(this->pair(apart, other));
+  this->run(witness, apart, other);
   EXPECT_FALSE(apart.touching());
 }
 
@@ -503,8 +537,8 @@ TYPED_TEST(FrontLaws, TheLastNearestLeavesSpareTestsOfDistances) {
     this->place(Pose{}, at(2.4 + 0.01 * frame, 0.02 * frame));
     Counting roots, kept;
     Distance expected, found;
-    RecursiveBoth().run(this->pair(expected, roots));
-    witness.run(this->pair(found, kept));
+    this->run(RecursiveBoth(), expected, roots);
+    this->run(witness, found, kept);
     EXPECT_NEAR(found.distance(), expected.distance(), 0x1p-45 * expected.distance()) << frame;
     if (frame > 0) from_roots += roots.n_v, with_witness += kept.n_v;
   }
