@@ -92,7 +92,7 @@ template <class With>
 void with_memory(const Variant& variant, const With& with) {
   const std::string_view name = name_of(variant.strategy);
   if (name == "margins" || name == "adaptive") return with(WideMargins());
-  if (name == "witness") return with(WitnessMemory());
+  if (name == "witness") return with(NoMemory(NoMemory::Witness::kept));
   if (name == "separation-list") return with(ListMemory());
   if (name == "deferred") return with(ListMemory(made_from<Deferred>(variant.strategy).rule()));
   if (name == "by-cost") return with(ListMemory(ByCost().rule()));

@@ -166,7 +166,7 @@ struct ObbSiblingTest<float> {
   [[gnu::always_inline]] static OverlapLanes<S> overlap(const PosedNode& one,
                                                         const FrameChange& frame_change,
                                                         const Obb<S>& lanes, const S& sizes) {
-    return overlap<S>(in_lanes<S>(one), frame_change, lanes, sizes + S(one.size));
+    return overlap<S>(in_lanes<S>(one), frame_change, lanes, sizes);
   }
 
   /// A lower bound on the distance: of one box from the box around the other along its axes, or

@@ -4,8 +4,9 @@
 ///
 ///   FrameChange                 from one body's frame to the other's: once per pair of bodies
 ///   PosedNode, posed_node(...)  one volume, posed into the other's frame: one N_u
-///   overlap(one, ...)           which lanes are disjoint from it, and an order of the rest: those
-///                               likeliest to touch come first
+///   overlap(one, ..., sizes)    which lanes are disjoint from it, and an order of the rest: those
+///                               likeliest to touch come first; `sizes` are the sums of the sizes
+///                               of both volumes
 ///   gaps(one, ...)              a lower bound on its distance to each lane
 ///   separation(one, ...)        optional and cheaper: the same, negative where they may overlap
 ///   in_lanes(volumes, ...)      a volume of the first body in each lane, posed; in the three tests
@@ -89,7 +90,7 @@ struct PosedSiblingTest {
   template <Batched S>
   [[gnu::always_inline]] static OverlapLanes<S> overlap(const PosedNode& one, const FrameChange&,
                                                         const Over<V, S>& lanes, const S& sizes) {
-    return detail::overlap_of_posed<S>(in_all_lanes<S>(one.volume), lanes, sizes + S(one.size));
+    return detail::overlap_of_posed<S>(in_all_lanes<S>(one.volume), lanes, sizes);
   }
   template <Batched S>
   [[gnu::always_inline]] static S gaps(const PosedNode& one, const FrameChange&,

@@ -190,15 +190,8 @@ struct SlabBoxSiblingTest<float> {
   }
 
   /// The order is the penetration relative to the sizes, deepest first.
-  template <Batched S>
-  [[gnu::always_inline]] static OverlapLanes<S> overlap(const PosedNode& one,
-                                                        const FrameChange& frame_change,
-                                                        const SlabBox<S>& lanes, const S& sizes) {
-    const S apart = separation<S>(one, frame_change, lanes);
-    return {apart > S(0.0f), apart * roughly_one_over<S>(sizes + S(one.size))};
-  }
-  template <Batched S>
-  [[gnu::always_inline]] static OverlapLanes<S> overlap(const PosedLanes<S>& one,
+  template <Batched S, class One>
+  [[gnu::always_inline]] static OverlapLanes<S> overlap(const One& one,
                                                         const FrameChange& frame_change,
                                                         const SlabBox<S>& lanes, const S& sizes) {
     const S apart = separation<S>(one, frame_change, lanes);

@@ -110,9 +110,11 @@ class SupportMap {
     const auto at = [k](const double* p) { return Several(p + k, stdx::element_aligned); };
     return (at(from[0]) * g[0] + at(from[1]) * g[1]) + at(from[2]) * g[2];
   }
+  std::array<const double*, 3> first_points() const {
+    return {points_[0].data(), points_[1].data(), points_[2].data()};
+  }
   double highest(const Vec3<double>& g, std::size_t b) const {
-    const std::array<const double*, 3> from{points_[0].data(), points_[1].data(),
-                                            points_[2].data()};
+    const auto from = first_points();
     Several most(-std::numeric_limits<double>::infinity());
     for (std::size_t k = b * block; k < (b + 1) * block; k += Several::size())
       most = stdx::max(most, along(g, from, k));
@@ -139,14 +141,18 @@ class SupportMap {
   }
   /// The first point of block b with height `most`.
   SupportSample first_at(const Vec3<double>& g, double most, std::size_t b) const {
-    const auto height = [&](std::size_t k) {
-      return (points_[0][k] * g[0] + points_[1][k] * g[1]) + points_[2][k] * g[2];
-    };
-    std::size_t at = b * block;
-    while (at + 1 < (b + 1) * block && height(at) != most) ++at;
+    const auto from = first_points();
+    // The last one where there is no such point, as with NaN.
+    std::size_t at = (b + 1) * block - 1;
+    for (std::size_t k = b * block; k < (b + 1) * block; k += Several::size())
+      if (const auto found = along(g, from, k) == most; stdx::any_of(found)) {
+        at = k + static_cast<std::size_t>(stdx::find_first_set(found));
+        break;
+      }
+    const double height = (points_[0][at] * g[0] + points_[1][at] * g[1]) + points_[2][at] * g[2];
     SupportSample found;
     for (int k = 0; k < 3; ++k) found.point[k] = static_cast<float>(points_[k][at]);
-    found.height = rounded_up<float>(height(at) + 8 * unit_roundoff<double> * farthest_);
+    found.height = rounded_up<float>(height + 8 * unit_roundoff<double> * farthest_);
     return found;
   }
 

@@ -125,16 +125,16 @@ TEST(AllocationFailures, EveryStrategyStartsAnew) {
 }
 
 template <class V, int F, class Memory, class Kernel>
-void expect_wide_pairs_start_anew() {
+void expect_wide_pairs_start_anew(const Memory& memory = {}) {
   for (const auto& [scene, truth] : motions_with_truth()) {
-    PlayedWide<V, F, Memory, Kernel> played(scene, static_cast<std::uint32_t>(F));
+    PlayedWide<V, F, Memory, Kernel> played(scene, static_cast<std::uint32_t>(F), memory);
     expect_answers_after_failures(played.engine(), scene, truth, Kernel::name);
   }
 }
 TEST(AllocationFailures, WidePairsStartAnew) {
   expect_wide_pairs_start_anew<SlabBox<float>, 8, WideMargins, SiblingsKernel>();
   expect_wide_pairs_start_anew<Obb<float>, 4, WideMargins, MixedKernel>();
-  expect_wide_pairs_start_anew<Obb<float>, 4, RaisedLists, MixedKernel>();
+  expect_wide_pairs_start_anew<Obb<float>, 4, ListMemory, MixedKernel>(raised_lists());
   expect_wide_pairs_start_anew<Obb<float>, 4, NoMemory, MixedKernel>();
 }
 

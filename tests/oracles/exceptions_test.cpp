@@ -104,16 +104,16 @@ TEST(Exceptions, EveryStrategyStartsAnew) {
 }
 
 template <class V, int F, class Kernel, class Memory = WideMargins>
-void expect_wide_pairs_start_anew() {
+void expect_wide_pairs_start_anew(const Memory& memory = {}) {
   for (const auto& [scene, truth] : motions_with_truth()) {
-    PlayedWide<V, F, Memory, Kernel> played(scene, static_cast<std::uint32_t>(F));
+    PlayedWide<V, F, Memory, Kernel> played(scene, static_cast<std::uint32_t>(F), memory);
     expect_answers_after_exceptions(played.engine(), scene, truth, Kernel::name);
   }
 }
 TEST(Exceptions, WidePairsStartAnew) {
   expect_wide_pairs_start_anew<SlabBox<float>, 8, SiblingsKernel>();
   expect_wide_pairs_start_anew<Obb<float>, 4, MixedKernel>();
-  expect_wide_pairs_start_anew<Obb<float>, 4, MixedKernel, RaisedLists>();
+  expect_wide_pairs_start_anew<Obb<float>, 4, MixedKernel, ListMemory>(raised_lists());
 }
 
 TEST(Once, WorkThatThrowsIsDoneByTheNext) {

@@ -14,9 +14,9 @@ TEST(WideMixed, EveryQueryIsBruteForce) { expect_truth<Box, 4, MixedKernel>(); }
 
 TEST(WideMixed, RememberingIsBruteForce) {
   expect_truth_in_motion<Box, 4, WideMargins, MixedKernel>();
-  expect_truth_in_motion<Box, 4, WitnessMemory, MixedKernel>();
+  expect_truth_in_motion<Box, 4, NoMemory, MixedKernel>(NoMemory(NoMemory::Witness::kept));
   expect_truth_in_motion<Box, 4, ListMemory, MixedKernel>();
-  expect_truth_in_motion<Box, 4, RaisedLists, MixedKernel>();
+  expect_truth_in_motion<Box, 4, ListMemory, MixedKernel>(raised_lists());
 }
 
 TEST(WideMixed, SiblingsOfBoxesAreBruteForce) {

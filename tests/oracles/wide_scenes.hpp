@@ -213,19 +213,24 @@ class PlayedWide {
  public:
   using Hierarchy = typename Kernel::template Hierarchy<V, F>;
 
-  PlayedWide(const Scene& scene, std::uint32_t leaf_size)
-      : PlayedWide(scene, [leaf_size](const TriangleMesh& mesh) {
-          return Hierarchy(mesh, builds::BottomUpLocal::topology(mesh, 1), Fit::published,
-                           leaf_size);
-        }) {}
+  PlayedWide(const Scene& scene, std::uint32_t leaf_size, const Memory& memory = {})
+      : PlayedWide(
+            scene,
+            [leaf_size](const TriangleMesh& mesh) {
+              return Hierarchy(mesh, builds::BottomUpLocal::topology(mesh, 1), Fit::published,
+                               leaf_size);
+            },
+            1, memory) {}
   /// Over the trees that `hierarchy(mesh)` returns.
   template <class MakeHierarchy>
     requires std::invocable<MakeHierarchy, const TriangleMesh&>
-  PlayedWide(const Scene& scene, MakeHierarchy&& hierarchy, int threads = 1) : scene_(scene) {
+  PlayedWide(const Scene& scene, MakeHierarchy&& hierarchy, int threads = 1,
+             const Memory& memory = {})
+      : scene_(scene) {
     for (const auto& mesh : scene.meshes) hierarchies_.push_back(hierarchy(mesh));
     const auto shapes = shapes_over(scene.meshes, hierarchies_, scene.frames[0].size());
     engine_ = std::make_unique<AllPairsOf<WidePairs<V, F, Memory, Kernel>>>(
-        WidePairs<V, F, Memory, Kernel>(shapes),
+        WidePairs<V, F, Memory, Kernel>(shapes, memory),
         all_object_pairs(static_cast<std::uint32_t>(shapes.size())), threads);
   }
 
@@ -314,15 +319,15 @@ void expect_truth() {
 }
 
 /// Lists whose entries rise.
-struct RaisedLists : ListMemory {
-  RaisedLists() : ListMemory(RebuildRule::by_last_rebuild(), Raise::tried) {}
-};
+inline ListMemory raised_lists() {
+  return ListMemory(RebuildRule::by_last_rebuild(), ListMemory::Raise::tried);
+}
 
 /// One engine for all queries, one after the other, so that each begins with another's memory.
 template <class V, int F, class Memory, class Kernel = SiblingsKernel>
-void expect_truth_in_motion() {
+void expect_truth_in_motion(const Memory& memory = {}) {
   for (const auto& [scene, truth] : motions_with_truth()) {
-    PlayedWide<V, F, Memory, Kernel> played(scene, static_cast<std::uint32_t>(F));
+    PlayedWide<V, F, Memory, Kernel> played(scene, static_cast<std::uint32_t>(F), memory);
     played.expect_touching(truth);
     played.expect_contacts(truth);
     played.expect_touching(truth);

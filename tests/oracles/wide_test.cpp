@@ -45,7 +45,7 @@ TEST(Wide, RememberingIsBruteForce) {
 
 TEST(Wide, ListsAreBruteForce) {
   expect_truth_in_motion<SlabBox<float>, 16, ListMemory>();
-  expect_truth_in_motion<SlabBox<float>, 16, RaisedLists>();
+  expect_truth_in_motion<SlabBox<float>, 16, ListMemory>(raised_lists());
 }
 
 double exact_support(const TriangleMesh& mesh, const Vec3<double>& centre, const Vec3<double>& d) {

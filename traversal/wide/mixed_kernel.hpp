@@ -149,7 +149,7 @@ struct MixedKernel {
         return volumes([&](std::size_t k) { return of_sixteen(block.volume[k].data(), part); });
       }
       [[gnu::always_inline]] S sizes(std::size_t part) const {
-        return of_sixteen(block.size.data(), part);
+        return of_sixteen(block.size.data(), part) + S(posed.size);
       }
       [[gnu::always_inline]] OverlapLanes<S> overlap(std::size_t part) const {
         return SiblingTest::template overlap<S>(posed, pair_frame.frames_.change[side],
@@ -157,7 +157,7 @@ struct MixedKernel {
       }
       [[gnu::always_inline]] GapLanes<S> separation(std::size_t part) const {
         return separation_of<SiblingTest, S>(posed, pair_frame.frames_.change[side], others(part),
-                                             sizes(part) + S(posed.size));
+                                             sizes(part));
       }
       [[gnu::always_inline]] S gaps(std::size_t part) const {
         return SiblingTest::template gaps<S>(posed, pair_frame.frames_.change[side], others(part));

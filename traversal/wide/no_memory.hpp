@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Nothing is kept of a traversal: each pair of bodies starts from the roots in every frame. Only
-/// the last answer is kept, which decides the order of steps.
+/// No front is kept: each pair of bodies starts from the roots in every frame. Kept are the last
+/// answer, which decides the order of steps, and, if asked for, the two leaves that decided the last
+/// run (a witness), which are tested first.
 ///
 /// A memory keeps state of pairs of bodies from frame to frame. WidePairs calls
 ///   add_body(extent), resize(pairs)         for the bodies and the number of pairs
@@ -20,7 +21,9 @@
 /// and uses Record<S>, the type of what a traversal records for it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -46,11 +49,26 @@ class NoMemory {
   template <class S>
   using Record = FrontRecord<S, Keeps::nothing>;
 
+  enum class Witness : std::uint8_t { none, kept };
+  NoMemory() = default;
+  explicit NoMemory(Witness witness) : witness_(witness) {}
+
   void add_body(const HierarchyExtent& extent) { spheres_.push_back(extent); }
-  void resize(std::size_t pairs) { touched_.resize(pairs); }
-  static void forget(std::size_t) {}
+  void resize(std::size_t pairs) {
+    touched_.resize(pairs);
+    if (witness_ == Witness::kept) witnesses_.resize(pairs);
+  }
+  void forget(std::size_t p) {
+    if (witness_ == Witness::kept) witnesses_[p].reset();
+  }
+  /// Another query than in the last frame starts without a witness; returns whether it is another.
   template <class Query>
-  static void begin_frame() {}
+  bool begin_frame() {
+    if (last_query_ == &Query::name) return false;
+    last_query_ = &Query::name;
+    std::fill(witnesses_.begin(), witnesses_.end(), std::nullopt);
+    return true;
+  }
 
   template <class Body>
   void move(std::size_t i, Body& body, const Pose& pose, EarlyCulling& culling,
@@ -80,20 +98,26 @@ class NoMemory {
 
   template <class Query>
   TraversalStart start(std::size_t p, const ObjectPair&) const {
+    TraversalStart start;
     // The last answer is the one to expect next.
     if constexpr (AnswersYesOrNo<Query>)
-      return {touched_[p] ? Expect::touching : Expect::apart};
-    else
-      return {};
+      start.expect = touched_[p] ? Expect::touching : Expect::apart;
+    if constexpr (!FindsAllHits<Query>)
+      if (witness_ == Witness::kept) start.witness = witnesses_[p];
+    return start;
   }
   template <class Query, class Record>
-  void remember(std::size_t p, const ObjectPair&, const Query& query, const Record&) {
+  void remember(std::size_t p, const ObjectPair&, const Query& query, const Record& found) {
     if constexpr (AnswersYesOrNo<Query>) touched_[p] = query.answer();
+    if (witness_ == Witness::kept && found.touched()) witnesses_[p] = found.touched();
   }
 
  private:
   std::vector<HierarchyExtent> spheres_;  // of the bodies
   std::vector<std::uint8_t> touched_;  // in the last frame; affects only the order of steps
+  Witness witness_ = Witness::none;
+  std::vector<std::optional<NodePair>> witnesses_;
+  const std::string_view* last_query_ = nullptr;
 };
 
 }  // namespace bvlab

@@ -109,7 +109,8 @@ class RelativeFrame {
   [[gnu::always_inline]] OverlapLanes<S> overlap(std::size_t side, std::uint32_t node,
                                                  const PosedNode& posed) const {
     const auto& lanes = hierarchies_[side]->children(node);
-    return SiblingTest::template overlap<S>(posed, frames_.change[side], lanes.volumes, lanes.size);
+    return SiblingTest::template overlap<S>(posed, frames_.change[side], lanes.volumes,
+                                            lanes.size + S(posed.size));
   }
   [[gnu::always_inline]] S gaps(std::size_t side, std::uint32_t node,
                                 const PosedNode& posed) const {
