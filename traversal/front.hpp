@@ -40,10 +40,17 @@ class Front : public FrontDefaults {
     if (front.witnessed()) set_witness(front.witness());
   }
 
-  void clear() { entries_.clear(), holes_.clear(); }
+  void clear() { entries_.clear(), holes_.clear(), below_roots_ = false; }
+
+  /// Starts again from the children of the two roots, which are known to overlap.
+  void restart_below_roots() {
+    clear();
+    below_roots_ = true, witnessed_ = false;
+  }
 
   template <class Traversal>
   bool sweep(Traversal& traversal) {
+    if (enters_below_roots(traversal)) return false;
     const std::size_t entries = size(), first = witnessed();  // added entries are not retested
     if (first > 0 && traversal.test_entry(0)) return true;
     return traversal.test_entries(entries - first, [first](std::size_t i) { return first + i; });
@@ -78,11 +85,19 @@ class Front : public FrontDefaults {
   bool witnessed() const { return witnessed_; }
 
  protected:
+  template <class Traversal>
+  bool enters_below_roots(Traversal& traversal) {
+    if (!std::exchange(below_roots_, false)) return false;
+    traversal.enter({0, 0});
+    return true;
+  }
+
   std::vector<NodePair> entries_;
   bool witnessed_ = false;
 
  private:
   std::vector<std::uint32_t> holes_;  // empty between runs
+  bool below_roots_ = false;
 };
 
 /// The most entries that the list of a pair of bodies may have before it is rebuilt, whatever its

@@ -28,6 +28,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "traversal/no_front.hpp"
 #include "traversal/strategies/rising_front.hpp"
 
 namespace bvlab {
@@ -52,6 +53,33 @@ class Raise {
     const TraversalStatistics statistics = pair.from_front(front_);
     if (!rebuild && statistics.everything) judge(static_cast<double>(statistics.volumes));
     return statistics;
+  }
+
+  /// Also where the roots are its one entry.
+  bool starts_at_roots() const { return recursions_ > 0 || front_.size() <= 1; }
+  void roots_are_apart() {
+    if (recursions_ > 0) {
+      --recursions_;
+      return;
+    }
+    if (front_.empty()) {
+      front_.restart();
+      paid_ = false;
+    }
+    front_.pass_by();
+  }
+  template <class Pair>
+  void run_below_roots(const Pair& pair) {
+    if (recursions_ > 0) {
+      --recursions_;
+      pair.from_roots(Start::below_roots);
+      return;
+    }
+    const bool rebuild = front_.empty();
+    if (rebuild) paid_ = false;
+    front_.restart_below_roots();
+    const TraversalStatistics statistics = pair.from_front(front_);
+    if (!rebuild && statistics.everything) judge(1 + static_cast<double>(statistics.volumes));
   }
 
   const Front& front() const { return front_; }

@@ -19,8 +19,9 @@ class RebuildRule {
   /// Rebuilt once a run has made as many tests as the last rebuild.
   static RebuildRule by_last_rebuild() { return {Kind::rebuild, 0}; }
 
-  /// Whether the next run is to start from the roots. `longest`: a list that is longer is rebuilt
-  /// whatever it costs, unless the rule is about growth alone.
+  /// Whether the next run is to start from the roots, by the runs so far. `longest`: a list that is
+  /// longer is rebuilt whatever it costs, unless the rule is about growth alone.
+  bool due() const { return due_; }
   bool due(std::size_t size, std::size_t longest) const {
     return due_ || (kind_ != Kind::still && size > longest);
   }

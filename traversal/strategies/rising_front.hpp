@@ -121,6 +121,13 @@ class RisingFront : public Front {
     table_.clear();
   }
 
+  void restart_below_roots() {
+    clear();
+    Front::restart_below_roots();
+  }
+  /// A run has ended whose one entry, the roots, was apart.
+  void pass_by() { ++run_; }
+
   void open(std::size_t slot) {
     table_.erase(entries_[slot], entries_);
     Front::open(slot);
@@ -150,6 +157,10 @@ class RisingFront : public Front {
   /// entries. What was raised has been tested.
   template <class Traversal>
   bool sweep(Traversal& traversal) {
+    if (enters_below_roots(traversal)) {
+      pass_by();
+      return false;
+    }
     if (witnessed() && traversal.test_entry(0)) return true;
     const std::size_t raised = rise(traversal), first = witnessed();
     return traversal.test_entries(size() - raised - first,

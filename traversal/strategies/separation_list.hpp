@@ -39,6 +39,20 @@ class RebuiltList {
     return statistics;
   }
 
+  /// Also where the roots are its one entry.
+  bool starts_at_roots() const { return front_.size() <= 1 || rule_.due(); }
+  void roots_are_apart() {
+    if (front_.empty() || rule_.due()) front_.restart(), rule_.restart();
+    rule_.ran(false, 1);
+  }
+  template <class Pair>
+  void run_below_roots(const Pair& pair) {
+    if (front_.empty() || rule_.due()) rule_.restart();
+    front_.restart_below_roots();
+    const TraversalStatistics statistics = pair.from_front(front_);
+    rule_.ran(front_.size() > 1, 1 + statistics.volumes);
+  }
+
   const RebuildRule& rule() const { return rule_; }
   const Front& front() const { return front_; }
   std::size_t front_size() const { return front_.size(); }

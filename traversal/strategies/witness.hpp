@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "traversal/no_front.hpp"
@@ -20,6 +21,8 @@ namespace bvlab {
 /// A front without entries that remembers the leaves which decided a run.
 class WitnessedRoots : public NoFrontBoth {
  public:
+  Start start = Start::roots;  ///< of the next run
+
   /// Whether there is a witness: then a query that wants a bound gets it from that.
   bool witnessed() const { return known_; }
 
@@ -31,8 +34,7 @@ class WitnessedRoots : public NoFrontBoth {
         traversal.hold(witness_, add(witness_, EntryState::near, 0));
         if (traversal.flush()) return true;
       }
-    traversal.push({0, 0});
-    return false;
+    return NoFront(std::exchange(start, Start::roots)).sweep(traversal);
   }
 
   /// Leaves get a slot for the run, for the query to name the witness by.
@@ -63,6 +65,15 @@ class Witness {
   void run(const Pair& pair) {
     pair.from_front(front_);
   }
+
+  bool starts_at_roots() const { return !front_.witnessed(); }
+  static void roots_are_apart() {}
+  template <class Pair>
+  void run_below_roots(const Pair& pair) {
+    front_.start = Start::below_roots;
+    pair.from_front(front_);
+  }
+
   std::size_t front_size() const { return 0; }
 
  private:
