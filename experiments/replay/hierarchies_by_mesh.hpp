@@ -23,7 +23,7 @@ struct OneOfHierarchies {
 class HierarchiesByMesh {
  public:
   /// `first` are hierarchies of that volume, made by the variant.
-  HierarchiesByMesh(const VolumeEntry& volume, std::unique_ptr<AnyHierarchies> first,
+  HierarchiesByMesh(const VolumeEntry& volume, std::shared_ptr<const AnyHierarchies> first,
                     const Variant& variant)
       : volume_(&volume), variant_(variant) {
     keep(std::move(first));
@@ -37,7 +37,7 @@ class HierarchiesByMesh {
   }
 
  private:
-  void keep(std::unique_ptr<AnyHierarchies> made) {
+  void keep(std::shared_ptr<const AnyHierarchies> made) {
     for (std::size_t i = 0; i < made->meshes(); ++i)
       known_.try_emplace(&made->mesh(i), OneOfHierarchies{made.get(), i});
     all_.push_back(std::move(made));
@@ -45,7 +45,7 @@ class HierarchiesByMesh {
 
   const VolumeEntry* volume_;
   Variant variant_;
-  std::vector<std::unique_ptr<AnyHierarchies>> all_;
+  std::vector<std::shared_ptr<const AnyHierarchies>> all_;
   std::unordered_map<const TriangleMesh*, OneOfHierarchies> known_;
 };
 

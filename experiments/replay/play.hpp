@@ -33,7 +33,7 @@ struct FrontsOf<Strategy, TypeList<Shared...>> {
 /// `hierarchies` are of the volume.
 template <class Strategy, class Query>
 std::unique_ptr<AnyPairs<Query>> strategy_pairs(const VolumeEntry& volume,
-                                                std::unique_ptr<AnyHierarchies> hierarchies,
+                                                std::shared_ptr<const AnyHierarchies> hierarchies,
                                                 std::size_t objects, const Variant& variant) {
   using Bodies = AnyBodies<Query, Counting, typename FrontsOf<Strategy>::type>;
   using Pairs = StrategyPairs<Bodies, Strategy>;
@@ -45,7 +45,7 @@ std::unique_ptr<AnyPairs<Query>> strategy_pairs(const VolumeEntry& volume,
 }
 
 template <class Strategy, class Query>
-void play(const VolumeEntry& volume, std::unique_ptr<AnyHierarchies> hierarchies,
+void play(const VolumeEntry& volume, std::shared_ptr<const AnyHierarchies> hierarchies,
           std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
           const ReplayOptions& options, ReplayResult& result) {
   play_pairs(
@@ -55,7 +55,7 @@ void play(const VolumeEntry& volume, std::unique_ptr<AnyHierarchies> hierarchies
 
 template <class Strategy, class Query>
 std::unique_ptr<WorldEngine> world(const VolumeEntry& volume,
-                                   std::unique_ptr<AnyHierarchies> hierarchies, std::size_t objects,
+                                   std::shared_ptr<const AnyHierarchies> hierarchies, std::size_t objects,
                                    const Variant& variant, int threads) {
   return world_of_pairs(
       strategy_pairs<Strategy, Query>(volume, std::move(hierarchies), objects, variant), variant,

@@ -18,12 +18,12 @@ struct PlayEntry {
   /// Throws Unusable where the strategy's parameter in "name:parameter" is none.
   void (*check)(std::string_view strategy);
   /// Adds to the result; hierarchies are of the volume.
-  void (*play)(const VolumeEntry& volume, std::unique_ptr<AnyHierarchies> hierarchies,
+  void (*play)(const VolumeEntry& volume, std::shared_ptr<const AnyHierarchies> hierarchies,
                std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
                const ReplayOptions& options, ReplayResult& result);
   /// A whole scene of that strategy; null for a query that is not answered by yes or no.
   std::unique_ptr<WorldEngine> (*world)(const VolumeEntry& volume,
-                                        std::unique_ptr<AnyHierarchies> hierarchies,
+                                        std::shared_ptr<const AnyHierarchies> hierarchies,
                                         std::size_t objects, const Variant& variant, int threads);
 };
 

@@ -49,7 +49,8 @@ class Player {
  public:
   Player(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
          const std::function<void()>& waiting)
-      : trace_(trace),
+      : meshes_(meshes),
+        trace_(trace),
         variant_(variant),
         waiting_(waiting),
         volume_(volume_entry(variant.volume)),
@@ -80,7 +81,7 @@ class Player {
                       const ReplayOptions& options) const {
     ReplayResult result;
     play_entry(variant.strategy, variant.query)
-        .play(volume_, *hierarchies_, part, variant, options, result);
+        .play(volume_, hierarchies_, meshes_, part, variant, options, result);
     return result;
   }
 
@@ -109,11 +110,12 @@ class Player {
     return seconds;
   }
 
+  std::span<const TriangleMesh> meshes_;
   const Trace& trace_;
   const Variant& variant_;
   const std::function<void()>& waiting_;
   const VolumeEntry& volume_;
-  std::unique_ptr<AnyHierarchies> hierarchies_;
+  std::shared_ptr<const AnyHierarchies> hierarchies_;
 };
 
 /// What a strategy made, tests or seconds, and recursion beside it in the same frame.
