@@ -5,50 +5,15 @@
 
 #include "hierarchies/builds.hpp"
 #include "hierarchies/volumes/sphere.hpp"
+#include "tests/example/within.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/counters.hpp"
-#include "traversal/primitives/triangle_distance.hpp"
 #include "traversal/strategies/adaptive.hpp"
 #include "traversal/strategies/margins.hpp"
 #include "traversal/strategies/recursive.hpp"
 
 namespace bvlab {
 namespace {
-
-class Within {
- public:
-  static constexpr std::string_view name = "within";
-  static constexpr std::string_view description = "are the surfaces within d of each other";
-  static constexpr std::size_t buffer_size = 7;
-  static constexpr bool one_hit_is_enough = true;
-
-  explicit Within(double d) : d_(d) {}
-  template <class P>
-  auto culls(const P& a, const P& b) const {
-    using S = decltype(gap(a, b));
-    return gap(a, b) > S(rounded_up<Element<S>>(d_));
-  }
-  Outcome primitives(std::span<const Candidate> pending) {
-    std::vector<Verdict> verdicts(pending.size());
-    return primitives(pending, verdicts);
-  }
-  /// The margin of a verdict is how far the distance is from the limit.
-  Outcome primitives(std::span<const Candidate> pending, std::span<Verdict> verdicts) {
-    for (std::size_t i = 0; i < pending.size(); ++i) {
-      const double x = distance(*pending[i].triangle_a, *pending[i].triangle_b).distance;
-      verdicts[i] = {std::abs(x - d_) * (1 - 1e-12), x <= d_};
-      if (x <= d_) return {.witness = i, .satisfied = within_ = true};
-    }
-    return {};
-  }
-  double limit() const { return d_; }
-  bool known(std::uint32_t, std::uint32_t) { return within_ = true; }
-  bool answer() const { return within_; }
-
- private:
-  double d_;
-  bool within_ = false;
-};
 
 template <class Strategy>
 std::vector<bool> answers() {
