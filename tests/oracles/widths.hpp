@@ -4,15 +4,21 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
 #include "experiments/replay/hierarchies_of.hpp"
 #include "experiments/replay/registry.hpp"
 #include "hierarchies/bounding_volume.hpp"
 #include "hierarchies/builds.hpp"
 #include "tests/oracles/settings.hpp"
 #include "traversal/all_pairs.hpp"
+#include "traversal/bodies.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries/contacts.hpp"
-#include "traversal/strategies.hpp"
+#include "traversal/strategies/separation_list.hpp"
 
 namespace bvlab {
 
@@ -20,25 +26,25 @@ namespace bvlab {
 template <class B, class V>
 std::vector<std::array<std::uint32_t, 5>> at_width(const Played& scene,
                                                    const std::vector<Shape<V>>& shapes) {
-  AllPairs<B, V, Deferred> engine(
-      shapes, all_object_pairs(static_cast<std::uint32_t>(shapes.size())), Deferred{});
+  Bodies<B, V> bodies(shapes, Frame::world);
+  const auto pairs = all_object_pairs(static_cast<std::uint32_t>(shapes.size()));
+  std::vector<Deferred> strategies(pairs.size());
   std::vector<std::array<std::uint32_t, 5>> contacts;
   std::vector<Pose> poses(scene.trace.objects);
   std::vector<Contact> found;
   NotCounting counter;
+  std::optional<Vec3<double>> origin;
   for (std::size_t frame = 0; frame < scene.trace.frames; ++frame) {
     scene.trace.poses(frame, poses);
-    engine.frame(
-        poses, counter,
-        [&](std::size_t) {
-          found.clear();
-          return Contacts(found);
-        },
-        [&](std::size_t p, const Contacts&) {
-          for (const auto& [a, b] : found)
-            contacts.push_back({static_cast<std::uint32_t>(frame), engine.pairs()[p].i,
-                                engine.pairs()[p].j, a, b});
-        });
+    if (!origin) origin = centre_of(poses, bodies);
+    bodies.move(poses, *origin);
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      found.clear();
+      Contacts query(found);
+      strategies[p].run(bodies.pair(pairs[p], query, counter));
+      for (const auto& [a, b] : found)
+        contacts.push_back({static_cast<std::uint32_t>(frame), pairs[p].i, pairs[p].j, a, b});
+    }
   }
   std::sort(contacts.begin(), contacts.end());
   return contacts;
