@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The queries of a frame and their answers, of one type for every kind of pairs and of run, so that
-/// pairs are compiled once for each query.
+/// The queries of a frame and their answers, of one type for every kind of pairs and of run, so
+/// that pairs are compiled once for each query.
 #pragma once
 
 #include <array>
@@ -76,9 +76,8 @@ class Answers {
       if (keep_) cells()[frame_ * pairs_ + p] = answer;
       if constexpr (finds_nearest)
         if (!result_->nearest.empty())
-          result_->nearest[frame_ * pairs_ + p] =
-              nearest_points(query.nearest(), mesh(pair.i), poses_[pair.i], mesh(pair.j),
-                             poses_[pair.j]);
+          result_->nearest[frame_ * pairs_ + p] = nearest_points(
+              query.nearest(), mesh(pair.i), poses_[pair.i], mesh(pair.j), poses_[pair.j]);
     }
   }
 
@@ -134,10 +133,10 @@ struct Asking {
   };
 
   QueryOptions how;
-  Answers<Query>* answers = nullptr;          ///< of a replay
-  const std::vector<std::size_t>* places = nullptr;  ///< of slots in it, where they are not the same
-  TouchingPairs* touching = nullptr;          ///< of a whole scene
-  std::vector<Answered>* later = nullptr;     ///< where the answers go that another thread takes
+  Answers<Query>* answers = nullptr;                 ///< of a replay
+  const std::vector<std::size_t>* places = nullptr;  ///< of slots in it; null: the same
+  TouchingPairs* touching = nullptr;                 ///< of a whole scene
+  std::vector<Answered>* later = nullptr;  ///< where the answers go that another thread takes
 
   Query operator()(std::uint32_t slot, const ObjectPair&) const {
     if constexpr (AnswersYesOrNo<Query>)

@@ -168,10 +168,9 @@ class AnyBodies {
       if (loops_->frame() == Frame::body)
         counter.posed(fresh.size());
       else if (std::any_of(bodies_.begin(), bodies_.end(), [](auto* b) { return b->is_far(); }))
-        counter.posed(static_cast<std::uint64_t>(
-            std::count_if(fresh.begin(), fresh.end(), [&](std::uint32_t p) {
-              return is_far(pairs[p].i) || is_far(pairs[p].j);
-            })));
+        counter.posed(static_cast<std::uint64_t>(std::count_if(
+            fresh.begin(), fresh.end(),
+            [&](std::uint32_t p) { return is_far(pairs[p].i) || is_far(pairs[p].j); })));
     }
     loops_->cull_roots(pairs, fresh, query, apart);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Pairs of bodies whose volume, strategy and kernel are known inside alone. A frame calls through a
-/// pointer once for many pairs, so replays and whole scenes are compiled once for each query, and
+/// Pairs of bodies whose volume, strategy and kernel are known inside alone. A frame calls through
+/// a pointer once for many pairs, so replays and whole scenes are compiled once for each query, and
 /// the fast loops below pay nothing for it.
 #pragma once
 
@@ -87,8 +87,9 @@ class PairsOver final : public AnyPairs<Query> {
     if constexpr (requires { pairs_.bodies().count_posed(counter); })
       pairs_.bodies().count_posed(counter);
   }
-  void see_fronts([[maybe_unused]] const std::function<void(
-                      std::size_t, std::span<const NodePair>)>& see) const override {
+  void see_fronts(
+      [[maybe_unused]] const std::function<void(std::size_t, std::span<const NodePair>)>& see)
+      const override {
     if constexpr (requires { pairs_.strategy(0).front().entries(); })
       for (std::size_t p = 0; p < pairs().size(); ++p) see(p, pairs_.strategy(p).front().entries());
   }

@@ -145,9 +145,10 @@ Chosen recommended_distances(Variant variant, std::span<const TriangleMesh> mesh
   std::ostringstream measured;
   measured << std::setprecision(3) << moved;
   if (moved < slow && is_compiled<RecommendedOriented>())
-    return {variant_of<RecommendedOriented>(variant), "bodies move slowly (" + measured.str() +
-                                                  " radii and radians a frame): margins on oriented "
-                                                  "boxes skip most tests"};
+    return {variant_of<RecommendedOriented>(variant),
+            "bodies move slowly (" + measured.str() +
+                " radii and radians a frame): margins on oriented "
+                "boxes skip most tests"};
   Chosen chosen = recommended(std::move(variant), meshes);
   chosen.reason += "; bodies move fast (" + measured.str() + " radii and radians a frame)";
   return chosen;

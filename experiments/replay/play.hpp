@@ -55,8 +55,8 @@ void play(const VolumeEntry& volume, std::shared_ptr<const AnyHierarchies> hiera
 
 template <class Strategy, class Query>
 std::unique_ptr<WorldEngine> world(const VolumeEntry& volume,
-                                   std::shared_ptr<const AnyHierarchies> hierarchies, std::size_t objects,
-                                   const Variant& variant, int threads) {
+                                   std::shared_ptr<const AnyHierarchies> hierarchies,
+                                   std::size_t objects, const Variant& variant, int threads) {
   return world_of_pairs(
       strategy_pairs<Strategy, Query>(volume, std::move(hierarchies), objects, variant), variant,
       threads);

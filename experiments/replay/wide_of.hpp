@@ -127,8 +127,8 @@ std::unique_ptr<AnyPairs<Query>> wide_pairs(std::span<const TriangleMesh> meshes
 template <BoundingVolume V, class Query>
 void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
                const ReplayOptions& options, ReplayResult& result) {
-  play_pairs(wide_pairs<V, Query>(meshes, trace.objects, variant,
-                                  static_cast<int>(options.threads), result.build_seconds),
+  play_pairs(wide_pairs<V, Query>(meshes, trace.objects, variant, static_cast<int>(options.threads),
+                                  result.build_seconds),
              meshes, trace, variant, options, result);
 }
 

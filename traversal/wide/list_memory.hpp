@@ -34,8 +34,7 @@ class ListMemory : public NoMemory {
   void forget(std::size_t p) { NoMemory::forget(p), lists_[p] = {{}, rule_}; }
   template <class Query>
   void begin_frame() {
-    if (NoMemory::begin_frame<Query>())
-      std::fill(lists_.begin(), lists_.end(), List{{}, rule_});
+    if (NoMemory::begin_frame<Query>()) std::fill(lists_.begin(), lists_.end(), List{{}, rule_});
   }
   std::size_t front_size(std::size_t p) const { return lists_[p].front.size(); }
   std::size_t front_size() const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// No front is kept: each pair of bodies starts from the roots in every frame. Kept are the last
-/// answer, which decides the order of steps, and, if asked for, the two leaves that decided the last
-/// run (a witness), which are tested first.
+/// answer, which decides the order of steps, and, if asked for, the two leaves that decided the
+/// last run (a witness), which are tested first.
 ///
 /// A memory keeps state of pairs of bodies from frame to frame. WidePairs calls
 ///   add_body(extent), resize(pairs)         for the bodies and the number of pairs
