@@ -2,9 +2,12 @@
 /// Compiled once for each query: BVLAB_LIVE_QUERY.
 #include "experiments/live/players.hpp"
 
+#include <cstdlib>
+
 #include "experiments/live/watched_front.hpp"
+#include "experiments/replay/any_bodies.hpp"
 #include "experiments/replay/loops_of.hpp"
-#include "experiments/replay/play.hpp"
+#include "experiments/replay/played.hpp"
 #include "experiments/replay/wide_of.hpp"
 #include "hierarchies/wide/slab_box_sibling_test.hpp"
 #include "traversal/queries.hpp"
@@ -50,60 +53,49 @@ class WatchedLoops final : public detail::BodiesOver<V, Query> {
   Run& run_;
 };
 
-template <class Query, class Pairs>
-std::unique_ptr<detail::Player> played(Pairs pairs, const Trace& trace, Run& run) {
-  const QueryOptions how{triangle_test(run.variant.precision), run.variant.relative_error};
-  return std::make_unique<detail::PlayedBy<Pairs, Query, Counting>>(std::move(pairs), trace, how,
-                                                                    run.options, run.result);
-}
+/// In place of hierarchies by mesh: no body is added.
+struct NothingIsAdded {
+  static OneOfHierarchies of(const TriangleMesh&) { std::abort(); }
+};
 
 template <class Query>
-std::unique_ptr<detail::Player> gathered(const Trace& trace, Run& run) {
+std::unique_ptr<detail::AnyPairs<Query>> gathered(const Trace& trace, Run& run) {
   std::unique_ptr<BodyLoops<Query>> loops;
   Volumes::with(run.variant.volume, [&]<class V>(std::type_identity<V>) {
     loops = std::make_unique<WatchedLoops<V, Query>>(trace, run);
   });
-  std::unique_ptr<detail::Player> player;
+  std::unique_ptr<detail::AnyPairs<Query>> made;
   if (loops)
     Strategies::with(run.variant.strategy, [&]<class Strategy>(std::type_identity<Strategy>) {
       using Bodies = AnyBodies<Query, Counting, Fronts>;
-      player = played<Query>(StrategyPairs<Bodies, Strategy>(Bodies(std::move(loops)), Strategy{}),
-                             trace, run);
+      using Pairs = StrategyPairs<Bodies, Strategy>;
+      made = std::make_unique<detail::PairsOver<Pairs, Query, NothingIsAdded>>(
+          NothingIsAdded(), Pairs(Bodies(std::move(loops)), Strategy{}));
     });
-  return player;
+  return made;
 }
 
-/// Pairs and the trees that they are over.
-template <class Hierarchies, class Pairs>
-class OverOwnTrees : public Pairs {
- public:
-  OverOwnTrees(std::unique_ptr<Hierarchies> hierarchies, Pairs pairs)
-      : Pairs(std::move(pairs)), hierarchies_(std::move(hierarchies)) {}
-
- private:
-  std::unique_ptr<Hierarchies> hierarchies_;
-};
-
 template <class Query>
-std::unique_ptr<detail::Player> siblings(std::span<const TriangleMesh> meshes, const Trace& trace,
-                                         Run& run) {
-  std::unique_ptr<detail::Player> player;
+std::unique_ptr<detail::AnyPairs<Query>> siblings(std::span<const TriangleMesh> meshes,
+                                                  const Trace& trace, Run& run) {
+  std::unique_ptr<detail::AnyPairs<Query>> made;
   WideVolumes::with(run.variant.volume, [&]<class V>(std::type_identity<V>) {
     constexpr int fan_out = native_fan_out<typename V::scalar>;
     using Trees = detail::WideHierarchies<SiblingsKernel::Hierarchy<V, fan_out>>;
-    auto trees = std::make_unique<Trees>(meshes, run.variant, 1);
-    const auto shapes = shapes_over(meshes, trees->all(), trace.objects);
+    Trees trees(meshes, run.variant, 1);
+    // Shapes point to what it holds, wherever it is moved.
+    const auto shapes = shapes_over(meshes, trees.all(), trace.objects);
     const auto with = [&]<class Memory>(const Memory& memory) {
       using Pairs = WidePairs<V, fan_out, Memory, SiblingsKernel>;
-      player = played<Query>(OverOwnTrees<Trees, Pairs>(std::move(trees), Pairs(shapes, memory)),
-                             trace, run);
+      made = std::make_unique<detail::PairsOver<Pairs, Query, Trees>>(std::move(trees),
+                                                                      Pairs(shapes, memory));
     };
     if (run.variant.strategy == WideMargins::name)
       with(WideMargins());
     else if (run.variant.strategy == Recursive::name)
       with(NoMemory());
   });
-  return player;
+  return made;
 }
 
 }  // namespace
@@ -111,10 +103,12 @@ std::unique_ptr<detail::Player> siblings(std::span<const TriangleMesh> meshes, c
 template <class Query>
 std::unique_ptr<detail::Player> player(std::span<const TriangleMesh> meshes, const Trace& trace,
                                        Run& run) {
-  if (run.variant.kernel == "gathered") return gathered<Query>(trace, run);
+  std::unique_ptr<detail::AnyPairs<Query>> pairs;
+  if (run.variant.kernel == "gathered") pairs = gathered<Query>(trace, run);
   if constexpr (for_wide_trees<Query>())
-    if (run.variant.kernel == SiblingsKernel::name) return siblings<Query>(meshes, trace, run);
-  return nullptr;
+    if (run.variant.kernel == SiblingsKernel::name) pairs = siblings<Query>(meshes, trace, run);
+  if (!pairs) return nullptr;
+  return detail::player_over(std::move(pairs), meshes, trace, run.variant, run.options, run.result);
 }
 
 template std::unique_ptr<detail::Player> player<BVLAB_LIVE_QUERY>(std::span<const TriangleMesh>,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What a live page can play, made by name: the program's own players (experiments/replay/play.hpp)
+/// What a live page can play, made by name: the program's own players (experiments/replay/played.hpp)
 /// over fewer types, since a page is to be small. Volumes and strategies meet as in AnyBodies, so
 /// that answers and counts are those of `bvlab replay`.
 #pragma once
