@@ -33,14 +33,6 @@ Vec3<double> centre_of(std::span<const Pose> poses, const AllBodies& bodies) {
   return low / 2 + high / 2;
 }
 
-/// The same for meshes about 0.
-inline Vec3<double> centre_of(std::span<const Pose> poses) {
-  struct AboutZero {
-    static Vec3<double> mesh_origin(std::size_t) { return Vec3<double>::Zero(); }
-  };
-  return centre_of(poses, AboutZero());
-}
-
 /// B is the scalar or batch in which volumes are tested.
 template <class B, BoundingVolume V>
 class Bodies {

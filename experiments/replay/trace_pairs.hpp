@@ -103,7 +103,7 @@ class TracePairs {
       asking.places = &places_;
       find_near(poses);
     } else {
-      if (!origin_) origin_ = centre_of(poses);
+      if (!origin_) origin_ = centre_of(poses, pairs_);
       (*pairs_).begin_all(poses, *origin_, threads_, counter, asking);
     }
     answers_.run_pairs(pairs_, near_ ? near_->threads() : threads_,

@@ -101,7 +101,10 @@ Measured at_roots(const Trace& trace, const PoseRoot& pose_root) {
   std::vector<Pose> poses(trace.objects);
   std::vector<Bounds> roots(trace.objects * trace.frames);
   trace.poses(0, poses);
-  const Vec3<double> origin = centre_of(poses);
+  struct AboutZero {  // the meshes
+    static Vec3<double> mesh_origin(std::size_t) { return Vec3<double>::Zero(); }
+  };
+  const Vec3<double> origin = centre_of(poses, AboutZero());
   Measured measured;
   measured.pose_ns = nanoseconds_each(roots.size(), [&] {
     for (std::size_t frame = 0; frame < trace.frames; ++frame) {
