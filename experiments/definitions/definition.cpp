@@ -351,10 +351,24 @@ class Reader {
   const std::string& name_;
 };
 
+/// Stands for a value until all axes have set theirs.
+const std::string unsaid(1, '\0');
+
 void set(Settings& settings, const Settings& to) {
   for (const auto& [name, value] : to)
     for (auto& [known, old] : settings)
       if (known == name) old = value;
+}
+
+/// Defaults, but for how much of a recorded motion is taken: all, where nothing else is said.
+void set_unsaid(Cell& cell) {
+  const bool is_recorded = cell["scene"] == Recorded::name;
+  for (std::size_t i = 0; i < cell.parameters.size(); ++i) {
+    auto& [name, value] = cell.parameters[i];
+    if (value != unsaid) continue;
+    const bool is_length = name == "objects" || name == "frames";
+    value = is_recorded && is_length ? "0" : default_parameters()[i].second;
+  }
 }
 
 /// Parameters that are columns only where a definition sets them: records from before there were
@@ -438,6 +452,7 @@ Definition read_definition(const std::string& path) {
 std::vector<Cell> cells_of(const Definition& definition) {
   std::vector<Cell> cells(1);
   cells[0].parameters = default_parameters();
+  for (auto& [name, value] : cells[0].parameters) value = unsaid;
   set(cells[0].parameters, definition.parameters);
   for (const auto& axis : definition.axes) {
     std::vector<Cell> next;
@@ -449,6 +464,7 @@ std::vector<Cell> cells_of(const Definition& definition) {
       }
     cells = std::move(next);
   }
+  for (Cell& cell : cells) set_unsaid(cell);
   for (const auto& [name, usual] : default_parameters()) {
     if (!is_column_where_set(name)) continue;
     const auto is_usual = [&](const Cell& cell) { return cell[name] == usual; };

@@ -60,19 +60,19 @@ struct PlyElement {
   }
 };
 
-/// The list that holds a face's or a strip's vertices: vertex_indices or vertex_index, or the only
-/// one whose name begins as theirs.
+/// The list that holds a face's or a strip's vertices: the one named vertex_indices or
+/// vertex_index, or else the only one whose name begins as theirs.
 const Property* corner_list(const PlyElement& element) {
-  const Property* found = nullptr;
-  std::size_t alike = 0;
+  std::vector<const Property*> named, alike;
   for (const Property& property : element.properties) {
     if (!property.count) continue;
-    if (property.name == "vertex_indices" || property.name == "vertex_index") return &property;
-    if (!property.name.starts_with("vert") && !property.name.starts_with("ind")) continue;
-    found = &property;
-    ++alike;
+    if (property.name == "vertex_indices" || property.name == "vertex_index")
+      named.push_back(&property);
+    if (property.name.starts_with("vert") || property.name.starts_with("ind"))
+      alike.push_back(&property);
   }
-  return alike == 1 ? found : nullptr;
+  if (named.empty()) named = alike;
+  return named.size() == 1 ? named[0] : nullptr;
 }
 
 enum class Format { text, little, big };
@@ -126,7 +126,11 @@ Header parse_header(TextScanner& scanner, const std::string& name) {
       }
       property.type = type(word);
       property.name = scanner.word();
-      header.elements.back().properties.push_back(std::move(property));
+      auto& others = header.elements.back().properties;
+      for (const Property& other : others)
+        if (other.name == property.name)
+          scanner.fault("a second property " + TextScanner::shown(property.name));
+      others.push_back(std::move(property));
     } else if (keyword != "comment" && keyword != "obj_info") {
       scanner.fault("unknown word " + TextScanner::shown(keyword));
     }
@@ -438,8 +442,8 @@ ParsedMesh parse_ply(std::string_view bytes, const std::string& name) {
   for (const PlyElement& element : header.elements) {
     if ((element.name == "face" || element.name == "tristrips") && element.count > 0 &&
         !corner_list(element))
-      throw Unusable(name,
-                     "element " + element.name + " has no list vertex_indices or vertex_index");
+      throw Unusable(
+          name, "element " + element.name + " has not one list vertex_indices or vertex_index");
     if (element.name != "vertex") continue;
     if (std::exchange(vertices, element.count) != 0) throw Unusable(name, "two elements vertex");
     for (const Property& property : element.properties) has_position[property.axis()] = true;

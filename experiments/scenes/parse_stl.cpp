@@ -48,10 +48,18 @@ std::vector<std::size_t> places_of_records(std::string_view bytes, std::size_t p
     throw Unusable(name, "holds " + std::to_string(held) +
                              " triangles, where the header promises " + std::to_string(promised));
   const std::size_t beyond = bytes.size() - header_bytes - promised * record_bytes;
-  if (with_attributes.size() == promised && with_attributes != plain && at <= bytes.size())
-    throw Unusable(name, "holds " + std::to_string(beyond) + " bytes beyond " +
-                             std::to_string(promised) + " triangles, which announce " +
-                             std::to_string(at - header_bytes - promised * record_bytes));
+  constexpr std::size_t end_of_line = 2;
+  for (const std::size_t record : plain) {
+    const std::size_t announced = announced_attributes(bytes, record);
+    if (announced == 0) continue;
+    // Up to here they stand where they would, so these are attributes, some of which are missing;
+    // or a colour.
+    if (beyond > end_of_line && announced <= bytes.size() - record - record_bytes)
+      throw Unusable(name, "holds " + std::to_string(beyond) + " bytes beyond " +
+                               std::to_string(promised) + " triangles, where one announces " +
+                               std::to_string(announced));
+    break;
+  }
   parsed.note = std::to_string(beyond) + " bytes beyond the " + std::to_string(promised) +
                 " triangles are passed over";
   return plain;
@@ -98,7 +106,7 @@ class TextReader {
   ParsedMesh read() {
     while (scanner_.next_line()) {
       if (scanner_.line().starts_with('#')) continue;
-      for (begins_line_ = true; !scanner_.at_line_end(); begins_line_ = false) read_word();
+      while (!scanner_.at_line_end()) read_word();
     }
     if (is_open_) throw Unusable(name_, "truncated: ends within a facet");
     if (is_solid_) throw Unusable(name_, "truncated: ends without endsolid");
@@ -127,8 +135,10 @@ class TextReader {
       is_solid_ = keyword == "solid";
       const std::string name = passed_name();
       if (is_solid_) parsed_.parts.push_back({name, parsed_.mesh.triangles.size()});
-    } else if (keyword != "outer" && keyword != "loop" && keyword != "normal" &&
-               !keyword.starts_with("color") && begins_line_) {
+    } else if (keyword.starts_with("color")) {
+      for (TextScanner ahead = scanner_; is_number(ahead.word()); scanner_ = ahead) {
+      }
+    } else if (keyword != "outer" && keyword != "loop" && keyword != "normal") {
       scanner_.fault("unknown word " + TextScanner::shown(keyword));
     }
   }
@@ -137,8 +147,13 @@ class TextReader {
   void pass_normal() {
     TextScanner ahead = scanner_;
     if (lower_case(ahead.word()) != "normal") return;
-    for (int k = 0; k < 3 && !is_next(ahead, "outer"); ++k) ahead.word();
+    for (int k = 0; k < 3 && !is_next(ahead, "outer") && !is_next(ahead, "vertex"); ++k)
+      ahead.word();
     scanner_ = ahead;
+  }
+  static bool is_number(std::string_view word) {
+    double value;
+    return TextScanner::parse(word, value);
   }
   static bool is_next(TextScanner ahead, std::string_view keyword) {
     return lower_case(ahead.word()) == keyword;
@@ -177,14 +192,16 @@ class TextReader {
   const std::string& name_;
   ParsedMesh parsed_;
   std::vector<std::uint32_t> corners_;
-  bool is_open_ = false, has_loop_ = false, is_solid_ = false, begins_line_ = true;
+  bool is_open_ = false, has_loop_ = false, is_solid_ = false;
 };
 
-/// Binary files may begin with "solid" too, and texts without it.
+/// Binary files may begin with "solid" too, and have any words in their header; texts may begin
+/// without it.
 bool is_text(std::string_view bytes) {
   const std::string beginning = lower_case(bytes.substr(0, 2000));
   if (beginning.find('\0') != beginning.npos)
-    return beginning.find("facet") != beginning.npos && beginning.find("vertex") != beginning.npos;
+    return beginning.find("facet", header_bytes) != beginning.npos &&
+           beginning.find("vertex", header_bytes) != beginning.npos;
   const std::size_t start = std::min(beginning.find_first_not_of(" \t\r\n"), beginning.size());
   const std::string_view first = std::string_view(beginning).substr(start);
   return first.starts_with("solid") || first.starts_with("facet") || first.starts_with("#");

@@ -15,8 +15,8 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/mesh_formats.hpp"
 #include "experiments/scenes/polygon.hpp"
+#include "experiments/scenes/scene_checks.hpp"
 #include "experiments/scenes/text_encoding.hpp"
-#include "experiments/scenes/text_scanner.hpp"
 
 namespace bvlab {
 namespace {
@@ -215,23 +215,13 @@ SceneGraph unpacked(std::string bytes) {
   return scene;
 }
 
-/// Throws Unusable where a list of indices of a DAE holds anything else: at other bytes assimp does
-/// not go on, and of a number below 0 it makes 0.
-void require_indices(std::string_view bytes, const std::string& name) {
-  if (bytes.substr(0, 4096).find("<COLLADA") == bytes.npos) return;
-  for (const std::string_view tag : {"<p>", "<h>", "<v>", "<vcount>"})
-    for (std::size_t at = 0; (at = bytes.find(tag, at)) != bytes.npos;) {
-      at += tag.size();
-      const std::size_t wrong = bytes.find_first_not_of("0123456789 \t\r\n", at);
-      if (wrong == bytes.npos || bytes[wrong] == '<') continue;
-      const std::size_t begin = bytes.find_last_of("> \t\r\n", wrong) + 1;
-      const std::size_t end = bytes.find_first_of("< \t\r\n", wrong);
-      const auto line =
-          1 + std::count(bytes.begin(), bytes.begin() + static_cast<long>(wrong), '\n');
-      throw Unusable(name, "line " + std::to_string(line) + ": " + std::string(tag) + ": " +
-                               TextScanner::shown(bytes.substr(begin, end - begin)) +
-                               " is not an index");
-    }
+void require_triangles(const SceneGraph& scene, std::size_t promised, const std::string& name) {
+  std::size_t held = 0;
+  for (const SceneNode& node : scene.nodes)
+    for (const unsigned mesh : node.meshes) held += scene.meshes[mesh].triangles.size();
+  if (held < promised)
+    throw Unusable(name, std::to_string(promised - held) + " of " + std::to_string(promised) +
+                             " triangles have vertices that do not exist");
 }
 
 /// What `read` makes of a file of so many bytes. assimp's readers of some formats crash or do not
@@ -259,12 +249,15 @@ SceneGraph read_guarded(const std::string& name, std::size_t size, const Read& r
 
 /// No post-processing: all of assimp's steps may merge, drop or reorder.
 template <class Import>
-SceneGraph imported(const std::string& name, std::size_t size, Conversion conversion,
+SceneGraph imported(const std::string& name, std::string_view bytes, Conversion conversion,
                     const Import& import) {
-  return read_guarded(name, size, [&] {
+  require_what_assimp_reads(bytes, name);
+  return read_guarded(name, bytes.size(), [&] {
     Assimp::Importer importer;
     importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
-    return gathered(importer, import(importer), name, conversion);
+    SceneGraph scene = gathered(importer, import(importer), name, conversion);
+    if (const auto promised = triangles_of_gltf(bytes)) require_triangles(scene, *promised, name);
+    return scene;
   });
 }
 
@@ -295,8 +288,7 @@ TriangleMesh SceneGraph::joined(const std::string& name) const {
 }
 
 SceneGraph read_with_assimp(const std::filesystem::path& path, std::string_view bytes) {
-  require_indices(bytes, path.string());
-  return imported(path.string(), bytes.size(), Conversion::none,
+  return imported(path.string(), bytes, Conversion::none,
                   [&](Assimp::Importer& importer) { return importer.ReadFile(path.string(), 0); });
 }
 
@@ -304,10 +296,9 @@ SceneGraph parse_with_assimp(std::string_view bytes, const std::string& name,
                              Conversion conversion) {
   std::string room;
   if (has_mark(bytes)) bytes = as_utf8(bytes, room, name);
-  require_indices(bytes, name);
   const std::string extension = std::filesystem::path(name).extension().string();
   const char* hint = extension.empty() ? "" : extension.c_str() + 1;
-  return imported(name, bytes.size(), conversion, [&](Assimp::Importer& importer) {
+  return imported(name, bytes, conversion, [&](Assimp::Importer& importer) {
     return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, hint);
   });
 }

@@ -129,6 +129,25 @@ void set_meshes_of_scenes(std::vector<Cell>& cells) {
   }
 }
 
+/// Of a recorded motion that is taken whole, a record says how long it is and how many bodies it
+/// has.
+void set_lengths_of_recordings(std::vector<Cell>& cells) {
+  std::map<std::string, Settings> known;
+  for (auto& cell : cells) {
+    if (cell["scene"] != Recorded::name || (cell["objects"] != "0" && cell["frames"] != "0"))
+      continue;
+    auto& held = known[cell["trace"]];
+    if (held.empty()) {
+      const Trace trace = read_trace(cell["trace"]);
+      held = {{"objects", std::to_string(trace.objects)},
+              {"frames", std::to_string(trace.frames)}};
+    }
+    for (auto& [name, value] : cell.parameters)
+      for (const auto& [key, text] : held)
+        if (name == key && value == "0") value = text;
+  }
+}
+
 /// As the cell's parameters say before they are spelled out: a configuration's replace them.
 Variant configured_variant_of(const Cell& cell) {
   const Variant variant = variant_of(cell);
@@ -275,6 +294,7 @@ std::vector<Cell> cells_with_answers(const Definition& definition, AbsentPeers a
     }
     cells.push_back(std::move(cell));
   }
+  set_lengths_of_recordings(cells);
   set_meshes_of_scenes(cells);
   set_polygons_of_files(cells);
   set_recommended_of_motions(cells);

@@ -126,8 +126,6 @@ name = "chosen"
 scene = "recorded"
 trace = "{self.folder / 'poses.npy'}"
 mesh = "{self.folder / 'cube.off'}"
-objects = 5
-frames = 2
 asked_pairs = "{pairs}"
 [[axis]]
 name = "strategy"
@@ -140,6 +138,13 @@ values = ["recursive", "margins"]
         found = [(row["asked_pairs"], row["pairs"], row["hits"]) for row in rows]
         self.assertEqual(found, [(str(pairs), "6", "4")] * 2)
         self.assertNotIn("joints", rows[0])
+        # Of a recorded motion all is taken unless something else is said, and the rows say how much.
+        self.assertEqual([(row["objects"], row["frames"]) for row in rows], [("5", "2")] * 2)
+        definition.write_text(definition.read_text() + '[[axis]]\nname = "frames"\nvalues = [1, 2]\n')
+        done = run("run", definition, "--record", self.folder / "lengths", "--counts")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.folder / "lengths" / "chosen.csv", newline="", encoding="utf-8") as file:
+            self.assertEqual([row["frames"] for row in csv.DictReader(file)], ["1", "1", "2", "2"])
         definition.write_text(definition.read_text().replace("asked.npy", "nowhere.npy"))
         done = run("run", definition, "--record", self.folder / "other", "--counts")
         self.assertEqual(done.returncode, 2)

@@ -254,7 +254,13 @@ TEST(ReadFaults, PlyRowsOfAnotherLength) {
   for (const std::string name : {"vertex_index", "vertex_indexes", "vertices", "indices"})
     expect_cube(replaced(ply(), "vertex_indices", name), "a.ply", name);
   EXPECT_EQ(refusal(replaced(ply(), "vertex_indices", "corners"), "a.ply"),
-            "a.ply: element face has no list vertex_indices or vertex_index");
+            "a.ply: element face has not one list vertex_indices or vertex_index");
+  EXPECT_EQ(refusal(replaced(ply(), face_list, face_list + replaced(face_list, "indices", "index")),
+                    "a.ply"),
+            "a.ply: element face has not one list vertex_indices or vertex_index");
+  EXPECT_EQ(
+      refusal(ply_header("property double x\n") + vertices("", " 7") + faces("3 ", 0), "a.ply"),
+      "a.ply: line 7: a second property 'x'");
   EXPECT_EQ(refusal(replaced(ply(), "3 0 2 1", "3 0 2 8"), "a.ply"),
             "a.ply: line 18: vertex 8 does not exist: there are 8, from 0");
 }
@@ -347,7 +353,8 @@ TEST(ReadFaults, BinaryPlySizes) {
 }
 
 TEST(ReadFaults, BinaryStl) {
-  for (const std::string header : {"x", "solid", "solid made by x", "SOLID", "\xef\xbb\xbfsolid"}) {
+  for (const std::string header : {"x", "solid", "solid made by x", "SOLID", "\xef\xbb\xbfsolid",
+                                   "solid of facets and vertexes"}) {
     expect_cube(binary_stl(12, header), "a.stl", header);
     for (const std::string& end : {"\r\n"s, "\0\0"s, "ab"s, std::string(49, 'x')}) {
       const Outcome outcome = read(binary_stl(12, header) + end, "a.stl");
@@ -374,7 +381,9 @@ TEST(ReadFaults, BinaryStl) {
     EXPECT_EQ(surface(read(binary_stl(12, header, "", 0x801f) + "\r\n", "a.stl").mesh),
               surface(cube()));
     EXPECT_EQ(refusal(binary_stl(12, header, "ab", 2) + "x", "a.stl"),
-              "a.stl: holds 25 bytes beyond 12 triangles, which announce 24");
+              "a.stl: holds 25 bytes beyond 12 triangles, where one announces 2");
+    EXPECT_EQ(refusal(binary_stl(12, header, "abcd", 4).substr(0, 84 + 12 * 54 - 4), "a.stl"),
+              "a.stl: holds 44 bytes beyond 12 triangles, where one announces 4");
   }
 }
 
@@ -403,6 +412,14 @@ TEST(ReadFaults, TextStl) {
   EXPECT_EQ(refusal("solid\nvertex 0 0 0\n", "a.stl"),
             "a.stl: line 2: a vertex outside of a facet");
   EXPECT_EQ(refusal("solid\nfacte\n", "a.stl"), "a.stl: line 2: unknown word 'facte'");
+  // What a corner is lost by, also where all is on one line.
+  for (const auto& [wrong, shown] :
+       {std::pair("vertx 1 1 1", "vertx"), {"1 1 1", "1"}, {"vertex 1 1 1 1", "1"}})
+    EXPECT_EQ(refusal(replaced(replaced(text, "vertex 1 1 1", wrong), "\n", " "), "a.stl"),
+              "a.stl: line 1: unknown word '"s + shown + "'");
+  expect_cube(replaced(replaced(replaced(text, "solid a", "solid"), "outer loop", "color 1 0 0"),
+                       "\n", " "),
+              "a.stl", "colours on one line");
 }
 
 TEST(ReadFaults, OffHeaders) {

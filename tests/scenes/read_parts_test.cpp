@@ -131,6 +131,61 @@ TEST(ReadParts, DamagedLists) {
             "a.dae: assimp breaks off: damaged?");
 }
 
+/// What assimp 5.2 reads as another mesh: numbers that end early, more of them than a list has,
+/// values without names.
+TEST(ReadParts, DamagedNumbers) {
+  const std::string last = "0 0 3</float_array>";
+  for (const std::string wrong : {"1.#IND", "1.#QNAN", "x", "1,5", "0x1", "3f"})
+    EXPECT_EQ(refusal(replaced(dae(""), last, "0 0 " + wrong + "</float_array>"), "a.dae"),
+              "a.dae: line 4: <float_array>: '" + wrong + "' is not a number");
+  for (const std::string wrong : {"NaN", "INF", "-INF"})
+    EXPECT_TRUE(refusal(replaced(dae(""), last, "0 0 " + wrong + "</float_array>"), "a.dae")
+                    .ends_with(" is not finite"));
+  for (const std::string count : {"9", "15", "0", "x"})
+    EXPECT_EQ(refusal(replaced(dae(""), "count=\"12\"", "count=\"" + count + "\""), "a.dae"),
+              "a.dae: line 4: <float_array>: holds 12 numbers, where its count is " +
+                  (count == "x" ? "0" : count));
+  std::string unnamed = dae("");
+  for (const char* name : {" name=\"X\"", " name=\"Y\"", " name=\"Z\""})
+    unnamed = replaced(unnamed, name, "");
+  EXPECT_EQ(refusal(unnamed, "a.dae"), "a.dae: line 5: <accessor>: none of its values has a name");
+  EXPECT_EQ(refusal(replaced(dae(""), last, "0 .0 +3.0E0\n</float_array>"), "a.dae"), "");
+}
+
+/// What assimp 5.2 leaves out of a glTF, or takes for something else.
+TEST(ReadParts, WhatOfAGltfIsNotRead) {
+  const std::string one = gltf("[0]", R"([{"mesh": 0}])"), asset = "{\"version\": \"2.0\"}";
+  const auto with = [&](const std::string& more) {
+    return refusal(replaced(one, asset, asset + ", " + more), "a.gltf");
+  };
+  for (const std::string extension : {"KHR_mesh_quantization", "EXT_meshopt_compression", "X"})
+    EXPECT_EQ(with("\"extensionsRequired\": [\"" + extension + "\"]"),
+              "a.gltf: needs the glTF extension '" + extension + "', which is not read");
+  EXPECT_EQ(with("\"extensionsUsed\": [\"EXT_mesh_gpu_instancing\"]"),
+            "a.gltf: needs the glTF extension 'EXT_mesh_gpu_instancing', which is not read");
+  EXPECT_EQ(with("\"extensionsRequired\": [\"KHR_materials_unlit\"]"), "");
+  EXPECT_EQ(with("\"extensionsUsed\": [\"KHR_mesh_quantization\"]"), "");
+  EXPECT_EQ(refusal(replaced(one, "5126", "5122"), "a.gltf"),
+            "a.gltf: accessor 0: only positions of float32 are read");
+  // The same as a GLB.
+  const std::string json = replaced(one, asset, asset + R"(, "extensionsRequired": ["X"])");
+  std::string glb = "glTF";
+  for (const auto word : {std::uint32_t{2}, static_cast<std::uint32_t>(20 + json.size()),
+                          static_cast<std::uint32_t>(json.size()), std::uint32_t{0x4e4f534a}})
+    glb.append(reinterpret_cast<const char*>(&word), sizeof word);
+  EXPECT_EQ(refusal(glb + json, "a.glb"), "a.glb: needs the glTF extension 'X', which is not read");
+  // The bytes of the vertices as indices: 12 triangles, some of which have 128 or 63.
+  const auto indexed = [&](const std::string& count) {
+    return replaced(
+        replaced(one, "\"POSITION\": 0}", "\"POSITION\": 0}, \"indices\": 1"), "\"VEC3\"}",
+        R"("VEC3"}, {"bufferView": 0, "componentType": 5121, "type": "SCALAR", "count": )" + count +
+            "}");
+  };
+  EXPECT_EQ(parse_mesh(indexed("12"), "a.gltf").triangles.size(), 4u);
+  EXPECT_EQ(refusal(indexed("36"), "a.gltf"),
+            "a.gltf: 3 of 12 triangles have vertices that do not exist");
+}
+
 /// However a scene's nodes refer to each other, and whatever it counts, reading it ends.
 TEST(ReadParts, CyclesAndHugeCounts) {
   for (const char* nodes : {R"([{"mesh": 0, "children": [0]}])",

@@ -125,6 +125,9 @@ TEST(Recorded, IsTheFirstOfAFile) {
   std::vector<double> first(values.begin(), values.begin() + 7);
   first.insert(first.end(), values.begin() + 14, values.begin() + 21);
   EXPECT_EQ(part.data, first);
+  scene.frames = 0, scene.objects = 0;
+  EXPECT_EQ(scene.generate({}, {}).shape, std::vector<std::size_t>({3, 2, 7}));
+  EXPECT_EQ(scene.generate({}, {}).data, values);
   scene.frames = 4;
   EXPECT_THROW(scene.generate({}, {}), Unusable);
   scene.frames = 2, scene.objects = 3;
