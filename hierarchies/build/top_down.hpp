@@ -181,7 +181,7 @@ class Splitter {
           range.extent.lo[longest], range.extent.hi[longest]);
     const Items all = items(range.node);
     const Vec3<double> axis = principal(all, sides, longest);
-    const auto key = [&axis](const Item& item) { return axis.dot(centroid(item)); };
+    const auto key = [&axis](const Item& item) { return dot<double>(axis, centroid(item)); };
     double low = infinite, high = -low;
     for (const Item& item : all) low = std::min(low, key(item)), high = std::max(high, key(item));
     return split(range.node, key, low, high);
@@ -244,7 +244,9 @@ class Splitter {
   /// The principal axis of the centroids; `sides` are those of their box.
   static Vec3<double> principal(Items range, const Vec3<double>& sides, Eigen::Index longest) {
     Vec3<double> along_box = Vec3<double>::Unit(longest);
-    const double scale = sides.norm();
+    // Not Eigen's norm: without vector registers it adds in another order, and the last digit of this
+    // decides the sign of some axes, and with it which child comes first.
+    const double scale = std::sqrt(squared_norm(sides));
     if (!(scale > 0) || !std::isfinite(scale)) return along_box;
     Vec3<double> mean = Vec3<double>::Zero();
     for (const Item& item : range) mean += centroid(item) / static_cast<double>(range.size());
