@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdlib>
 #include <exception>
+#include <functional>
 #include <numeric>
 #include <queue>
 #include <typeinfo>
@@ -54,7 +55,7 @@ std::unique_ptr<Run> made(std::string_view volume, std::string_view strategy,
   variant.kernel = kernel, variant.fan_out = fan_out;
   if (kernel != "gathered")
     variant.frame = name_of(Frame::body), variant.fan_out = native_fan_out<float>;
-  run->options.keep_series = true;
+  run->options.count = Count::on;
   if (!with_volume(volume, [&]<class V>(std::type_identity<V>) {
         run->hierarchies = std::make_unique<HierarchiesOf<V>>(meshes, variant);
       }))
@@ -125,23 +126,19 @@ BVLAB_EXPORT(end_run) void end_run(std::size_t run) { runs[run].reset(); }
 /// Plays the next frame.
 BVLAB_EXPORT(play) void play(std::size_t run) {
   Run& now = *runs[run];
-  now.result.contacts.clear(), now.front.clear(), now.tested.clear();
-  // Counts are running totals: the last ones are kept.
-  auto& series = now.result.series;
-  if (series.size() > 1) series.erase(series.begin(), series.end() - 1);
+  ReplayResult& all = now.result;
+  all.contacts.clear(), now.front.clear(), now.tested.clear();
+  all.n_b = all.n_u = all.n_v = all.n_p = all.hits = 0, all.front = 0;
   now.player->play(turn);
+  // The player counts on and on: it adds the sums over all frames so far.
+  now.player->finish();
+  const decltype(now.sums) sums{all.n_u, all.n_v, all.n_p, 0, all.hits, all.n_b};
+  std::transform(sums.begin(), sums.end(), now.sums.begin(), now.counts.begin(), std::minus<>());
+  now.counts[3] = all.front, now.sums = sums;
 }
 
-/// After `play`: N_u, N_v, N_p, entries of all fronts, hits.
-BVLAB_EXPORT(counts) const Array* counts(std::size_t run) {
-  static std::array<double, 5> values;
-  const auto& series = runs[run]->result.series;
-  const FrameCounts before = series.size() > 1 ? series[0] : FrameCounts{}, now = series.back();
-  values = {static_cast<double>(now.n_u - before.n_u), static_cast<double>(now.n_v - before.n_v),
-            static_cast<double>(now.n_p - before.n_p), static_cast<double>(now.front),
-            static_cast<double>(now.hits - before.hits)};
-  return told(values);
-}
+/// After `play`: N_u, N_v, N_p, entries of all fronts, hits, N_b.
+BVLAB_EXPORT(counts) const Array* counts(std::size_t run) { return told(runs[run]->counts); }
 /// After `play`, by what was asked: one byte a pair, one double a pair, or five numbers a contact.
 BVLAB_EXPORT(touching) const Array* touching(std::size_t run) {
   const auto& all = runs[run]->result.touching;

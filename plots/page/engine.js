@@ -65,7 +65,7 @@ async function engineFrom(text) {
     },
     endRun: run => f.end_run(run),
     play: run => f.play(run),
-    /** Of the frame played last: N_u, N_v, N_p, entries of all fronts, hits. */
+    /** Of the frame played last: N_u, N_v, N_p, entries of all fronts, hits, N_b. */
     counts: run => view(Float64Array, f.counts(run)),
     touching: run => view(Uint8Array, f.touching(run)),
     distances: run => view(Float64Array, f.distances(run)),

@@ -96,7 +96,7 @@ const live = (() => {
       run.times.push(performance.now() - before);
       if (run.times.length > 30) run.times.shift();
       const [nu, nv, np, front, hits, nb] = self.engine.counts(run.number);
-      run.counts = { nu, nv, np, front, hits };
+      run.counts = { nu, nv, np, nb, hits };
       curves.add(run, [nu, nv, np, front, hits, nb, [...run.times].sort((a, b) => a - b)[run.times.length >> 1]]);
     }
   }

@@ -15,8 +15,6 @@ const curves = (() => {
   });
   const rough = new Intl.NumberFormat('en', { maximumSignificantDigits: 3 });
   const format = (value, k) => (kinds[k][1] === 'ms' ? rough : count).format(value);
-  const known = values => values.map(each => each ?? NaN);
-
   const lastOf = (run, k) => run?.past.at(-1)?.[k] ?? NaN;
 
   function drawOne({ box, canvas, output }, k, runs) {
@@ -41,9 +39,9 @@ const curves = (() => {
   }
 
   return {
-    /** Of a run: N_u, N_v, N_p, front, hits, N_b where it is counted, milliseconds. */
+    /** Of a run: N_u, N_v, N_p, front, hits, N_b, milliseconds. */
     add(run, values) {
-      run.past.push(known(values));
+      run.past.push(values);
       if (run.past.length > most) run.past.shift();
     },
     draw(runs) {
