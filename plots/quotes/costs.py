@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The cost model, time against error, and boxes in float."""
+"""The cost model."""
 
 import numpy as np
 
 from bvlab_scripts import cost_model
-from bvlab_plots import records
-from quotes.names import called
 from quoting import Interval, claim, quotes
 
 COUNTS = ["n_u", "n_v", "n_p"]
@@ -43,51 +41,3 @@ def cost(record):
             "most": share.max(), "fitted": Interval(100 * error for _, error in near.values()),
             "fitted_all": Interval(100 * error for _, error in everywhere.values()), "negative": len(negative), "volumes": len(everywhere),
             "left": Interval(left.median()), "quartiles": Interval([left.quantile(0.25).min(), left.quantile(0.75).max()])}
-
-
-@quotes("distance-error")
-def distance_error(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    time = rows.groupby(["mesh", "relative_error", "volume"]).time_ns.median()
-    saved = time.xs(0, level="relative_error") / time.xs(0.1, level="relative_error")
-    small, large = time[time.index.get_level_values("relative_error") <= 0.01], time[time.index.get_level_values("relative_error") >= 0.3]
-    best = small.groupby(["mesh", "relative_error"]).min()
-    for mesh, volume in (("bunny", "rss"), ("knot", "shell")):
-        claim((small.xs(volume, level="volume")[mesh] < 1.1 * best[mesh]).all(),
-              f"up to a hundredth {volume} is fastest on the {mesh}")
-    claim((large.xs("sphere", level="volume") < 1.1 * large.groupby(["mesh", "relative_error"]).min()).all(),
-          "from 0.3 on it is spheres")
-    claim((rows.largest_error <= rows.relative_error * (1 + 1e-9) + 1e-12).all(), "the error seen stays below that promised")
-    return {"saved": Interval(saved)}
-
-
-@quotes("budget")
-def budget(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    rows = rows.assign(us=rows.time_ns / rows.answers / 1e3)
-    middle = rows.groupby(["mesh", "volume", "budget"])[["mean_deepest_per_radius", "us"]].median().reset_index()
-
-    def cheapest(bound):
-        good = middle[middle.mean_deepest_per_radius <= bound]
-        return good.loc[good.groupby("mesh").us.idxmin()]
-    values = {}
-    for name, bound in (("tenth", 0.1), ("hundredth", 0.01)):
-        best = cheapest(bound)
-        values |= {name: Interval(best.us), f"{name}_volumes": called(best.volume)}
-    return values
-
-
-@quotes("boxes-precision")
-def boxes_precision(record):
-    rows = records.read(record)
-    middle = rows.groupby(["set", "offset", "method", "numbers"])[["false_positives", "pairs", "ns_per_frame"]].median()
-    claim((rows.false_negatives == 0).all(), "boxes in float miss no pair")
-    outward, double = (middle.xs(numbers, level="numbers") for numbers in ("float, outward", "double"))
-    wrong = (100 * outward.false_positives / outward.pairs).groupby(["set", "offset"]).max()
-    apart = wrong.drop("adjacent", level="set")
-    time = outward.ns_per_frame / double.ns_per_frame
-    return {"thousand": Interval(apart.xs(1000, level="offset")), "ten_thousand": Interval(apart.xs(10000, level="offset")),
-            "adjacent": wrong["adjacent"].min(), "blocks": time.xs("blocks", level="method").median(),
-            "sort": time.xs("sort-and-sweep", level="method").median(), "hybrid": time.xs("hybrid", level="method").median(), "slowest": time["sphere-sparse", 10000, "blocks"]}
