@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The numbers of README.md, the pages of experiments/ and the paper: each computed in one place, from the records.
 
-    @quotes("boxes-precision")
+    @quotes("boxes-fast")
     def boxes_precision(record):
         return {"blocks": ..., "rows": [[cell, ...], ...]}
 

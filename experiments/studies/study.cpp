@@ -13,10 +13,8 @@ namespace bvlab {
 namespace {
 
 /// THE list of kinds.
-const StudyKind* const kinds[] = {&studies::boxes,     &studies::box_precision, &studies::budget,
-                                  &studies::distance,  &studies::memory,        &studies::posing,
-                                  &studies::stability, &studies::tightness,     &studies::triangles,
-                                  &studies::worlds};
+const StudyKind* const kinds[] = {&studies::boxes,     &studies::distance,  &studies::stability,
+                                  &studies::tightness, &studies::triangles, &studies::worlds};
 
 const StudyKind& kind_of(const StudyDefinition& definition) {
   std::string names;

@@ -88,12 +88,8 @@ std::span<const StudyKind* const> study_kinds();
 
 namespace studies {
 
-extern const StudyKind box_precision;
 extern const StudyKind boxes;
-extern const StudyKind budget;
 extern const StudyKind distance;
-extern const StudyKind memory;
-extern const StudyKind posing;
 extern const StudyKind stability;
 extern const StudyKind tightness;
 extern const StudyKind triangles;

@@ -7,6 +7,7 @@
     rows.groupby(["query", "variant"]).time_ns.median()
 """
 
+import gzip
 import json
 import re
 import tomllib
@@ -165,8 +166,15 @@ def names_in(definition):
     return names
 
 
+def table_at(path):
+    """The file of a table: large ones of the repository are compressed."""
+    path, packed = Path(path), Path(f"{path}.gz")
+    return packed if packed.is_file() and not path.is_file() else path
+
+
 def read_table(path, names=()):
     """Blanks are empty names, and NaN in columns of numbers; `names` are columns of which all is a name."""
+    path = table_at(path)
     try:
         if not ends(path):
             raise Refused(f"{path}: is cut off: its last line has no end")
@@ -183,7 +191,7 @@ def read_table(path, names=()):
 
 def ends(path):
     """Whether the last line has an end, outside of quotes."""
-    with open(path, "rb") as file:
+    with (gzip.open if path.suffix == ".gz" else open)(path, "rb") as file:
         quotes, last = 0, b"\n"
         while data := file.read(1 << 20):
             quotes, last = quotes + data.count(b'"'), data[-1:]
@@ -226,7 +234,7 @@ def without_ours(rows):
 
 
 def with_coherence(rows, path, names):
-    if path.is_file():
+    if table_at(path).is_file():
         coherence = read_table(path, names)
         shared = [column for column in coherence if column in rows]
         rows = rows.merge(coherence, how="left", on=shared)

@@ -2,5 +2,5 @@
 """One script for each record that has to be computed with, or judged, before it can be drawn.
 
 What is drawn as it stands is declared in the record's definition, and drawn by plots/draw. `plots/script` names them
-all; `plots/script law-unseen RECORD` calls one. Hypotheses and laws stand here; nothing of bvlab_plots knows of them.
+all; `plots/script cost-model RECORD` calls one. Hypotheses and laws stand here; nothing of bvlab_plots knows of them.
 """

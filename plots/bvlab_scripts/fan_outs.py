@@ -34,7 +34,7 @@ def all_rows(record):
 
 def survival(record, volumes=None):
     """By motion, the share of a binary recursion's front that is there again in the next frame; of all volumes together, or of these."""
-    measured = pd.read_csv(record / f"{record.name}.coherence.csv")
+    measured = pd.read_csv(records.table_at(record / f"{record.name}.coherence.csv"))
     if "fan_out" in measured:
         measured = measured[measured.fan_out == 2]
     if volumes:

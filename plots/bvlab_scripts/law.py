@@ -104,33 +104,14 @@ def list_over_recursion(rows, defer, kappa):
     return (stands * cost).sum(axis=0) / stands.sum(axis=0)
 
 
-def window_over_recursion(rows, defer, kappa, first):
-    """The same from frame `first` on, of lists that are built in frame 0: a list that stands is as old as its last
-    rebuild, and is rebuilt where it stands no more."""
-    stands, cost = by_age(rows, defer, kappa)
-    falls = np.concatenate([np.zeros_like(stands[:1]), stands[:-1] - stands[1:]])
-    rebuilt = np.zeros_like(stands)
-    rebuilt[0] = 1
-    total = np.zeros(stands.shape[1])
-    for frame in range(len(stands)):
-        ages = slice(frame, None, -1)  # the oldest list of a frame was built in frame 0
-        if frame:
-            rebuilt[frame] = (rebuilt[:frame] * falls[frame:0:-1]).sum(axis=0)
-        if frame >= first:
-            total += (rebuilt[:frame + 1] * stands[ages] * cost[ages]).sum(axis=0)
-    return total / (len(stands) - first)
-
-
-def predicted(rows, kappa, first=None):
-    """The speedup in tests by the law, of a whole run or of its frames from `first` on; pairs that are not near take one
-    test either way."""
+def predicted(rows, kappa):
+    """The speedup in tests by the law; pairs that are not near take one test either way."""
     result = np.full(len(rows), np.nan)
     for name, defer in LISTS.items():
         of_list = (rows.strategy == name).to_numpy()
         part = rows[of_list]
         far = part.pair_runs - part.near_runs
-        ratio = (list_over_recursion(part, defer, kappa) if first is None else
-                 window_over_recursion(part, defer, kappa, first))
+        ratio = list_over_recursion(part, defer, kappa)
         result[of_list] = (far + part.tests) / (far + part.tests * ratio)
     return result
 

@@ -168,40 +168,6 @@ def draw_runs(runs, out):
     return style.save(figure, out, "nine-bunnies-runs")
 
 
-SMOOTHED = 25  # frames
-
-
-def draw_over_time(frames, column, label, out, name):
-    """A count per frame, all pairs together, as a running mean; one panel for each reading."""
-    every = list(dict.fromkeys(frames.reading))
-    readings = [reading for reading in every if "rejecting" not in reading]
-    records.say_left_out(set(every) - set(readings), f"of {name}")
-    lines = (len(readings) + 1) // 2
-    figure, axes = plt.subplots(lines, 2, figsize=(7.2, 2 * lines), sharex=True, squeeze=False)
-    variants = [BASE, *lists_of(frames)]
-    looks = style.looks(variants)
-    for axis, reading in zip(axes.flat, readings):
-        for variant in variants:
-            if column == "front" and variant == BASE:
-                continue
-            series = frames[(frames.reading == reading) & (frames.variant == variant)]
-            mean = series[column].rolling(SMOOTHED, center=True, min_periods=1).mean()
-            axis.plot(series.frame, mean, linewidth=1.1, label=variant,
-                      **style.line_style(looks[variant]))
-        axis.set_title(reading)
-        axis.set_ylim(bottom=0)
-    for axis in axes[-1]:
-        axis.set_xlabel("frame")
-    for axis in axes[:, 0]:
-        axis.set_ylabel(label)
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncol=3, frameon=False,
-                  bbox_to_anchor=(0.5, -0.1), title=f"running mean over {SMOOTHED} frames",
-                  title_fontsize=8)
-    figure.tight_layout()
-    return style.save(figure, out, name)
-
-
 def main():
     arguments = record_arguments(__doc__, table_only=True)
     runs = read(arguments.record)
@@ -217,9 +183,6 @@ def main():
     if arguments.table_only:
         return
     out = arguments.out
-    frames = records.read(arguments.record, "frames")
-    for path in (draw_table(runs, out), draw_runs(runs, out),
-                 draw_over_time(frames, "n_v", "$N_v$ per frame", out, "nine-bunnies-tests"),
-                 draw_over_time(frames, "front", "entries of all fronts", out, "nine-bunnies-front")):
+    for path in (draw_table(runs, out), draw_runs(runs, out)):
         print(path)
 

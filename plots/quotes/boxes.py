@@ -12,27 +12,25 @@ from quotes.names import PEERS, called
 from quoting import ALL, Interval, at_most, claim, quotes, short
 
 WORKS = [boxes_fast.SCRATCH, "drift", "still", "teleport"]
-SETS = {"triangles": "triangles of a bunny"}
-COUNTS = {1e4: "10k", 2e5: "200k", 1e6: "1M"}
 SEEDS = ["hybrid", "hash", "sweep1", "sweep2", "sweep3", "sweep4"]  # what was published
 SWEEPS = [method for method in SEEDS if method.startswith("sweep")]
 
 
-@quotes(["boxes-fast", "boxes-triangles", "boxes-fast-large", "boxes-million"])
-def boxes_beside_peers(*folders):
-    lines = boxes_fast.table(boxes_fast.read(folders))
+@quotes("boxes-fast")
+def boxes_beside_peers(record):
+    lines = boxes_fast.table(boxes_fast.read([record]))
     lines = lines[lines.method == "blocks"]
     rows = []
-    for (count, name), group in lines.groupby(["count", "set"], sort=False):
+    for name, group in lines.groupby("set", sort=False):
         ratios = group.set_index("work").ratio
         cells = [f"{ratios[work]:.{0 if ratios[work] >= 50 else 1}f}" if work in ratios else "" for work in WORKS]
-        rows.append([SETS.get(name, name), COUNTS[count], short(group.pairs.iloc[0]), *cells])
+        rows.append([name, short(group.pairs.iloc[0]), *cells])
     return {"rows": rows}
 
 
 def peers_of(rows):
     """Those of a record that have a name in text, in the order of PEERS."""
-    return called([peer for peer in PEERS if peer in set(rows.peer)], PEERS)
+    return called(peer for peer in PEERS if peer in set(rows.peer))
 
 
 @quotes("boxes-fast")
@@ -49,17 +47,6 @@ def peers(record):
             "given_up_drift": int(drift["bullet-dbvt"].sum()), "sets": len(given_up)}
 
 
-@quotes("boxes-million")
-def million_given_up(record):
-    rows = records.read(record)
-    stopped = rows[(rows.peer != "") & (rows.frames < rows.frames.max())]
-    claim(set(stopped.peer) == {"fcl-tree"} and (stopped.frames == 2).all(), "with a million boxes FCL's tree alone is given up, after two frames")
-    motions = {"drift": "drift", "still": "at rest"}
-    claim(set(stopped.motion) == set(motions), "it is given up in drift and at rest")
-    claim(all(set(part.motion) == set(motions) for _, part in stopped.groupby("set")), "in both on each such set")
-    return {"frames": rows.frames.max(), "cells": " and ".join(f"`{name}`" for name in stopped.set.unique()) + " (drift and at rest)"}
-
-
 @quotes(ALL)
 def box_references(folder):
     """What the pairs of each record of boxes are compared with, by its definition."""
@@ -68,40 +55,9 @@ def box_references(folder):
         definition = tomllib.loads(path.read_text())
         if definition.get("kind") == "boxes":
             found.setdefault(definition["parameters"]["reference"], []).append(path.parent.name)
-    claim(set(found) == {"cgal-1000", "brute-force", "sweep3", "auto"}, "references of boxes are CGAL, brute force, SWEEP3 and auto")
-    claim(set(found["auto"]) == {"boxes-changes", "boxes-changes-large"}, "auto is the reference in the records of changing boxes alone")
-    count = {name: len(records) for name, records in found.items()}
-    return {"said": f"CGAL in {count['cgal-1000']}, `sweep3` in {count['sweep3']}, brute force in {count['brute-force']}, and `auto` in the {count['auto']} of changing boxes"}
-
-
-@quotes("boxes-first-call")
-def first_call(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    rows = rows[rows.threads == 1]
-    time = rows.groupby(["set", "boxes", "peer"]).first_ns.median().unstack()
-    ratio = time.drop(columns="").min(axis=1) / time[""]
-    least = ratio.idxmin()
-    pairs = rows.groupby(["set", "boxes"]).overlaps.median()
-    other = ratio[least[0]].drop(least[1]).idxmax()
-    return {"ratio": Interval(ratio), "pairs": short(pairs[least]), "set": least[0], "peers": peers_of(rows), "other": ratio[least[0]][other],
-            "other_pairs": short(pairs[least[0]][other])}
-
-
-@quotes("boxes-peers")
-def every_peer(record):
-    rows = records.read(record)
-    missing = set(rows[records.wrong_answers(rows)].peer)
-    claim(missing == {"fcl-sap", "fcl-interval", "ode-hash"}, "FCL's SaP and IntervalTree and ODE's hash space alone differ")
-    wrong = rows[rows.differing > 0].groupby("peer").set.unique()
-    claim(all(set(wrong[peer]) == {"adjacent"} for peer in ("fcl-sap", "fcl-interval")), "FCL's managers differ on adjacent cubes alone")
-    claim("adjacent" not in wrong["ode-hash"], "ODE's hash space differs elsewhere")
-    still = rows[(rows.motion == "still") & (rows.threads == 1)]
-    still = still.groupby(["set", "variant", "coherent", "peer"]).frame_ns.median()
-    theirs = still.reset_index()[lambda part: part.peer != ""].pivot_table(index="set", columns="peer", values="frame_ns")
-    ours = still.xs(("blocks", "on"), level=("variant", "coherent")).droplevel("peer")
-    return {"best": (theirs.idxmin(axis=1) == "bullet-dbvt").sum(), "sets": len(theirs), "ode": sorted(wrong["ode-hash"]),
-            "times": Interval(theirs["bullet-dbvt"] / ours)}
+    claim(set(found) == {"cgal-1000", "auto"}, "references of boxes are CGAL and auto")
+    claim(found["auto"] == ["boxes-changes"], "auto is the reference in the record of changing boxes alone")
+    return {"said": f"`auto` in that of changing boxes and CGAL in the {len(found['cgal-1000'])} others"}
 
 
 @quotes("boxes-displacement")
@@ -159,17 +115,8 @@ def published(*folders):
             "saved": 100 * max(0, 1 - (both["on"] / both["off"]).median()), "saved_most": at_most(100 * (1 - (both["on"] / both["off"]).min()), 0)}
 
 
-@quotes("boxes-million")
-def threads(record):
-    rows = records.read(record)
-    time = rows[rows.method == "blocks"].groupby(["threads", "set", "motion", "coherent"]).wall_ns.median()
-    left = (time[2] / time[1]).unstack("coherent")
-    return {"off": Interval(left["off"]), "on": Interval(left["on"])}
-
-
 # Those in which `blocks` plays the same frames with coherence and without; those of changing boxes are of `auto`, and told elsewhere.
-FOLLOWED = ["boxes-fast", "boxes-fast-large", "boxes-million", "boxes-triangles", "boxes-displacement", "boxes-peers", "boxes-motions",
-            "boxes-motions-packed", "boxes-figure-4", "boxes-figure-5", "boxes-exponents"]
+FOLLOWED = ["boxes-fast", "boxes-displacement", "boxes-motions", "boxes-figure-4", "boxes-figure-5"]
 
 
 @quotes(FOLLOWED)
@@ -254,51 +201,3 @@ def exponents(*folders):
     claim(all(abs(float(line[1]) - (2 if line[0] in packed else 1)) < 0.1 for line in lines),
           "pairs grow as the square on over-packed sets")
     return {"rows": lines}
-
-
-@quotes("boxes-exponents")
-def powers(record):
-    """t = a n^x k^y by least squares of logarithms over sizes and overlaps, for each method, from scratch and coherent."""
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    rows = rows[(rows.frame_ns > 0) & (rows.peer == "")]
-    cells = rows.groupby(["method", "coherent", "set", "boxes"])[["frame_ns", "overlaps"]].median().reset_index()
-    lines, off, found = [], [], {}
-    for method, group in cells.groupby("method", sort=False):
-        line = [f"`{method}`"]
-        for coherent in ("off", "on"):
-            here = group[group.coherent == coherent]
-            known = np.column_stack([np.ones(len(here)), np.log(here.boxes), np.log(here.overlaps)])
-            answer = np.linalg.lstsq(known, np.log(here.frame_ns), rcond=None)[0]
-            found[method, coherent] = answer[1:]
-            off.append(np.exp(np.abs(known @ answer - np.log(here.frame_ns)).max()))
-            line += [f"{answer[1]:.2f}", f"{answer[2]:.2f}"]
-        lines.append(line)
-    lines.sort(key=lambda line: float(line[1]) + float(line[2]))
-    sums = {key: sum(value) for key, value in found.items()}
-    claim(min(value for key, value in sums.items() if key[0] in ("blocks", "auto")) < 1.2, "ours grow nearly as n + k does")
-    overlapped = (2 * cells.overlaps / cells.boxes).groupby(cells.set).agg(["min", "max"]).sort_values("min")
-    claim(list(overlapped.index) == ["uniform-1", "uniform-8", "uniform-64"], "three sets, of about 1, 8 and 64")
-    few, some, many = (Interval(line) for line in overlapped.to_numpy())
-    return {"few": few, "some": some, "many": many, "rows": lines, "off": max(off), "sums": Interval(pd.Series(sums)), "cells": len(cells) // len(found)}
-
-
-@quotes("boxes-large-peers")
-def large_peers(record):
-    """Of each number of boxes and motion: the fastest library's frame over ours."""
-    rows = records.read(record)
-    claim((rows.differing == 0).all(), "all pair sets agree with CGAL's")
-    ours = rows[rows.peer == ""].pivot_table(index=["count", "motion"], columns="coherent", values="frame_ns")
-    theirs = rows[rows.peer != ""].pivot_table(index=["count", "motion"], columns="peer", values="frame_ns")
-    lead = theirs.min(axis=1) / ours.min(axis=1)
-    claim((ours.loc[:, "on"].xs("still", level="motion") < ours.loc[:, "off"].xs("still", level="motion")).all()
-          and (ours.loc[:, "on"].xs("drift", level="motion") > ours.loc[:, "off"].xs("drift", level="motion")).all(),
-          "in four frames coherence pays where nothing moves and not in drift")
-    claim(set(theirs.xs("still", level="motion").idxmin(axis=1)) == {"bullet-dbvt"} and set(theirs.xs("drift", level="motion").idxmin(axis=1)) == {"fcl-tree"},
-          "Bullet's tree is the fastest library at rest, FCL's in drift")
-    first = rows[rows.peer == "bullet-dbvt"].first_ns / 1e9
-    coherent = (ours["on"] / ours["off"]).xs("drift", level="motion")
-    stopped = rows[(rows.peer != "") & (rows.frames < rows.frames.max())]
-    return {"frames": rows.frames.max(), "still": Interval(lead.xs("still", level="motion")), "drift": Interval(lead.xs("drift", level="motion")),
-            "coherent": Interval(coherent), "coherent_most": coherent.max(), "first": Interval(first), "stopped": len(stopped),
-            "bullet_drift": Interval((theirs["bullet-dbvt"] / ours.min(axis=1)).xs("drift", level="motion").dropna())}

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The cost model, time against error, and boxes in float."""
+"""The cost model, and time against error."""
 
 import numpy as np
 
-from bvlab_scripts import cost_model
 from bvlab_plots import records
-from quotes.names import called
+from bvlab_scripts import cost_model
 from quoting import Interval, claim, quotes
 
 COUNTS = ["n_u", "n_v", "n_p"]
@@ -60,34 +59,3 @@ def distance_error(record):
           "from 0.3 on it is spheres")
     claim((rows.largest_error <= rows.relative_error * (1 + 1e-9) + 1e-12).all(), "the error seen stays below that promised")
     return {"saved": Interval(saved)}
-
-
-@quotes("budget")
-def budget(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    rows = rows.assign(us=rows.time_ns / rows.answers / 1e3)
-    middle = rows.groupby(["mesh", "volume", "budget"])[["mean_deepest_per_radius", "us"]].median().reset_index()
-
-    def cheapest(bound):
-        good = middle[middle.mean_deepest_per_radius <= bound]
-        return good.loc[good.groupby("mesh").us.idxmin()]
-    values = {}
-    for name, bound in (("tenth", 0.1), ("hundredth", 0.01)):
-        best = cheapest(bound)
-        values |= {name: Interval(best.us), f"{name}_volumes": called(best.volume)}
-    return values
-
-
-@quotes("boxes-precision")
-def boxes_precision(record):
-    rows = records.read(record)
-    middle = rows.groupby(["set", "offset", "method", "numbers"])[["false_positives", "pairs", "ns_per_frame"]].median()
-    claim((rows.false_negatives == 0).all(), "boxes in float miss no pair")
-    outward, double = (middle.xs(numbers, level="numbers") for numbers in ("float, outward", "double"))
-    wrong = (100 * outward.false_positives / outward.pairs).groupby(["set", "offset"]).max()
-    apart = wrong.drop("adjacent", level="set")
-    time = outward.ns_per_frame / double.ns_per_frame
-    return {"thousand": Interval(apart.xs(1000, level="offset")), "ten_thousand": Interval(apart.xs(10000, level="offset")),
-            "adjacent": wrong["adjacent"].min(), "blocks": time.xs("blocks", level="method").median(),
-            "sort": time.xs("sort-and-sweep", level="method").median(), "hybrid": time.xs("hybrid", level="method").median(), "slowest": time["sphere-sparse", 10000, "blocks"]}

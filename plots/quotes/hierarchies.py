@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Hierarchies beside other libraries', the torus in its ring, builds and fits, tightness, posing, convex bodies."""
+"""Hierarchies beside other libraries', and convex bodies."""
 
 from functools import cache
 
@@ -65,95 +65,6 @@ def best_of_ours(record):
             "margins": name[little].str.endswith("margins").sum(), "asked": little.sum(),
             "shells": name.str.startswith("shell").sum(), "cells": len(name),
             "roots": Interval(1e3 * sparse.groupby(["query", "polygons", "motion"]).us.median())}
-
-
-@quotes("peers-cgal")
-def cgal(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    time = rows.groupby(["density", "variant"]).time_ns.median().unstack()
-    return {"cgal": Interval(time["cgal"] / time["sphere recursive"])}
-
-
-@quotes("tori")
-def tori(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    rows = rows.assign(us=rows.later_ns / rows.later_pairs / 1e3, tests=rows.n_v / rows.pairs)
-    middle = rows.groupby(["query", "peer", "variant"])[["us", "tests"]].median()
-    touching, contacts, distance = (middle.loc[(query, "")] for query in ("touching", "contacts", "distance"))
-    claim(all(part.us["obb recursive-both"] < TIE * part.us.min() for part in (touching, contacts)),
-          "oriented boxes, both descended, are fastest")
-    time = touching.us.groupby([touching.index.str.split().str[0], touching.index.str.split().str[1]]).first().unstack()
-    gain = time["separation-list"] / time[["recursive", "recursive-both"]].min(axis=1)
-    claim(touching.us.idxmin() == "obb recursive-both", "for touching oriented boxes are fastest of all")
-    roots = touching[touching.index.str.contains("recursive")].tests
-    claim(roots.idxmin() == "kdop26 recursive-both", "26-DOPs make the fewest tests of what starts from the roots")
-    claim(all(part.us[part.index.str.contains("recursive")].min() < TIE * part.us.min() for part in (contacts, distance)),
-          "no front is fastest for contacts and distances")
-    theirs = middle.drop("", level="peer")
-    return {"frames": rows.frames.iloc[0], "touching": touching.us.min(), "touching_tests": touching.tests[touching.us.idxmin()],
-            "kdop26_tests": touching.tests["kdop26 recursive-both"], "kdop26_us": touching.us["kdop26 recursive-both"],
-            "fcl": theirs.loc["touching"].us.min(), "fcl_tests": theirs.loc["touching"].tests.loc["fcl-obb"].iloc[0],
-            "contacts": contacts.us.min(), "contacts_tests": contacts.tests["obb recursive-both"],
-            "contacts_recursive": contacts.tests["obb recursive"], "fcl_contacts": theirs.loc["contacts"].us.min(),
-            "fcl_contacts_tests": theirs.loc["contacts"].tests.loc["fcl-obb"].iloc[0], "distance": distance.us.min(),
-            "fcl_distance": theirs.loc["distance"].us.min(), "shell": gain["shell"], "kdop26": gain["kdop26"],
-            "others": Interval(gain.drop(["shell", "kdop26"]))}
-
-
-@quotes("fits")
-def fits(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    values = rows.groupby(["build", "fit", "volume", "polygons", "query"])[["n_v", "build_ns"]].median()
-    base = values.loc[("top-down-principal", "published")]
-
-    def share(build, fit, what="n_v"):
-        """Of what the base makes: the median over sizes and queries, for each volume."""
-        return (values.loc[(build, fit)][what] / base[what]).groupby("volume").median()
-    sah, bottom_up = share("top-down-surface-area", "published"), share("bottom-up", "published")
-    claim(sah.idxmin() == "aabb", "the heuristic saves most with boxes along the axes")
-    fitted = ["obb", "rss", "shell"]
-    tight = share("top-down-principal", "tight")
-    return {"sah_least": sah.min(), "sah_most": sah.max(), "clustering": Interval(bottom_up), **tight[fitted],
-            "tight": list(share("bottom-up", "tight")[fitted]),
-            "longer": list(share("top-down-principal", "tight", "build_ns")[fitted])}
-
-
-@quotes("tightness")
-def tightness(record):
-    rows = records.read(record)
-    rows = rows[(rows.mesh == "bunny:8000") & (rows.fit == "published")]
-    published = rows.groupby(["level", "volume"])["mean"].mean().unstack("volume")
-    leaves = published.index.max()
-    claim(published.loc[0].idxmin() == "kdop26", "26-DOPs lose least at the top")
-    claim(set(published.loc[leaves].nsmallest(2).index) == {"obb", "rss"}, "boxes and rectangles lose least at the leaves")
-    claim(published.sphere[0] < published.sphere[leaves // 2] < published.sphere[leaves], "spheres lose more further down")
-    return {"top": published.kdop26[0], "leaves": published.loc[leaves].min()}
-
-
-@quotes("posing")
-def posing(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    rows = rows.assign(share=100 * rows.dismissed / rows.pairs)
-    middle = rows.groupby(["query", "side", "k", "policy"])[["n_v", "time_ns", "pose_ns", "share"]].median().unstack()
-    asked = middle.drop("roots", level="query")
-    time = (asked.time_ns.corners / asked.time_ns.realigned).dropna()
-    sparse = time.index.get_level_values("side") == time.index.get_level_values("side").max()
-    far, near = time[sparse], time[~sparse]
-    claim((far < 0.85).all() and (near > 0.85).all(), "corners are much faster where bodies are sparse, and only there")
-    cost = asked.pose_ns.corners / asked.pose_ns.realigned
-    eighteen = cost.index.get_level_values("k") == 18
-    claim(cost[eighteen].min() > cost[~eighteen].max(), "corners cost most over realignment with 18-DOPs")
-    dense = middle.share.loc["roots"].xs(4, level="side")
-    price = middle.pose_ns.loc["roots"]
-    return {"saved": Interval(100 * (1 - (asked.n_v.corners / asked.n_v.realigned)).clip(lower=0)),
-            "corners": Interval(asked.pose_ns.corners), "realigned": Interval(asked.pose_ns.realigned),
-            "hull": Interval(dense["hull"]), "other": Interval(dense[["realigned", "corners"]].stack()),
-            "price": Interval(price["hull"] / price["realigned"]), "price_corners": Interval(price["hull"] / price["corners"]),
-            "cost": Interval(cost[~eighteen]), "cost_eighteen": Interval(cost[eighteen]), "far": Interval(far), "near": Interval(near)}
 
 
 @quotes("closest-features")

@@ -78,32 +78,6 @@ def real_motions_bounds(record):
             "share": Interval(100 * fixed / single.us[few]), "spirelli": ours, "spirelli_fcl": theirs}
 
 
-@quotes("recommended-rule")
-def recommended_rule(record):
-    rows = records.read(record)
-    claim((rows.differing == 0).all(), "answers of ours agree")
-    rows = with_us(rows)
-    us = rows.groupby(["motion", "method"]).us.median().unstack()
-    candidates = us[["slab-boxes", "slab-boxes, from the roots", "slab-boxes in small leaves", "oriented boxes",
-                     "oriented boxes, from the roots", "wide oriented boxes"]].min(axis=1)
-    over, among = us["recommended"] / us.min(axis=1), us["recommended"] / candidates
-    fixed = us["slab-boxes"] / us.min(axis=1)
-    spread = rows.groupby(["motion", "method"]).us.agg(lambda each: each.max() / each.min())
-    claim(spread.max() > 1.3 and (spread > 1.1).mean() > 0.1, "times of one cell differ by much between repetitions")
-    claim((rows.alone == "yes").all(), "the rows were timed alone")
-    roots = rows[(rows.method == "recommended") & (rows.strategy == "recursive")].motion.nunique()
-    claim(0 < roots < len(us), "some motions are started from the roots, not all")
-    parts = ["volume", "fan_out", "kernel", "build", "fit", "leaf_size", "strategy"]
-    settings = rows.groupby(["motion", "method"])[parts].first()
-    twins = [us.loc[motion, "recommended"] / us.loc[motion, method] for motion, method in settings.index
-             if method != "recommended" and settings.loc[(motion, method)].equals(settings.loc[(motion, "recommended")])]
-    claim(len(twins) == len(us), "every motion has a cell that is the recommended one under another name")
-    bunnies = over.index.str.startswith("bunnies")
-    return {"motions": len(over), "cells": us.shape[1] - 1, "near": int((over <= NEAR).sum()), "worst": over.max(), "worst_at": over.idxmax(),
-            "spread": 100 * (spread > 1.1).mean(), "spread_most": spread.max(), "twins": Interval(twins), "over": int((over > NEAR).sum()), "roots": int(roots),
-            "among": int((among <= NEAR).sum()), "most_among": among.max(), "bunnies": over[bunnies].max(), "fixed": fixed.max()}
-
-
 @quotes("recommended-costs")
 def recommended_costs(record):
     rows = records.read(record)
@@ -167,24 +141,3 @@ def boxes_changes(record):
     return {**stopped(rivals), "later_play": int((untimed.frames > 2).sum()), "cases": len(on), "few": Interval(few), "worst": at_most(on.max()), "beside": Interval(beside), "told": Interval(told), "untold": untold.max(),
             "latest": at_most(late.max()), "moving": Interval(moving), "first": Interval((abp / first["on"]).dropna()),
             "sap": wrong.groupby(["set", "motion"]).ngroups}
-
-
-@quotes("boxes-changes-large")
-def boxes_changes_large(record):
-    auto, rivals, fastest = changing(record)
-    mean, tail = auto.frame_ns.unstack(), auto.p99_ns.unstack()
-    on, late = mean["on"] / mean["off"], tail["on"] / tail["off"]
-    beside, told = mean["on"] / fastest[""], mean["told"] / fastest["told"]
-    untold = mean["on"] / fastest["told"]
-    slow = late.nlargest(1)
-    claim(len(on) == len(beside.dropna()) == len(told.dropna()) == 20, "all cases of the definition are in the record, and rivals in each")
-    claim((on <= 1.1).all(), "in the mean following costs at most 1.1 of starting over")
-    claim((beside < 1).all() and (told < 1).all(), "no rival is faster, both finding the movers or both told")
-    claim(set(untold.index[untold > 1].get_level_values("motion")) == {"rare"}, "a rival that is told is faster where few boxes move alone")
-    claim(list(slow.index) == [("mixed", "jump")], "the worst frame is slowest beside starting over's for mixed where boxes jump")
-    left = rivals[rivals.frame_ns > 0].groupby(["set", "motion"]).method.nunique()
-    last = left.index[left == 1]
-    claim(list(last) == [("build/scenes/n-body-simulation.npy", "jump")], "one rival is left where bodies of n-body jump, and nowhere else")
-    return {**stopped(rivals), "cases": len(mean), "on": Interval(on), "worst": at_most(on.max()), "beside": Interval(beside), "told": Interval(told), "late": slow.max(),
-            "others": at_most(late.drop(slow.index).max()), "untold": untold.max(),
-            "pairs": auto.overlaps.max() / 1e6}

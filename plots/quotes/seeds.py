@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What was published as it was: the talk's tree and prices, the motions of boxes."""
 
-import numpy as np
-
 from bvlab_scripts import nine_bunnies
-from bvlab_scripts.nine_bunnies import BASE
-from bvlab_plots import provenance, records
+from bvlab_plots import records
 from quoting import Interval, at_most, claim, quotes
 
 PRICES = [2, 10]  # of a pair of triangles, in tests of volumes
@@ -76,102 +73,3 @@ def boxes_motions(record):
     changed = fastest.nunique(axis=1) > 1
     claim(changed.sum() == 2 and apart.idxmax()[2] == "sweep3", "the motion changes which method is fastest in two cases, and SWEEP3's time most")
     return {"apart": apart.max(), "apart_method": apart.idxmax()[2].upper(), "changed": int(changed.sum()), "cases": len(changed), "sweeps": Interval(sweeps), "middle": sweeps.median(), "blocks": Interval(saved[saved.method == "blocks"].left)}
-
-
-@quotes("boxes-motions-packed")
-def boxes_motions_packed(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    rows = rows[(rows.peer == "") & (rows.frame_ns > 0)]
-    time = rows.groupby(["set", "boxes", "method", "coherent", "motion"]).frame_ns.median().unstack("coherent")
-    published = time.drop("blocks", level="method")
-    by_motion = published["off"].unstack("motion")
-    fastest = by_motion.groupby(["set", "boxes"]).idxmin().applymap(lambda place: place[2])
-    claim((fastest.nunique(axis=1) > 1).sum() == 1 and set(fastest.loc[fastest.nunique(axis=1) > 1].iloc[0]) == {"hybrid", "sweep1"},
-          "the fastest published method depends on the motion in one case, where it is HYBRID or SWEEP1")
-    over = time["on"].xs("blocks", level="method") / time["off"].xs("blocks", level="method")
-    worst = rows[rows.method == "blocks"].groupby(["set", "boxes", "motion", "coherent"])[["p99_ns", "frame_ns"]].median().unstack("coherent")
-    begins = worst.p99_ns["on"] / worst.frame_ns["off"]
-    begins = begins[over > 1.1]
-    claim(len(begins) == 3 and begins.min() > 5, "the slowest frame of following costs as much as many from scratch, where following costs more")
-    return {"dear": len(begins), "cells": len(over), "begins": Interval(begins), "apart": by_motion.max(axis=1).div(by_motion.min(axis=1)).max(), "left": Interval(published["on"] / published["off"]),
-            "blocks": Interval(over), "frames": rows.frames.iloc[0]}
-
-
-def unit_costs(rows):
-    """C_u, C_v, C_p in nanoseconds: those by which recursions' times are off least, in squares of shares; none below 0."""
-    rows = rows[rows.strategy == BASE]
-    shares = rows[["n_u", "n_v", "n_p"]].to_numpy(float) / rows.time_ns.to_numpy()[:, None]
-    costs, used = np.zeros(3), [0, 1, 2]
-    while used:
-        found = np.linalg.lstsq(shares[:, used], np.ones(len(rows)), rcond=None)[0]
-        if (found >= 0).all():
-            costs[used] = found
-            break
-        del used[int(np.argmin(found))]
-    return costs
-
-
-def prices(rows):
-    """C_p over C_v by four regressions: of recursions alone or of all strategies, of shares of the time or of the time."""
-    found = [np.divide(*unit_costs(rows.assign(strategy=BASE) if every else rows)[[2, 1]]) for every in (False, True)]
-    for part in (rows[rows.strategy == BASE], rows):
-        costs = np.linalg.lstsq(part[["n_u", "n_v", "n_p"]].to_numpy(float), part.time_ns.to_numpy(float), rcond=None)[0]
-        found.append(costs[2] / costs[1])
-    return found
-
-
-@quotes("talk-scalar")
-def talk_scalar(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    one, every = ["one body, one freedom", "one body, all freedoms"], ["all bodies, all freedoms"]
-    cell = ["program", "reading", "density"]
-    found = {}
-    for name, measure in (("time", "time_ns"), ("tests", "n_v")):
-        table = rows.groupby([*cell, "seed", "strategy"])[measure].median().unstack("strategy")
-        found[name] = table.rdiv(table.recursive, axis=0).groupby(level=cell).mean()
-    dear = {program: Interval(prices(rows[rows.program == program])) for program in set(rows.program)}
-    claim(dear["unoptimised"].least < dear["optimised"].most / 1.5, "a price depends on the build, and on the regression")
-
-    reached = found["time"].loc["unoptimised"].loc[one]
-    runs = rows.groupby([*cell, "seed", "strategy"]).time_ns.median().unstack("strategy")
-    runs = runs.rdiv(runs.recursive, axis=0)
-    both = (runs["separation-list"] >= 1.40) & (runs.deferred >= 1.84)
-    claim(reached["separation-list"].max() >= 1.40 and reached.deferred.max() < 1.84, "unoptimised code reaches the list's speedup, not deferring's")
-
-    def of(what, program, readings, name):
-        return Interval(found[what].loc[program].loc[readings][name])
-    rejecting = ["one body, one freedom, rejecting"]
-    return {"both": int(both.loc["unoptimised"].sum()), "runs": len(both.loc["unoptimised"]), "processor": provenance.processor_of(provenance.machine_of(record)),
-            "reject_list": of("time", "unoptimised", rejecting, "separation-list"), "reject_deferred": of("time", "unoptimised", rejecting, "deferred"),
-            "reached": int((reached["separation-list"] >= 1.40).sum()), "cells": len(reached), "plain": dear["unoptimised"], "optimised": dear["optimised"],
-            "plain_list": of("time", "unoptimised", one, "separation-list"), "list": of("time", "optimised", one, "separation-list"),
-            "plain_deferred": of("time", "unoptimised", one, "deferred"), "deferred": of("time", "optimised", one, "deferred"),
-            "tests_list": of("tests", "optimised", one, "separation-list"), "tests_deferred": of("tests", "optimised", one, "deferred"),
-            "every_list": of("time", "unoptimised", every, "separation-list"), "every_deferred": of("time", "unoptimised", every, "deferred")}
-
-
-def left_by_coherence(record):
-    """Time with coherence over that without, one a program, sort, set, number, motion and sweep."""
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    rows = rows[(rows.frame_ns > 0) & rows.method.str.startswith("sweep")]
-    wide = rows.groupby(["program", "sort", "set", "boxes", "motion", "method", "coherent"]).frame_ns.median().unstack("coherent")
-    return (wide["on"] / wide["off"]).dropna()
-
-
-@quotes("boxes-sorts")
-def boxes_sorts(record):
-    left = left_by_coherence(record)
-    found = {}
-    for name, program, sort in (("plain", "unoptimised", "comparison"), ("optimised", "optimised", "comparison"),
-                                ("plain_radix", "unoptimised", "radix"), ("radix", "optimised", "radix")):
-        values = left.loc[program].loc[sort]
-        found[name], found[f"{name}_middle"] = Interval(values), values.median()
-    third = left[left <= 2 / 3]
-    claim(set(third.index.droplevel(["set", "boxes", "motion", "method"])) == {("optimised", "comparison")} and set(third.index.get_level_values("boxes")) == {1000},
-          "sweeps save a third only after a comparison sort of a thousand boxes in optimised code")
-    claim(max(found["optimised_middle"], found["plain_middle"]) < 0.9 < min(found["plain_radix_middle"], found["radix_middle"]),
-          "after a comparison sort coherence saves sweeps more than after a radix sort")
-    return {**found, "saved": 100 * (1 - left.min()), "third": len(third), "cells": len(left.loc["optimised"].loc["comparison"])}

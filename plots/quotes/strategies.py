@@ -1,57 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What wins where, strategies beside the best rebuilds, real workloads, and whole scenes."""
+"""Strategies beside the best rebuilds and beside `adaptive`, and whole scenes."""
 
 from bvlab_plots import records
 from quotes.relation import measured
 from quoting import Interval, claim, quotes
 
-MEETING = ["obb", "rss"]
 TIE = 1.1  # times this near to each other are the same
-
-
-def variants_of(record, cell):
-    """The median time of each variant in each cell: how many times as fast as recursive spheres, and over the least."""
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    rows = rows[rows.peer == ""].assign(ns=rows.time_ns / rows.pairs)
-    middle = rows.groupby([*cell, "volume", "strategy"], as_index=False).ns.median()
-    base = middle[(middle.volume == "sphere") & (middle.strategy == "recursive")].set_index(cell).ns
-    middle = middle.set_index(cell)
-    return middle.assign(gain=base / middle.ns, over=middle.ns / middle.ns.groupby(cell).min()).reset_index()
-
-
-def win(rows, cell, wins):
-    """Whether in each cell one of those that `wins` says is the fastest, or as fast as that."""
-    return (rows[wins].groupby(cell).over.min().reindex(rows.groupby(cell).over.min().index) < TIE).all()
-
-
-@quotes("winners-motion")
-def over_motion(record):
-    cell = ["step", "degrees"]
-    rows = variants_of(record, cell)
-    steps, degrees = sorted(rows.step.unique()), sorted(rows.degrees.unique())
-    little = rows[(rows.step <= steps[-3]) & (rows.degrees <= degrees[-3])]
-    much = rows[(rows.step == steps[-1]) | (rows.degrees == degrees[-1])]
-    best = little[little.over == 1]
-    won = {name: best[best.strategy == name] for name in ("margins", "adaptive")}
-    claim(win(much, cell, much.strategy.isin(["recursive-both", "adaptive"])), "recursion over both nodes, or adaptive by it, wins where much moves")
-    claim(win(rows, cell, rows.volume.isin(MEETING)), "oriented boxes or rectangle swept spheres win, or are within a tenth, in every motion")
-    aabb = rows[rows.volume == "aabb"].groupby(cell).over.min()
-    claim((aabb > 1.5).all(), "boxes along the axes are far from winning in any motion")
-    return {"aabb": Interval(aabb), "step": f"{steps[-3]:g}", "degrees": f"{degrees[-3]:g}", "margins": len(won["margins"]), "adaptive": len(won["adaptive"]),
-            "little": len(best), "gain": Interval([*won["margins"].gain, *won["adaptive"].gain]), "much_step": f"{steps[-1]:g}", "much_degrees": f"{degrees[-1]:g}"}
-
-
-@quotes("winners-scene")
-def over_scene(record):
-    cell = ["polygons", "side"]
-    rows = variants_of(record, cell)
-    far = rows.side == rows.side.max()
-    claim((rows[far & (rows.volume == "sphere")].groupby(cell).over.min() <= 1.2).all(), "spheres are within a fifth where bodies are far apart")
-    claim(win(rows[~far], cell, rows[~far].volume.isin(MEETING)), "oriented boxes or rectangle swept spheres win, or are within a tenth, wherever bodies meet")
-    aabb = rows[~far & (rows.volume == "aabb")].groupby(cell).over.min()
-    claim((aabb > 1.5).all(), "boxes along the axes are far from winning where bodies meet")
-    return {"far": rows.side.max(), "aabb": Interval(aabb)}
 
 
 @quotes("best-rebuilds")
@@ -87,10 +41,7 @@ def strategies_adaptive(record):
 
 
 # What tells one cell of a record from another, beside the seed; repetitions are of one cell.
-CELLS = {"best-rebuilds": ["motion", "query"], "workloads": ["workload", "volume"], "winners-motion": ["step", "degrees", "volume"],
-         "winners-scene": ["polygons", "side", "volume"], "narrow-phase-strategies": ["work", "polygons"], "short-runs": ["motion", "moving", "volume"],
-         "sweep": ["persistence", "step", "degrees", "mesh", "polygons", "side", "freedoms", "volume"],
-         "coherence": ["motion", "motion_model", "mesh", "volume", "query"]}
+CELLS = {"best-rebuilds": ["motion", "query"], "coherence": ["motion", "motion_model", "mesh", "volume", "query"]}
 
 
 @quotes(CELLS)
@@ -103,30 +54,13 @@ def adaptive_beside(*found):
         time = rows.groupby([*cell, *(["seed"] if "seed" in rows else []), "strategy"]).time_ns.median().unstack()
         ratio = time.adaptive / time.drop(columns="adaptive").min(axis=1)
         parts = [(record.name, ratio)]
-        if "moving" in cell or "motion_model" in cell:
-            one = ratio.index.get_level_values("moving") == 1 if "moving" in cell else ratio.index.get_level_values("motion_model").str.startswith("one")
+        if "motion_model" in cell:
+            one = ratio.index.get_level_values("motion_model").str.startswith("one")
             parts = [(f"{record.name}, all move", ratio[~one]), (f"{record.name}, one of nine moves", ratio[one])]
         lines += [[f"[{name}](../record/{record.name})", str(len(of)), f"{of.median():.2f}", f"{of.max():.2f}", f"{100 * (of <= 1.1).mean():.0f} %"]
                   for name, of in parts]
-    found_by_name = {record.name: (record, cell) for record, cell in zip(found, CELLS.values())}
-    record, cell = found_by_name["narrow-phase-strategies"]
-    rows = records.read(record)
-    time = rows.groupby([*cell, "seed", "strategy"]).time_ns.median().unstack()
-    claim({"recursive-both", "raise"} < set(time), "recursive-both and raise are in narrow-phase-strategies")
-    without = {name: set(records.read(found_by_name[name][0]).strategy) for name in ("sweep", "coherence")}
-    claim("recursive-both" not in without["sweep"] | without["coherence"] and "raise" not in without["sweep"], "what sweep and coherence do not contain")
-    return {"rows": lines, "fewer": (time.adaptive / time.drop(columns=["adaptive", "recursive-both", "raise"]).min(axis=1)).median()}
-
-
-@quotes("workloads")
-def workloads(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    rows = rows[rows.volume == "obb"]
-    ns = (rows.time_ns / rows.pairs).groupby([rows.workload, rows.strategy]).median()
-    planner = ns["planner"]
-    return {"planner_recursive": planner["recursive"], "planner_cost": planner["by-cost"], "planner_margins": planner["margins"],
-            "planner_adaptive": planner["adaptive"], "pile": list(ns["pile"][["recursive", "by-cost", "margins", "adaptive"]])}
+    claim("recursive-both" not in set(records.read(found[1]).strategy), "coherence does not contain recursive-both")
+    return {"rows": lines}
 
 
 MOVING = [(1, 5, "all move, 5 degrees"), (1, 0.1, "all move, a tenth of a degree"), (0.1, 5, "a tenth moves, 5 degrees"),
@@ -165,14 +99,3 @@ def worlds_answers(record):
     ours = rows[(rows.peer == "") & (rows.moving > 0)].groupby(["objects", "moving", "degrees", "variant"]).time_ns.median().unstack()
     claim((ours.recommended == ours.min(axis=1)).all(), "recommended is the fastest of our variants in worlds")
     return {"variants": ours.shape[1], "frames": rows.frames.max(), "repetitions": rows.repetition.nunique(), "differing": worst.differing / worst.frames, "near": near.max()}
-
-
-@quotes("worlds-threads")
-def on_threads(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
-    ours = rows[rows.peer == ""]
-    time = ours.groupby([ours.configuration.ne(""), "objects", "degrees", "threads"]).time_ns.median().unstack()
-    gain = time[1] / time[2]
-    return {name + size: Interval(gain[recommended][objects]) for name, recommended in (("", True), ("binary_", False))
-            for size, objects in (("small", 1000), ("large", 10000))}

@@ -1,119 +1,29 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The fair tournament: ours by lanes, others with the same flags and as shipped, each side by configurations fixed beforehand."""
+"""`recommended` beside all libraries in one program, each side by configurations that were fixed beforehand."""
 
 from functools import cache
 
-from bvlab_plots import provenance, records
+from bvlab_plots import records
 from bvlab_scripts import tournament
 from quoting import Interval, claim, quotes, two_digits
 
-SOURCE, SHIPPED, EIGHT, ONE = "from-source", "as-shipped", "eight-lanes", "one-lane"
 OURS = "recommended"
-
-
-def called(method, program):
-    return f"{method}, {program}"
-
-
-@cache
-def cells(record):
-    """By what is compared a table of cells: times, ratios and intervals."""
-    rows = tournament.read(record)
-
-    def beside(ours, theirs, column="ns"):
-        return tournament.tournament(rows, ours, theirs, column).set_index(tournament.PLACES)
-    fresh = [called(name, SOURCE) for name in ("OPCODE", "PhysX", "FCL, obb", "Coal, obb")]
-    scalar = [called("OPCODE", ONE)]  # the one library that has our flags there
-    return rows, {
-        "sixteen": beside(called(OURS, SOURCE), fresh), "eight": beside(called(OURS, EIGHT), fresh),
-        "one": beside(called(OURS, ONE), scalar), "roots": beside(called("wide, from the roots", SOURCE), fresh),
-        "roots, one": beside(called("wide, from the roots", ONE), scalar),
-        "oriented, one": beside(called("oriented boxes, from the roots", ONE), scalar), "one, native": beside(called(OURS, ONE), [called("OPCODE", SOURCE)]),
-        "one, physx": beside(called(OURS, ONE), [called("PhysX", SOURCE)]),
-        "coherent": beside(called(OURS, SOURCE), [called("OPCODE, coherent", SOURCE)]),
-        "one, coherent": beside(called(OURS, ONE), [called("OPCODE, coherent", ONE)]),
-        "fcl": beside(called("FCL, obb", SOURCE), [called("FCL, obb", SHIPPED)]),
-        "cold": beside(called(OURS, SOURCE), fresh, "cold_ns"), "tail": beside(called(OURS, SOURCE), fresh, "tail_ns")}
 
 
 def written(line):
     return f"{line.ratio:.1f} ({line.low:.1f} to {line.high:.1f})"
 
 
-@quotes("tournament")
-def tournament_table(record):
-    _, found = cells(record)
-    lines, last = [], None
-    for place, line in found["sixteen"].iterrows():
-        lines.append(["" if place[0] == last else place[0], str(place[1]),
-                      *(f"{found[lanes].loc[place].ours_ns / 1e3:.2f}" for lanes in ("sixteen", "eight", "one")),
-                      tournament.named(line).replace(f", {SOURCE}", ""), f"{line.fastest_ns / 1e3:.2f}", written(line),
-                      written(found["one"].loc[place]),
-                      *(f"{found[column].loc[place].ratio:.1f}" for column in ("cold", "tail"))])
-        last = place[0]
-    return {"rows": lines}
-
-
-def beside_opcode(rows, column):
-    """What slab-boxes from the roots count with one lane, over OPCODE's count, of each cell."""
-    sums = rows.groupby(["method", *tournament.PLACES])[column].sum()
-    return sums[called("wide, from the roots", ONE)] / sums[called("OPCODE", ONE)]
-
-
-@quotes("tournament")
-def tournament_headline(record):
-    rows, found = cells(record)
-    claim(rows.seed.nunique() >= 5 and rows.repetition.nunique() >= 5, "five seeds and five repetitions")
-    claim((found["sixteen"].low > 1).all(), "sixteen lanes are faster than the fastest peer in every cell")
-    claim((found["one"].low > 1).all(), "with one lane recommended is faster than OPCODE with the same flags in every cell")
-    claim((found["one, coherent"].ratio > 1).all() and len(found["one, coherent"]) == 8, "with one lane recommended is faster than OPCODE's coherent mode in every cell of touching")
-    contacts = rows.work.str.startswith("contacts")
-    claim(rows[contacts].frames.max() < 100 < rows[~contacts].frames.min(), "runs for contacts alone have less than a hundred frames")
-    ours = rows[rows.method.str.startswith(f"{OURS}, ")]
-    claim(set(ours.volume) <= {"slab-box", "obb"}, "recommended takes slab-boxes or oriented boxes")
-    names = [name for name in dict.fromkeys(method.split(",")[0] for method in libraries(rows))]
-    chosen = ours.groupby(["program", *tournament.PLACES, "seed"])[["volume", "strategy"]].first()
-    other = (chosen.loc[SOURCE] != chosen.loc[ONE]).any(axis=1)
-    slower = found["one, physx"].ratio < 1
-    claim(set(slower[slower].index.get_level_values("work")) <= {"5 degrees", "near", "contacts, near"}, "PhysX is faster than one lane where motion is not coherent")
-    wrong = rows[rows.differing > 0].groupby("peer").differing.max()
-    claim(set(wrong.index) == {"coal-obb", "opcode", "physx"} and set(rows[rows.differing > 0].work) == {"contacts, near"}, "Coal, OPCODE and PhysX differ, in contacts alone")
-    return {"libraries": names, "other_choice": int(other.sum()), "choices": len(other), "one_physx": Interval(found["one, physx"].ratio), "one_physx_faster": int(slower.sum()),
-            "coal_wrong": int(wrong["coal-obb"]), "opcode_wrong": int(wrong["opcode"]), "physx_wrong": int(wrong["physx"]), "processor": provenance.processor_of(provenance.machine_of(record)), "coherent": Interval(beside_all(record).ratio), "contact_frames": rows[contacts].frames.max(), "rows": len(rows), "shared": int((rows.alone == "no").sum()),
-            "repetitions": rows.repetition.nunique(), "cells": len(found["one"]), "roots_one_slower": int((found["roots, one"].ratio < 1).sum()),
-            "oriented_one_slower": int((found["oriented, one"].ratio < 1).sum()),
-            "tests": Interval(beside_opcode(rows, "n_v")), "triangles": Interval(beside_opcode(rows, "n_p")), "one_native": Interval(found["one, native"].ratio),
-            **{key: Interval(found[name].ratio) for key, name in (("one_coherent", "one, coherent"), ("sixteen", "sixteen"), ("eight", "eight"), ("one", "one"),
-                                                                   ("roots", "roots"), ("roots_one", "roots, one"), ("oriented_one", "oriented, one"))},
-            "width": Interval(found["one"].ours_ns / found["sixteen"].ours_ns), "fcl": Interval(1 / found["fcl"].ratio)}
-
-
-@quotes("tournament-roots")
-def tournament_roots(record):
-    """One lane from the roots, over OPCODE with the same flags, on more seeds than `tournament` has."""
-    rows = tournament.read(record)
-    claim(rows.program.nunique() == 1 and rows.program.iloc[0] == ONE, "all rows are of the one-lane build")
-    claim((rows[rows.peer == ""].differing == 0).all(), "answers of ours agree")
-    found = {name: tournament.tournament(rows, called(f"{name}, from the roots", ONE), [called("OPCODE", ONE)]) for name in ("wide", "oriented boxes")}
-    slab, oriented = found["wide"], found["oriented boxes"]
-    return {"seeds": rows.seed.nunique(), "cells": len(slab), "slab": Interval(slab.ratio), "oriented": Interval(oriented.ratio),
-            "slab_below": int((slab.high < 1).sum()), "oriented_below": int((oriented.high < 1).sum())}
-
-
 def libraries(rows):
-    """The methods of other libraries, those compiled from source with our flags where several programs ran them."""
-    rows = rows[rows.peer != ""]
-    if "program" in rows:
-        rows = rows[rows.program == SOURCE]
-    return list(dict.fromkeys(rows.method))
+    """The methods of other libraries."""
+    return list(dict.fromkeys(rows[rows.peer != ""].method))
 
 
 @cache
 def beside_all(record):
     """`recommended` beside the fastest of all configurations of other libraries, those that keep answers among them."""
     rows = tournament.read(record)
-    ours = called(OURS, SOURCE) if "program" in rows else OURS
-    return tournament.tournament(rows, ours, libraries(rows)).set_index(tournament.PLACES)
+    return tournament.tournament(rows, OURS, libraries(rows)).set_index(tournament.PLACES)
 
 
 SHOWN = ["recommended", "wide, from the roots", "OPCODE", "OPCODE, coherent", "PhysX", "FCL, obb", "Coal, obb"]
@@ -178,12 +88,7 @@ def tournament_peers(record):
     lead = times.groupby("work")
     wrong = rows[rows.differing > 0].groupby("method").differing.max()
     claim(set(rows[rows.differing > 0].work) == {"contacts, near"} and set(wrong.index) == {"Coal, obb", "Coal, obbrss", "OPCODE", "PhysX"}, "Coal, OPCODE and PhysX differ, in contacts alone")
-    lines, last = [], None
-    for (work, polygons), line in us.iterrows():
-        cells = [two_digits(line[method]) for method in ("recommended", "wide, from the roots", *libraries)]
-        lines.append(["" if work == last else work, str(polygons), *cells, f"{times[work, polygons]:.1f}"])
-        last = work
-    return {"rows": lines, "touching": Interval(touching), "five": int((touching >= 5).sum()), "cells": len(touching), "roots": Interval(roots),
+    return {"touching": Interval(touching), "five": int((touching >= 5).sum()), "cells": len(touching), "roots": Interval(roots),
             "contacts": Interval(contacts), "physx": len(physx), "places": len(us), "slab": len(rule) - len(other), "chosen": len(rule), "oriented": len(other), "oriented_in": oriented,
             **{f"lead_{short}": Interval(lead.get_group(work)) for short, work in (("five", "5 degrees"), ("near", "near"), ("contacts", "contacts, near"))},
             "roots_faster": int((us["wide, from the roots"] < us.recommended).sum()), "coal": int(wrong["Coal, obb"]), "opcode": int(wrong["OPCODE"]), "physx_wrong": int(wrong["PhysX"]), "seeds": rows.seed.nunique(),

@@ -29,7 +29,7 @@ class Report(unittest.TestCase):
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.out = Path(cls.temporary.name) / "report"
-        done = subprocess.run([ROOT / "plots" / "report", record_of("peers-cgal"), record_of("boxes-triangles"), "--out",
+        done = subprocess.run([ROOT / "plots" / "report", record_of("talk"), record_of("boxes-fast"), "--out",
                                cls.out, "--no-scenes"], capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
         cls.page = Path(done.stdout.strip())
@@ -57,7 +57,7 @@ class Report(unittest.TestCase):
 
             browser.driver.find_element("id", "search").send_keys("cgal rigid_triangle")
             self.assertEqual(browser.run("return [...document.querySelectorAll('.experiment:not([hidden]) h2')]"
-                                         ".map(h => h.textContent)"), ["peers-cgal"])
+                                         ".map(h => h.textContent)"), ["talk"])
 
             light = browser.run("return getComputedStyle(document.body).backgroundColor")
             browser.click("#theme")
@@ -79,7 +79,7 @@ class Report(unittest.TestCase):
     def test_links_of_any_name(self):
         name, out = "a,b %20#?&", Path(self.temporary.name) / "named"
         record = Path(self.temporary.name) / name
-        shutil.copytree(record_of("peers-cgal"), record)
+        shutil.copytree(record_of("talk"), record)
         figure = next((record / "figures").glob("*.png"))
         figure.rename(figure.with_name(f"{name}.png"))
         done = subprocess.run([ROOT / "plots" / "report", record, "--out", out, "--no-scenes"], capture_output=True,
@@ -93,7 +93,7 @@ class Report(unittest.TestCase):
 
     def test_an_unfinished_record_says_so(self):
         record, out = Path(self.temporary.name) / "broken-off", Path(self.temporary.name) / "unfinished"
-        shutil.copytree(record_of("peers-cgal"), record)
+        shutil.copytree(record_of("talk"), record)
         (record / "unfinished.json").write_text('{"what": "rows", "done": 0, "all": 9999}')
         subprocess.run([ROOT / "plots" / "report", record, "--out", out, "--no-scenes"], capture_output=True, check=True)
         self.assertRegex((out / "index.html").read_text(), r"Unfinished: \d+ of 9999 rows")

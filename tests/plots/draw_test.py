@@ -16,39 +16,19 @@ from small_records import COUNTS, PLOTS, ROOT, STRATEGIES, names_added, own_reco
 from bvlab_plots import draw, figures, records
 
 
-def winning(name, rows):
-    """Each stranger is the fastest somewhere, since a map of winners shows those alone."""
-    if "time_ns" in rows:
-        strangers = [("volume", stranger("volume")), ("peer", stranger("peer")), *(("strategy", n) for n in STRATEGIES)]
-        for (column, who), field in zip(strangers, list(dict.fromkeys(zip(rows.step, rows.degrees)))):
-            here = (rows.step == field[0]) & (rows.degrees == field[1])
-            rows.loc[here & (rows[column] == who), "time_ns"] = 1000
-    return rows
-
-
 RECURSIVE = dict(strategy="recursive")
 METHODS = ("hybrid", [stranger("method"), "grid", "brute-force"])
 # Definition, how much of its record, the strangers added, and what a peer is made of.
 STRANGE = [
     ("best-rebuilds", dict(motion=3), dict(strategy=("deferred", STRATEGIES)), RECURSIVE),
     ("boxes-displacement", dict(set=1, displacement=4), dict(method="blocks", set="random"), None),
-    ("boxes-events", dict(set=1), dict(set="adjacent", motion="drift"), None),
     ("boxes-fast", dict(set=2), dict(method=("blocks", METHODS[1]), set="random", motion="drift"), None),
     ("boxes-figure-4", dict(boxes=3), dict(method=METHODS), None),
-    ("boxes-precision", dict(set=1, offset=3), dict(method="blocks", numbers="float, nearest", set="random"), None),
-    ("budget", dict(budget=3), dict(volume="sphere", mesh="bunny"), None),
     ("closest-features", dict(motion=2, mesh=2), dict(strategy=("recursive", STRATEGIES), mesh="icosphere:80"),
      RECURSIVE),
     ("distance-error", dict(relative_error=3), dict(volume="sphere", mesh="knot"), None),
-    ("fits", dict(volume=2, build=["top-down-principal", "bottom-up"]), dict(volume="sphere", fit="tight"), None),
     ("hierarchies", dict(work=2, motion=1), dict(volume="sphere", strategy=("recursive", STRATEGIES), density="dense"),
      RECURSIVE),
-    ("peers", dict(size=1), dict(variant=("sphere deferred", STRATEGIES), density="dense"), RECURSIVE),
-    ("posing", dict(k=2), dict(policy="corners", query="contacts"), None),
-    ("tightness", dict(volume=2, mesh=2), dict(volume="sphere", fit="tight", mesh="bunny:500"), None),
-    ("winners-motion", dict(volume=["sphere", "obb"]), dict(volume="obb", strategy=("margins", STRATEGIES)),
-     dict(volume="obb", strategy="recursive"), winning),
-    ("workloads", {}, dict(volume="obb", strategy=("deferred", STRATEGIES), workload="pile"), None),
     ("worlds", dict(objects=1), dict(volume="obb", strategy=("deferred", STRATEGIES)), RECURSIVE),
 ]
 
@@ -71,9 +51,9 @@ class Draws(unittest.TestCase):
         self.assertGreater(declared, 30)
 
     def test_names_that_nobody_has_heard_of(self):
-        for name, keep, strangers, peer_like, *change in STRANGE:
+        for name, keep, strangers, peer_like in STRANGE:
             with self.subTest(name), tempfile.TemporaryDirectory() as folder:
-                record = small_record(name, Path(folder) / "record", keep, strangers, peer_like, *change)
+                record = small_record(name, Path(folder) / "record", keep, strangers, peer_like)
                 seen = Seen(self, lambda: draw.main([str(record), "--out", folder]))
                 self.assertEqual(seen.result, 0)
                 seen.check(self, names_added(strangers, peer_like))

@@ -13,7 +13,7 @@ RECORDS = PLOTS.parent / "experiments" / "record"
 
 class FirstRun(unittest.TestCase):
     def test_ten_lines_or_so(self):
-        lines = first_run.lines(RECORDS / "nine-bunnies", RECORDS / "narrow-phase")
+        lines = first_run.lines(RECORDS / "nine-bunnies", RECORDS / "tournament-peers")
         self.assertLessEqual(len(lines), 12)
         self.assertLessEqual(max(map(len, lines)), 120)
         text = "\n".join(lines)
@@ -23,7 +23,7 @@ class FirstRun(unittest.TestCase):
 
     def test_a_record_of_something_else(self):
         with self.assertRaises(Refused):
-            first_run.lines(RECORDS / "nine-bunnies", RECORDS / "sweep")
+            first_run.lines(RECORDS / "nine-bunnies", RECORDS / "coherence")
 
 
 if __name__ == "__main__":

@@ -24,16 +24,13 @@ SPECS = {
                    RECURSIVE),
     "hierarchies": ("hierarchies", dict(work=2, motion=1), dict(volume="sphere", strategy=("recursive", STRATEGIES)),
                     RECURSIVE),
-    "law_unseen": ("law-unseen", dict(seed=2, volume=["sphere"], setting=["wander, 0.002 / 0.2", "planner", "pile"]),
-                   dict(setting="pile", strategy=("deferred", STRATEGIES)), None),
-    "nine_bunnies": ("nine-bunnies", dict(seed=2, reading=2, frame=50),
+    "nine_bunnies": ("nine-bunnies", dict(seed=2, reading=2),
                      dict(variant=("deferred", STRATEGIES), reading="one body, one freedom", density="dense"), None),
-    "predict": ("predict", dict(setting=["wander, 0.003 / 0.3", "wander, 0.3 / 40", "pile"]), {}, None),
     "stability_map": ("stability-map", dict(level=4), dict(volume="sphere", precision="float32", source="fcl-obb",
                                                            stressor="offset"), None),
     "triangles_error": ("triangles-error", dict(set=2), dict(test="moller", set="random"), None),
 }
-ELSEWHERE = {"tournament", "law_bullet", "law_fan_outs"}  # have tests of their own
+ELSEWHERE = {"tournament"}  # has a test of its own
 BY_THEMSELVES = {"fan_outs"}  # as has this one, which says otherwise what is no record of its own
 PRINTS = {"hierarchies"}  # and draws nothing
 # Drawn together with others, without a name of their own; or on one line with all that are the same.

@@ -69,9 +69,9 @@ def small_record(name, folder, keep, strangers, peer_like=None, change=None):
     source, folder = committed(name), Path(folder)
     folder.mkdir(parents=True)
     for path in source.iterdir():
-        if path.is_file() and path.suffix != ".csv":
+        if path.is_file() and ".csv" not in path.suffixes:
             shutil.copy(path, folder)
-    for path in source.glob("*.csv"):
+    for path in (Path(str(path).removesuffix(".gz")) for path in source.glob("*.csv*")):
         rows = cut(records.read_table(path), keep)
         for column, like in strangers.items():
             if column in rows:

@@ -15,17 +15,17 @@ except ImportError:
 
 import bvlab
 
-RECORD = Path(os.environ["BVLAB_SOURCE"]) / "experiments" / "record" / "posing"
+RECORD = Path(os.environ["BVLAB_SOURCE"]) / "experiments" / "record" / "talk"
 
 
 class Figures(unittest.TestCase):
     def test_frame(self):
         frame = bvlab.record(RECORD)
         self.assertIsInstance(frame, pandas.DataFrame)
-        lines = (RECORD / "posing.csv").read_text().splitlines()
+        lines = (RECORD / "talk.csv").read_text().splitlines()
         self.assertEqual(len(frame), len(lines) - 1)
         self.assertLessEqual(set(lines[0].split(",")), set(frame))
-        self.assertEqual(frame.attrs["name"], "posing")
+        self.assertEqual(frame.attrs["name"], "talk")
 
     def test_figures(self):
         before, settings = set(sys.modules), dict(matplotlib.rcParams)

@@ -26,7 +26,7 @@ assert bvlab.figures(sys.argv[2])
 class Installed(unittest.TestCase):
     def works(self, folder):
         environment = {**os.environ, "PYTHONPATH": str(folder)}
-        done = subprocess.run([sys.executable, "-c", USE, str(folder), str(SOURCE / "experiments/record/posing")],
+        done = subprocess.run([sys.executable, "-c", USE, str(folder), str(SOURCE / "experiments/record/talk")],
                               env=environment, cwd="/", capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
 

@@ -8,6 +8,7 @@ import unittest
 
 from repository import RECORDS, ROOT
 
+import quoting
 from bvlab_plots import records
 
 BVLAB = os.environ.get("BVLAB", str(ROOT / "build/release/bvlab"))
@@ -21,7 +22,7 @@ def listed(kind):
 
 class Records(unittest.TestCase):
     def test_there_are_records(self):
-        self.assertGreater(len(RECORDS), 20)
+        self.assertTrue(0 < len(RECORDS) <= 24, "a few, which one command makes anew")
         folders = [path for path in (ROOT / "experiments" / "record").iterdir() if path.is_dir()]
         self.assertEqual(sorted(folders), RECORDS, "a folder that is no record")
 
@@ -35,7 +36,22 @@ class Records(unittest.TestCase):
         for record in RECORDS:
             for file in ("machine.json", "command.txt", f"{record.name}.csv"):
                 with self.subTest(f"{record.name}: {file}"):
-                    self.assertTrue((record / file).is_file())
+                    self.assertTrue(records.table_at(record / file).is_file())
+
+    def test_a_definition_stands_once(self):
+        for record in RECORDS:
+            with self.subTest(record.name):
+                self.assertEqual(str((record / "definition.toml").readlink()), f"../../definitions/{record.name}.toml",
+                                 "experiments/records links it")
+
+    def test_pages_show_every_figure(self):
+        shown = "".join(page.template for page in quoting.pages())
+        hidden = [figure.name for record in RECORDS for figure in record.glob("figures/*.png") if f"record/{record.name}/figures/{figure.name}" not in shown]
+        self.assertEqual(hidden, [], "drawn again by plots/draw or plots/script when somebody wants to see it")
+
+    def test_tables_are_small(self):
+        large = [table.name for record in RECORDS for table in record.iterdir() if table.stat().st_size > 500e3]
+        self.assertEqual(large, [], "experiments/records compresses it")
 
     def test_answers_do_not_differ(self):
         for record in RECORDS:
@@ -52,10 +68,8 @@ class Records(unittest.TestCase):
                 done = subprocess.run([BVLAB, "run", record / "definition.toml", "--parts"], capture_output=True,
                                       text=True, check=False, cwd=ROOT)
                 # A study is read in full before it is said that it has no parts.
-                # What several builds have run may name volumes that only they have.
-                others = "experiments/builds" in (record / "command.txt").read_text() and "--volume" in done.stderr
                 # A public scene is brought from its repository first; the message names the file and the repository.
-                others = others or "public:" in done.stderr and ": needs " in done.stderr
+                others = "public:" in done.stderr and ": needs " in done.stderr
                 self.assertTrue(done.returncode == 0 or "a study has no parts" in done.stderr or others, done.stderr)
 
 
