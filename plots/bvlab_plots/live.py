@@ -2,7 +2,8 @@
 """The engine live on a page: one HTML file that needs no other and no network.
 
 With meshes and, if given, a motion: bodies that are dragged, turned and thrown, several strategies side by side, what
-each of them tests and keeps. With an X3D scene: its parts can be dragged, and what they touch turns red.
+each of them tests and keeps; or other engines beside it. With an X3D or VRML scene: its parts can be dragged, and what
+they touch turns red.
 """
 
 import argparse
@@ -48,12 +49,16 @@ def program():
     return bvlab
 
 
+def zipped(content):
+    return base64.b64encode(gzip.compress(content, mtime=0)).decode()
+
+
 def engine():
     """The module for WebAssembly, made first where that is to be done."""
     done = subprocess.run([ROOT / "experiments" / "live" / "build"], stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode:
         raise Refused(done.stderr.strip().splitlines()[-1] if done.stderr.strip() else "the engine was not made")
-    return base64.b64encode(gzip.compress(bytes_of(ROOT / "build" / "live" / "engine.wasm"), mtime=0)).decode()
+    return zipped(bytes_of(ROOT / "build" / "live" / "engine.wasm"))
 
 
 def written(name, data):
@@ -124,17 +129,30 @@ def live_page(arguments):
         raise Refused(f"{arguments.trace or '--bodies'}: {bodies} bodies; a page moves at most {MOST_BODIES}")
     shown = max(1, min(frames, ROOM_FOR_MOTION // (56 * bodies)))
     left_out = [f"Of {frames} frames the first {shown} are in this page."] if shown < frames else []
-    return written("live.html", {
+    return written("peers.html" if arguments.peers else "live.html", {
         "title": ", ".join(dict.fromkeys(Path(path).name for path in arguments.mesh)), "bodies": bodies, "query": arguments.query,
         "runs": [run_of(text) for text in arguments.run or RUNS], "left_out": left_out,
         "meshes": [{"name": Path(path).name, "vertices": text_of(mesh.vertices, "<f8"), "triangles": text_of(mesh.faces, "<u4")}
                    for path, mesh in zip(arguments.mesh, meshes)],
-        "motion": text_of(motion[:shown], "<f8"), "engine": engine()})
+        "motion": text_of(motion[:shown], "<f8"), "engine": engine(), **(others() if arguments.peers else {})})
+
+
+def from_npm(name):
+    """What set-up got, zipped; nothing where it did not."""
+    return zipped((VIEWERS / name).read_bytes()) if (VIEWERS / name).exists() else ""
+
+
+def others():
+    packages = json.loads((ROOT / "plots" / "viewers" / "package-lock.json").read_text())["packages"]
+    return {"others": from_npm("peers.min.js"), "versions": {name.removeprefix("node_modules/"): package.get("version")
+                                                             for name, package in packages.items()}}
 
 
 def x3d_page(arguments):
-    return written("x3d.html", {"title": Path(arguments.x3d).name, "scene": bytes_of(arguments.x3d).decode(errors="replace"),
-                                "engine": engine()})
+    scene = bytes_of(arguments.x3d)
+    return written("x3d.html", {
+        "title": Path(arguments.x3d).name, "scene": scene.decode(errors="replace"), "engine": engine(),
+        "vrml_reader": from_npm("x_ite.min.js") if scene.startswith(b"#VRML") else ""})
 
 
 def main():
@@ -145,11 +163,14 @@ def main():
     parser.add_argument("--query", choices=["touching", "contacts", "distance"], default="contacts")
     parser.add_argument("--run", action="append", metavar="STRATEGY[,VOLUME[,KERNEL[,FAN-OUT]]]",
                         help=f"what runs side by side at first (default: {', '.join(RUNS)} over spheres)")
-    parser.add_argument("--x3d", help="instead of meshes, an X3D scene, whose parts can be dragged")
+    parser.add_argument("--peers", action="store_true", help="instead, a page that times three-mesh-bvh and rapier on the same motion")
+    parser.add_argument("--x3d", help="instead of meshes, an X3D or VRML 97 scene, whose parts can be dragged")
     parser.add_argument("--out", required=True, help="the page")
     arguments = parser.parse_args()
     if bool(arguments.mesh) == bool(arguments.x3d):
         raise Refused("either --mesh or --x3d says what is shown")
+    if arguments.peers and not arguments.trace:
+        raise Refused("--peers: needs the motion of --trace")
     if arguments.bodies is not None and not 1 <= arguments.bodies <= MOST_BODIES:
         raise Refused(f"--bodies {arguments.bodies}: must be 1 to {MOST_BODIES}")
     out = Path(arguments.out)

@@ -9,14 +9,54 @@ function problem(sentence) {
   element('problem').hidden = false;
 }
 
+/** VRML 97 as X3D: X_ITE reads it, in a frame of its own without a network. */
+function fromVrml(text, viewer) {
+  function inFrame() {
+    // X_ITE looks for files beside its script, which has no address here: they are not needed.
+    window.URL = class extends URL { constructor(path, base) { super(path, base?.startsWith('about:') ? 'https://bvlab.invalid/' : base); } };
+    addEventListener('message', async ({ data, source }) => {
+      const answer = {};
+      try {
+        new Function(data.viewer)();
+        const { browser } = X3D.createBrowser();
+        browser.loadComponents = async () => {};
+        browser.setBrowserOption('LoadUrlObjects', false);
+        answer.x3d = (await browser.createX3DFromString(data.text)).toXMLString();
+      } catch (error) {
+        answer.problem = error.message;
+      }
+      source.postMessage(answer, '*');
+    });
+  }
+  const frame = document.createElement('iframe');
+  frame.setAttribute('sandbox', 'allow-scripts');
+  frame.style.display = 'none';
+  frame.srcdoc = `<meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'">`
+    + `<body><script>(${inFrame})()<\/script>`;
+  return new Promise((done, refuse) => {
+    frame.addEventListener('load', () => frame.contentWindow.postMessage({ text, viewer }, '*'));
+    addEventListener('message', ({ data, source }) => {
+      if (source !== frame.contentWindow) return;
+      frame.remove();
+      if (data.x3d) done(data.x3d);
+      else refuse(Error(`This VRML cannot be read here: ${data.problem}`));
+    });
+    document.body.append(frame);
+  });
+}
+
 const page = { contact: null };
-(() => {
+(async () => {
   const data = JSON.parse(element('data').textContent);
   document.title = element('title').textContent = `bvlab in an X3D browser · ${data.title}`;
   if (typeof x3dom === 'undefined') return problem('This page was made without x3dom, which shows X3D: experiments/setup gets it from npm.');
   if (!document.createElement('canvas').getContext('webgl')) return problem('This browser shows no 3D here: WebGL is off or missing.');
+  if (data.scene.startsWith('#VRML V2.0')) {
+    if (!data.vrml_reader) return problem('This page was made without X_ITE, which reads VRML: experiments/setup gets it from npm.');
+    data.scene = await fromVrml(data.scene, new TextDecoder().decode(await unzipped(data.vrml_reader)));
+  }
   const read = new DOMParser().parseFromString(data.scene, 'text/xml'), given = read.querySelector('Scene, scene');
-  if (read.querySelector('parsererror') || !given) return problem(`${data.title} is no X3D that can be read here: XML with a Scene is needed. VRML is read by other viewers alone.`);
+  if (read.querySelector('parsererror') || !given) return problem(`${data.title} is no X3D that can be read here: XML with a Scene is needed, or VRML 97 (#VRML V2.0).`);
 
   const refused = new Set(['anchor', 'inline', 'script', 'composedshader', 'shaderpart', 'externalshape', 'externalgeometry', 'multipart', 'remoteselectiongroup']);
   const attribute = /^(?!on|url|href|src|style|id$|class$|is$)[a-z][a-z0-9_]*$/i;
@@ -74,5 +114,6 @@ const page = { contact: null };
       problem(error.message);
     }
   }
-  addEventListener('load', () => attach());
-})();
+  if (document.readyState === 'complete') x3dom.reload(), attach();
+  else addEventListener('load', () => attach());
+})().catch(error => problem(error.message));
