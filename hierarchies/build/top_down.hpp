@@ -244,8 +244,8 @@ class Splitter {
   /// The principal axis of the centroids; `sides` are those of their box.
   static Vec3<double> principal(Items range, const Vec3<double>& sides, Eigen::Index longest) {
     Vec3<double> along_box = Vec3<double>::Unit(longest);
-    // Not Eigen's norm: without vector registers it adds in another order, and the last digit of this
-    // decides the sign of some axes, and with it which child comes first.
+    // Not Eigen's norm: without vector registers it adds in another order, and the last digit of
+    // this decides the sign of some axes, and with it which child comes first.
     const double scale = std::sqrt(squared_norm(sides));
     if (!(scale > 0) || !std::isfinite(scale)) return along_box;
     Vec3<double> mean = Vec3<double>::Zero();
