@@ -21,7 +21,7 @@
 namespace bvlab {
 
 /// `Posing` is the policy: how a rotated K-DOP is bounded again, and what is stored for that.
-/// Policies that store only bounds share this template; kdop_corners.hpp has one that stores more.
+/// A policy stores nothing but the bounds.
 template <Scalar S, int K, class Posing = Realigned>
 struct Kdop {
   static constexpr std::string_view name = Posing::template name<K>;
