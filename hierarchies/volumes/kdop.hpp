@@ -3,9 +3,8 @@
 /// the axis-aligned box, 14 adds a cube's corner directions, 18 its edge directions, 26 both.
 ///
 /// Stored as K support values bounds[m] >= n_m.x, where n_{2k} is a direction and n_{2k+1} its
-/// opposite. A rotated K-DOP is bounded again in the same directions; how is a policy: Realigned,
-/// the default, or ByCorners. Under either policy, tests are made on plain bounds: Kdop<S, K>. A
-/// test (C_v) takes K additions and comparisons.
+/// opposite. A rotated K-DOP is bounded again in the same directions; how is a policy, Realigned by
+/// default. A test (C_v) takes K additions and comparisons.
 #pragma once
 
 #include <algorithm>

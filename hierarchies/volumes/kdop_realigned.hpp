@@ -17,8 +17,7 @@
 namespace bvlab {
 
 /// The offsets that a pose adds to bounds along each direction d and its opposite: d.(t - o), and
-/// twice the `slack` of Placement, which covers rounding; derivations are in Realignment and
-/// RotatedDirections.
+/// twice the `slack` of Placement, which covers rounding; the derivation is in Realignment.
 template <class T, int K>
 struct KdopOffsets {
   std::array<T, K / 2> along, opposite;
