@@ -38,8 +38,8 @@ struct Run {
   std::unique_ptr<detail::Player> player;
   std::size_t watched = static_cast<std::size_t>(-1);  ///< the number of a pair
   std::vector<NodePair> front, tested;                 ///< of that pair, after a frame: its entries
-  std::array<double, 6> counts{};                      ///< of the last frame, as engine.cpp has them
-  std::array<std::uint64_t, 6> sums{};                 ///< of all frames so far
+  std::array<double, 6> counts{};       ///< of the last frame, as engine.cpp has them
+  std::array<std::uint64_t, 6> sums{};  ///< of all frames so far
 };
 
 /// One for each query. Null where there is no such volume, strategy or kernel.
