@@ -53,10 +53,10 @@ def beside_lines(record):
     wrong = rows[(rows.peer != "") & (rows.differing > 0)].groupby(["work", "method"]).size()
     shown = [TOUCHING, *peers]
     widths = [max(8, len(name) + 2) for name in shown]
-    yield f"{'Do two bunnies touch? Microseconds per pair':44}" + "".join(f"{name:>{width}}" for name, width in zip(shown, widths))
+    yield f"{'Do two bunnies touch? us per pair':36}" + "".join(f"{name:>{width}}" for name, width in zip(shown, widths))
     for work in time.index:
         cells = [f"{quoting.written(time.loc[work, name], '.2g')}{'*' if (work, name) in wrong.index else ''}" for name in shown]
-        yield f"{'  ' + work:44}" + "".join(f"{cell:>{width}}" for cell, width in zip(cells, widths))
+        yield f"{'  ' + work:36}" + "".join(f"{cell:>{width}}" for cell, width in zip(cells, widths))
     yield "Every answer was compared with the exact one: none of ours differs" + (
         "; a star marks a library whose answers do." if len(wrong) else ", and none of theirs does here.")
 
