@@ -422,7 +422,7 @@ class Definitions(ProgramTest):
         self.refuse_definition(start + "[parameters]\npairs = [1, 2]\n", "pairs", "one number")
         self.refuse_definition(start + "[parameters]\npairs = 0\n", "pairs", "whole number")
         self.refuse_definition(start + "[parameters]\nsets = ['frob']\n", "frob", "integer grid")
-        for kind in ("stability", "budget", "distance"):
+        for kind in ("stability", "distance"):
             given = f"name = 'x'\nkind = '{kind}'\n[parameters]\nframes = -1\n"
             self.refuse_definition(given, "frames", "whole number")
         given = "name = 'x'\nkind = 'distance'\n[parameters]\nstrategies = 'frob'\n"
