@@ -12,7 +12,7 @@ from urllib.parse import unquote, urlsplit
 
 from browser import ROOT, Browser, require_browser
 
-COLUMN = "return [...document.querySelector('.experiment table').tBodies[0].rows].map(row => row.cells[arguments[0]].textContent)"
+COLUMN = "return [...document.querySelector('.table table').tBodies[0].rows].map(row => row.cells[arguments[0]].textContent)"
 
 
 def record_of(name):
@@ -47,15 +47,16 @@ class Report(unittest.TestCase):
             self.assertIn("best peer", browser.text(".says"))
 
             browser.click(".table summary")
-            column = browser.run("return document.querySelector('.experiment tbody tr td.n:last-child').cellIndex")
+            column = browser.run("return [...document.querySelector('.table table').tBodies[0].rows[0].cells]"
+                                 ".findLastIndex(cell => cell.classList.contains('n'))")
             for direction in ("ascending", "descending"):
-                browser.run("document.querySelector('.experiment').querySelectorAll('table th button')[arguments[0]].click()", column)
+                browser.run("document.querySelector('.table table').querySelectorAll('th button')[arguments[0]].click()", column)
                 shown = [float(x.replace(",", "")) for x in browser.run(COLUMN, column) if x]
                 self.assertGreater(len(set(shown)), 1)
                 self.assertEqual(shown, sorted(shown, reverse=direction == "descending"))
             browser.keep("report")
 
-            browser.driver.find_element("id", "search").send_keys("cgal rigid_triangle")
+            browser.driver.find_element("id", "search").send_keys("separation-list")
             self.assertEqual(browser.run("return [...document.querySelectorAll('.experiment:not([hidden]) h2')]"
                                          ".map(h => h.textContent)"), ["talk"])
 
