@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "hierarchies/build/bottom_up.hpp"
-#include "hierarchies/build/morton_order.hpp"
+#include "hierarchies/build/range_splits.hpp"
 #include "hierarchies/build/top_down.hpp"
 #include "hierarchies/geometry/local_mesh.hpp"
 #include "hierarchies/geometry/type_list.hpp"
@@ -63,19 +63,17 @@ struct BottomUpLocal {
   }
 };
 /// Where a hierarchy has a function `on_demand`, that makes the tree; elsewhere it is made at once,
-/// of the same order.
+/// by the same splits.
 struct OnDemand {
   static constexpr std::string_view name = "on-demand";
   static constexpr std::string_view description =
-      "Morton order of the centroids, built fastest (Lauterbach 2009); of slab-boxes with kernel "
-      "siblings a node is made when a traversal first opens it";
+      "longest axis, surface-area heuristic over 32 bins in float, built fastest; of slab-boxes with "
+      "kernel siblings a node is made when a traversal first opens it";
   static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size) {
-    Threads alone;
-    return topology(mesh, leaf_size, alone);
+    return RangeSplits(LocalMesh(mesh).mesh()).binary(leaf_size);
   }
-  static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size, Threads& threads) {
-    const LocalMesh local(mesh);
-    return MortonOrder(local.mesh(), local.box(), threads).binary(leaf_size);
+  static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size, Threads&) {
+    return topology(mesh, leaf_size);
   }
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The recommended configuration for the queries touching and contacts, where triangles are about
-/// as long as wide, as in scans and simulations: slab-boxes (slab_box.hpp) in wide trees, as many
-/// children per node as a register has lanes, tested in the bodies' own frames, with margins from
-/// frame to frame. recommended_for.hpp has others and chooses, as `bvlab replay --recommended`
+/// as long as wide, as in scans and simulations: slab-boxes (slab_box.hpp) in wide trees that are
+/// made on demand, as many children per node as a register has lanes, tested in the bodies' own
+/// frames, with margins from frame to frame. recommended_for.hpp has others and chooses, as `bvlab replay --recommended`
 /// does. For distances see recommended_distances.hpp.
 #pragma once
 
@@ -57,12 +57,13 @@ struct WideTrees {
   using Shape = WideShape<Volume, fan_out, Kernel>;
 
   /// The hierarchy of a mesh. One serves all bodies of that mesh.
-  static Hierarchy hierarchy(const TriangleMesh& mesh, int threads = 1) {
-    Threads several(threads);
-    if constexpr (std::is_same_v<Build, builds::OnDemand>)
-      return Hierarchy::on_demand(mesh, leaf_size, several);
-    else
+  static Hierarchy hierarchy(const TriangleMesh& mesh, [[maybe_unused]] int threads = 1) {
+    if constexpr (std::is_same_v<Build, builds::OnDemand>) {
+      return Hierarchy::on_demand(mesh, leaf_size);
+    } else {
+      Threads several(threads);
       return Hierarchy(mesh, Build::topology(mesh, 1, several), fit, leaf_size, several);
+    }
   }
 };
 
@@ -79,16 +80,9 @@ using MarginsOver = WideConfiguration<Trees, WideMargins>;
 template <class Trees>
 using RootsOf = WideConfiguration<Trees, NoMemory>;
 
+/// Trees are made on demand: a node when a traversal first opens it. Meshes must outlive hierarchies.
 using Recommended =
-    MarginsOver<WideTrees<SlabBox<float>, native_fan_out<float>, SiblingsKernel,
-                          builds::TopDownSurfaceArea, Fit::published, native_fan_out<float>>>;
-
-/// Slab-boxes in trees that are made on demand, from the roots, for runs that end before whole ones
-/// are repaid. The first verdict of two tori of 8000 to 40 000 triangles takes about a tenth of the
-/// time; later ones make 1.4 to 1.8 times the tests, and 2 to 8 times with margins. Hierarchies and
-/// shapes have the types of `Recommended`; meshes must outlive hierarchies.
-using RecommendedOnDemand =
-    RootsOf<WideTrees<SlabBox<float>, native_fan_out<float>, SiblingsKernel, builds::OnDemand,
-                      Fit::published, native_fan_out<float>>>;
+    MarginsOver<WideTrees<SlabBox<float>, native_fan_out<float>, SiblingsKernel, builds::OnDemand,
+                          Fit::published, native_fan_out<float>>>;
 
 }  // namespace bvlab

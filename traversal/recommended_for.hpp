@@ -12,10 +12,11 @@
 ///     C + N_f C_f + N_v C_v + N_p C_p
 ///
 /// with the N counted on the samples and the C below, decides (N_f: entries of fronts), together
-/// with the cost of building the trees. A candidate is tried only if the rest of the run can repay
-/// that: short runs take slab-boxes made on demand (RecommendedOnDemand). Counts do not depend on
-/// the load of the machine, so the choice is repeatable. Where the motion is unknown, the shape and
-/// the number of the triangles decide, and margins are kept.
+/// with the cost of building the trees. The first candidates' trees are made on demand, and cost
+/// next to nothing. Others are tried only if the run can repay building them, by what a pair was
+/// seen to cost so far; short runs are not sampled at all. Counts do not depend on the load of the
+/// machine, so the choice is repeatable. Where the motion is unknown, the shape and the number of
+/// the triangles decide, and margins are kept.
 #pragma once
 
 #include <algorithm>
@@ -97,6 +98,9 @@ struct RecommendedCandidate {
   }
 };
 
+/// What a tree that is made on demand costs before anything of it is made, in nanoseconds a triangle.
+inline constexpr double on_demand = 50;
+
 /// The candidates; one from the roots follows the one with the same trees. Small leaves from the
 /// roots never cost least.
 ///
@@ -111,9 +115,9 @@ struct RecommendedCandidate {
 /// within a tenth of the best on all motions of both.
 inline constexpr std::tuple recommended_candidates{
     RecommendedCandidate<Recommended>{
-        "slab-boxes", 600, {35.3, 7.91, 7.98, 1.71}, {53.9, 1.69, 3.2, 5.17}},
+        "slab-boxes", on_demand, {35.3, 7.91, 7.98, 1.71}, {53.9, 1.69, 3.2, 5.17}},
     RecommendedCandidate<RecommendedRoots>{
-        "slab-boxes from the roots", 600, {1.87, 0, 5.21, 3.42}, {4.14, 0, 2.85, 4.35}},
+        "slab-boxes from the roots", on_demand, {1.87, 0, 5.21, 3.42}, {4.14, 0, 2.85, 4.35}},
     RecommendedCandidate<RecommendedSmallLeaves>{
         "slab-boxes in small leaves", 4400, {48.8, 1.66, 8.99, 0.622}, {59.8, 0.786, 7.03, 14}},
     RecommendedCandidate<RecommendedOriented>{
@@ -124,18 +128,19 @@ inline constexpr std::tuple recommended_candidates{
         "wide oriented boxes", 8000, {65.9, 1.71, 8, 11.1}, {2.74, 3.05, 7.35, 12.6}}};
 
 /// Which candidates a run is worth trying: the expected costs of the whole run, in nanoseconds, its
-/// builds included. The trees of a candidate that is tried are built once more for the run.
+/// builds included.
 class RunCosts {
  public:
   /// `triangles` of all meshes together, `pairs` of all frames together.
   RunCosts(std::size_t triangles, std::size_t pairs)
       : triangles_(static_cast<double>(triangles)), pairs_(static_cast<double>(pairs)) {}
 
-  /// Whether a candidate with such a build may turn out cheaper than the best so far, if it saves
-  /// most of what a pair costs; before the first one was tried, of what a dear pair costs.
+  /// Whether a candidate with such a build is worth trying: whether it would still be cheaper than
+  /// the best so far if it saved most of what a pair costs, and its trees were built twice. The first
+  /// one is.
   bool may_pay(double build) const {
-    constexpr double dear = 3000, most_saved = 0.7;
-    return 2 * build * triangles_ < most_saved * pairs_ * (is_known_ ? pair_ : dear);
+    constexpr double most_saved = 0.7;
+    return !is_known_ || 2 * build * triangles_ < most_saved * pairs_ * pair_;
   }
   /// Notes what a pair is expected to cost with a candidate; returns whether it is the best so far.
   bool is_best(double build, double pair) {
@@ -173,13 +178,13 @@ decltype(auto) with_candidate(std::size_t k, Visit&& visit) {
 }
 
 /// The frames of a motion that are replayed for the choice: up to ten runs of `run` consecutive
-/// frames, evenly spread, at most a quarter of the motion. None where it has fewer than 40.
+/// frames, evenly spread, at most a twentieth of the motion. None where it has fewer than 200.
 struct SampledFrames {
-  static constexpr std::size_t run = 10, uncounted = 6, most_runs = 10;
+  static constexpr std::size_t run = 10, uncounted = 6, most_runs = 10, share = 20;
   std::vector<std::size_t> frames;
 
   explicit SampledFrames(std::size_t length) {
-    const std::size_t runs = std::min(most_runs, length / (4 * run));
+    const std::size_t runs = std::min(most_runs, length / (share * run));
     for (std::size_t i = 0; i < runs; ++i)
       for (std::size_t k = 0; k < run; ++k)
         frames.push_back((2 * i + 1) * length / (2 * runs) - run / 2 + k);
@@ -241,7 +246,7 @@ double expected_cost(std::span<const typename Best::Shape> shapes,
 }
 
 /// `with_recommended` for a motion that is known: `frames[k]` has the poses of all bodies in frame
-/// k, body i has mesh i modulo the number of meshes. Builds up to four hierarchies of each mesh.
+/// k, body i has mesh i modulo the number of meshes. Makes up to four hierarchies of each mesh.
 template <class MakeQuery, class Visit>
 decltype(auto) with_recommended(std::span<const TriangleMesh> meshes,
                                 std::span<const std::vector<Pose>> frames, MakeQuery&& make_query,
@@ -250,11 +255,9 @@ decltype(auto) with_recommended(std::span<const TriangleMesh> meshes,
   std::vector<std::vector<Pose>> samples;
   const SampledFrames sampled(frames.size());
   for (const std::size_t frame : sampled.frames) samples.push_back(frames[frame]);
-  if (samples.empty()) return visit(std::type_identity<RecommendedOnDemand>());
+  if (samples.empty()) return visit(std::type_identity<Recommended>());
   const std::size_t bodies = samples[0].size(), pairs = bodies * (bodies - 1) / 2;
   RunCosts costs(triangles_of(meshes), pairs * frames.size());
-  if (!costs.may_pay(std::get<0>(recommended_candidates).build))
-    return visit(std::type_identity<RecommendedOnDemand>());
   std::size_t number = 0, best = 0;
   std::any built;  // of the last candidate
   for_each_candidate([&]<class Best>(const RecommendedCandidate<Best>& candidate) {

@@ -162,6 +162,7 @@ void run(Arguments arguments) {
   options.keep_answers = !arguments.out.empty() || !arguments.x3d.empty();
   options.keep_nearest = !arguments.nearest.empty();
   options.broad_phase = broad_phase;
+  options.trees = chosen.trees.get();
   const ReplayResult result = replay(meshes, trace, arguments.variant, options);
   Totals totals = totals_of(result, meshes, trace, arguments.variant, options);
   if (!chosen.reason.empty())

@@ -70,7 +70,7 @@ std::unique_ptr<detail::AnyPairs<Query>> gathered(const Trace& trace, Run& run) 
       using Bodies = AnyBodies<Query, Counting, Fronts>;
       using Pairs = StrategyPairs<Bodies, Strategy>;
       made = std::make_unique<detail::PairsOver<Pairs, Query, NothingIsAdded>>(
-          NothingIsAdded(), Pairs(Bodies(std::move(loops)), Strategy{}));
+          std::make_shared<NothingIsAdded>(), Pairs(Bodies(std::move(loops)), Strategy{}));
     });
   return made;
 }
@@ -82,13 +82,11 @@ std::unique_ptr<detail::AnyPairs<Query>> siblings(std::span<const TriangleMesh> 
   WideVolumes::with(run.variant.volume, [&]<class V>(std::type_identity<V>) {
     constexpr int fan_out = native_fan_out<typename V::scalar>;
     using Trees = detail::WideHierarchies<SiblingsKernel::Hierarchy<V, fan_out>>;
-    Trees trees(meshes, run.variant, 1);
-    // Shapes point to what it holds, wherever it is moved.
-    const auto shapes = shapes_over(meshes, trees.all(), trace.objects);
+    const auto trees = std::make_shared<Trees>(meshes, run.variant, 1);
+    const auto shapes = shapes_over(meshes, trees->all(), trace.objects);
     const auto with = [&]<class Memory>(const Memory& memory) {
       using Pairs = WidePairs<V, fan_out, Memory, SiblingsKernel>;
-      made = std::make_unique<detail::PairsOver<Pairs, Query, Trees>>(std::move(trees),
-                                                                      Pairs(shapes, memory));
+      made = std::make_unique<detail::PairsOver<Pairs, Query, Trees>>(trees, Pairs(shapes, memory));
     };
     if (run.variant.strategy == WideMargins::name)
       with(WideMargins());

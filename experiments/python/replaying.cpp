@@ -96,6 +96,7 @@ std::shared_ptr<Result> play(const py::object& given_meshes, const py::object& g
       chosen =
           configured(variant, *words.configuration, meshes.span(), &trace, options.broad_phase);
     variant = chosen.variant;
+    options.trees = chosen.trees.get();
     ReplayResult played = replay(meshes.span(), trace, variant, options);
     Totals of_it = totals_of(played, meshes.span(), trace, variant, options);
     if (!chosen.reason.empty())

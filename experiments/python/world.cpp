@@ -21,6 +21,7 @@
 #include "experiments/python/signals.hpp"
 #include "experiments/python/variants.hpp"
 #include "experiments/replay/configurations.hpp"
+#include "experiments/replay/player.hpp"
 #include "experiments/replay/worlds.hpp"
 #include "experiments/scenes/trace.hpp"
 
@@ -44,10 +45,12 @@ class PyWorld : public MadeByCalls {
         is_new_(first_, 0) {
     if (first_ > 0 && meshes_.span().empty())
       throw Unusable("meshes", "at least one is needed for " + std::to_string(first_) + " bodies");
-    const PairChoice choice = pair_choice(pairs, first_);
-    chosen_ = PairFilter(choice);
+    threads_ = threads;
+    choice_ = pair_choice(pairs, first_);
+    chosen_ = PairFilter(choice_);
     engine_ = released([&] { return make_world(meshes_.span(), first_, variant_, threads); });
-    engine_->choose(choice);
+    engine_->choose(choice_);
+    if (words.configuration == "recommended") later_ = later_choice(variant_, meshes_.span());
     for (const TriangleMesh& mesh : meshes_.span()) small_.push_back(is_small(mesh));
   }
 
@@ -114,7 +117,6 @@ class PyWorld : public MadeByCalls {
     std::vector<double> seconds;
     Signals signals;
     const auto play = [&] {
-      using Clock = std::chrono::steady_clock;
       for (py::ssize_t step = 0; step < steps; ++step) {
         const auto start = Clock::now();
         for (py::ssize_t m = step * k; m < (step + 1) * k; ++m)
@@ -293,7 +295,9 @@ class PyWorld : public MadeByCalls {
     set(object, pose);
   }
   void settle() {
+    const auto start = Clock::now();
     engine_->update();
+    spent_ += seconds_since(start);
     for (const auto object : changed_) {
       present_[object] = moved_to_[object].has_value();
       if (present_[object]) stands_[object] = *moved_to_[object];
@@ -301,6 +305,19 @@ class PyWorld : public MadeByCalls {
     }
     changed_.clear();
     is_stale_ = false, is_updated_ = true;
+    if (later_ && spent_ > 2 * later_->build_seconds) change();
+  }
+  /// Goes on with the later choice, from where the bodies stand.
+  void change() {
+    auto other = make_world(meshes_.span(), first_, later_->variant, threads_);
+    other->choose(choice_);
+    for (const Added& body : added_) other->add(*body.of.mesh);
+    for (std::uint32_t i = 0; i < objects(); ++i)
+      if (present_[i]) other->move(i, stands_[i]);
+    other->update();
+    engine_ = std::move(other);
+    variant_ = later_->variant;
+    answers_.reset(), later_.reset();
   }
   /// From the next update on.
   void set(std::uint32_t object, const std::optional<Pose>& pose) {
@@ -360,7 +377,11 @@ class PyWorld : public MadeByCalls {
   std::unique_ptr<WorldEngine> engine_;
   std::optional<PairAnswers> answers_;
   std::optional<NearWithin> near_;
+  int threads_ = 1;
+  PairChoice choice_;
   PairFilter chosen_;
+  std::optional<LaterChoice> later_;
+  double spent_ = 0;                           // seconds, by all updates
   std::vector<bool> small_;                    // of each of the first bodies' meshes
   std::vector<std::optional<Pose>> moved_to_;  // of each body: where it is from the next update on
   std::vector<Pose> stands_;                   // where it stood in the last one

@@ -57,13 +57,13 @@ template <class Pairs, class Query, class Hierarchies>
 class PairsOver final : public AnyPairs<Query> {
  public:
   /// `pairs` are of bodies over what `hierarchies` holds, and of no pairs yet.
-  PairsOver(Hierarchies hierarchies, Pairs pairs)
+  PairsOver(std::shared_ptr<Hierarchies> hierarchies, Pairs pairs)
       : hierarchies_(std::move(hierarchies)), pairs_(std::move(pairs)) {}
 
   std::size_t size() const override { return pairs_.size(); }
   const TriangleMesh& mesh(std::size_t i) const override { return pairs_.mesh(i); }
   const Vec3<double>& mesh_origin(std::size_t i) const override { return pairs_.mesh_origin(i); }
-  void add(const TriangleMesh& mesh) override { pairs_.add(hierarchies_.of(mesh)); }
+  void add(const TriangleMesh& mesh) override { pairs_.add(hierarchies_->of(mesh)); }
   void put(std::uint32_t slot, const ObjectPair& pair) override { pairs_.put(slot, pair); }
   void drop(std::uint32_t slot) override { pairs_.drop(slot); }
   void make_room(Threads& threads) override { pairs_.make_room(threads); }
@@ -94,14 +94,14 @@ class PairsOver final : public AnyPairs<Query> {
       for (std::size_t p = 0; p < pairs().size(); ++p) see(p, pairs_.strategy(p).front().entries());
   }
   std::array<std::size_t, 2> nodes() const override {
-    if constexpr (requires { hierarchies_.nodes(); })
-      return hierarchies_.nodes();
+    if constexpr (requires { hierarchies_->nodes(); })
+      return hierarchies_->nodes();
     else
       return {};
   }
 
  private:
-  Hierarchies hierarchies_;
+  std::shared_ptr<Hierarchies> hierarchies_;
   Pairs pairs_;
 };
 

@@ -50,14 +50,12 @@ void set_as_published(Variant& variant) {
 constexpr Configuration list[] = {
     {"recommended",
      "touching and contacts: the cheapest, builds included, in counted samples of the motion, of "
-     "(1) slab-box, "
-     "kernel siblings, built top-down-surface-area, leaves as large as a register; (2) obb, kernel "
+     "(1) slab-box, kernel siblings, built on-demand, leaves as large as a register; (2) obb, kernel "
      "mixed, built bottom-up, fit tight, leaves of 4; either of them with margins or recursive; "
      "with margins (3) slab-box, kernel siblings, built bottom-up, leaves of 4; (4) obb, kernel "
-     "siblings, built bottom-up, fit tight, leaves of 8. In short runs slab-box, built on-demand, "
-     "recursive. Where the motion is not "
-     "known, (1), or (2) for few and long triangles. distance: by the motion one of (1), (2), and "
-     "rss in binary "
+     "siblings, built bottom-up, fit tight, leaves of 8. In short runs, and where the motion is not "
+     "known, (1) with margins; a World of long triangles changes to (2). distance: by the motion one of "
+     "(1), (2), and rss in binary "
      "trees, frame body, built bottom-up, fit tight, leaves of 1, witness; the last where the "
      "motion is not known",
      set_recommended},
@@ -100,18 +98,7 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes) {
     return {variant,
             "distance queries cull by the volumes of single triangles, which rectangle swept "
             "spheres bound best"};
-  if (triangles_of(meshes) > many_triangles)
-    return {variant, "many triangles (" + std::to_string(triangles_of(meshes)) +
-                         "): slab-boxes are built fastest"};
-  const double elongated = elongation(meshes);
-  std::ostringstream measured;
-  measured << std::setprecision(3) << elongated;
-  if (elongated < long_triangles)
-    return {variant, "triangles are hardly longer than wide (" + measured.str() +
-                         "): boxes along the mesh's axes, cut by a slab, fit them and cost least"};
-  return {variant_of<RecommendedOriented>(variant),
-          "triangles are long (" + measured.str() +
-              "): oriented boxes fit them, others are mostly empty"};
+  return {variant, "slab-boxes, made on demand: no other trees cost less before the first frame"};
 }
 
 /// How far a body moves in a frame, in the mean: in radii of its mesh, and in radians.
@@ -138,8 +125,8 @@ double mean_motion(std::span<const TriangleMesh> meshes, const Trace& trace) {
 Chosen recommended_distances(Variant variant, std::span<const TriangleMesh> meshes,
                              const Trace& trace) {
   constexpr double slow = 0.007;
-  if (2 * trace.frames * trace.pairs() < triangles_of(meshes) && is_compiled<RecommendedOnDemand>())
-    return {variant_of<RecommendedOnDemand>(variant),
+  if (2 * trace.frames * trace.pairs() < triangles_of(meshes) && is_compiled<Recommended>())
+    return {variant_of<Recommended>(variant),
             "the run is too short to repay trees that take longer to build"};
   const double moved = mean_motion(meshes, trace);
   std::ostringstream measured;
@@ -155,34 +142,26 @@ Chosen recommended_distances(Variant variant, std::span<const TriangleMesh> mesh
 }
 
 Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const Trace& trace,
-                   BroadPhase broad_phase) {
+                   BroadPhase broad_phase, KeptTrees& trees) {
   if (variant.query == "distance" && trace.pairs() > 0)
     return recommended_distances(std::move(variant), meshes, trace);
   const SampledFrames samples(trace.frames);
   const std::vector<Option> all = options_for(variant);
   if (all.empty() || trace.pairs() == 0) return recommended(variant, meshes);
   RunCosts costs(triangles_of(meshes), trace.frames * trace.pairs());
-  if (is_compiled<RecommendedOnDemand>() &&
-      (samples.frames.empty() || !costs.may_pay(all[0].build)))
-    return {variant_of<RecommendedOnDemand>(variant),
-            std::string(all[0].name) + " on demand: the run is too short to repay whole trees"};
-  Chosen best{all[0].variant, std::string(all[0].name) +
-                                  ": the run is too short to repay samples, or other trees"};
+  Chosen best{all[0].variant,
+              std::string(all[0].name) + ": the run is too short to repay samples"};
   if (samples.frames.empty()) return best;
   const Trace sampled = part_of(trace, samples.frames);
   std::vector<std::vector<Pose>> poses(sampled.frames, std::vector<Pose>(sampled.objects));
   for (std::size_t k = 0; k < sampled.frames; ++k) sampled.poses(k, poses[k]);
   ReplayOptions options;
   options.count = Count::on, options.keep_answers = false, options.keep_series = true;
+  options.trees = &trees;
   // As it will be played.
   const bool pays = broad_phase == BroadPhase::where_it_pays && has_many_pairs(trace);
   options.broad_phase = pays || broad_phase == BroadPhase::on ? BroadPhase::on : BroadPhase::off;
   std::ostringstream tried;
-  // The first one is built fastest: it is taken untried where trees of no other kind may pay.
-  if (std::none_of(all.begin(), all.end(), [&](const Option& option) {
-        return option.build > all[0].build && costs.may_pay(option.build);
-      }))
-    return best;
   for (const Option& option : all) {
     if (!costs.may_pay(option.build)) continue;
     const auto series = replay(meshes, sampled, option.variant, options).series;
@@ -203,6 +182,18 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
 }
 
 }  // namespace
+
+std::optional<LaterChoice> later_choice(const Variant& variant,
+                                        std::span<const TriangleMesh> meshes) {
+  if (variant.query == "distance" || !is_compiled<RecommendedOriented>() ||
+      elongation(meshes) < long_triangles)
+    return std::nullopt;
+  const Variant later = variant_of<RecommendedOriented>(variant);
+  for (const Option& option : options_for(variant))
+    if (option.variant.volume == later.volume && option.variant.kernel == later.kernel)
+      return LaterChoice{later, 1e-9 * option.build * static_cast<double>(triangles_of(meshes))};
+  return std::nullopt;
+}
 
 std::vector<Named> configurations() {
   std::vector<Named> all;
@@ -234,9 +225,16 @@ Chosen configured(Variant variant, std::string_view configuration,
                   BroadPhase broad_phase) {
   if (configuration != "recommended") return {configured(std::move(variant), configuration), ""};
   const auto start = Clock::now();
-  Chosen chosen = trace ? recommended(std::move(variant), meshes, *trace, broad_phase)
+  auto trees = std::make_shared<KeptTrees>();
+  Chosen chosen = trace ? recommended(std::move(variant), meshes, *trace, broad_phase, *trees)
                         : recommended(std::move(variant), meshes);
+  // Trees of what was not chosen go; those of what was are the run's.
+  std::erase_if(*trees, [of = trees_of(chosen.variant)](const auto& each) {
+    return each.first != of;
+  });
   chosen.seconds = seconds_since(start);
+  for (const auto& [name, each] : *trees) chosen.seconds -= each.seconds;
+  chosen.trees = std::move(trees);
   return chosen;
 }
 

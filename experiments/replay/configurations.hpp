@@ -3,6 +3,8 @@
 /// those who do not want to choose.
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,15 +41,26 @@ Variant variant_of(Variant variant) {
 
 /// The same for these meshes and, where it is known, their motion: `recommended` depends on both.
 /// With the reason, a sentence that is empty where there is no choice. Samples of the motion are
-/// played, by as many hierarchies as there are candidates, with a broad phase where the replay will
-/// use one. O(triangles) where the motion is null.
+/// played with trees that the replay can go on with, by the candidates that may pay, with a broad
+/// phase where the replay will use one. O(triangles) where the motion is null.
 struct Chosen {
   Variant variant;
   std::string reason;
-  double seconds = 0;  ///< that the choice took
+  double seconds = 0;  ///< that the choice took, without the trees of what was chosen
+  std::shared_ptr<KeptTrees> trees{};  ///< those of what was chosen, for ReplayOptions
 };
 Chosen configured(Variant variant, std::string_view configuration,
                   std::span<const TriangleMesh> meshes, const Trace* trace = nullptr,
                   BroadPhase broad_phase = BroadPhase::off);
+
+/// What a run of `recommended` in unknown motion is to change to once it has taken twice as long as
+/// that takes to build: oriented boxes, which fit long triangles, and others do not. Nothing where
+/// triangles are about as long as wide.
+struct LaterChoice {
+  Variant variant;
+  double build_seconds;
+};
+std::optional<LaterChoice> later_choice(const Variant& variant,
+                                        std::span<const TriangleMesh> meshes);
 
 }  // namespace bvlab

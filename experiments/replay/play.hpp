@@ -40,7 +40,7 @@ std::unique_ptr<AnyPairs<Query>> strategy_pairs(const VolumeEntry& volume,
   Bodies bodies(loops_of<Query>(volume.name).bodies(*hierarchies, objects, frame_of(variant)),
                 [&](const std::type_info& front) { return own_loop<Query>(volume.name, front); });
   return std::make_unique<PairsOver<Pairs, Query, HierarchiesByMesh>>(
-      HierarchiesByMesh(volume, std::move(hierarchies), variant),
+      std::make_shared<HierarchiesByMesh>(volume, std::move(hierarchies), variant),
       Pairs(std::move(bodies), made_from<Strategy>(variant.strategy)));
 }
 

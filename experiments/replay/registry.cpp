@@ -74,7 +74,7 @@ std::vector<Named> kernels() {
           {"mixed",
            "four children against four where nodes are alike in size, else one against sixteen "
            "grandchildren: " +
-               fan_out("mixed") + ", --frame body, --volume " + text_of(wide_volumes("mixed"))}};
+               fan_out("mixed") + ", --frame body"}};
 }
 
 std::vector<Named> strategies() {

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -57,6 +59,19 @@ BroadPhase broad_phase_from(std::string_view name);
 /// Whether a trace has so many more pairs than bodies that a broad phase pays.
 inline bool has_many_pairs(const Trace& trace) { return trace.pairs() >= 16 * trace.objects; }
 
+/// Wide trees that replays of the same meshes share, by what they are made of, and what making them
+/// took.
+struct TreesOfMeshes {
+  std::shared_ptr<void> trees;
+  double seconds = 0;
+};
+using KeptTrees = std::map<std::string, TreesOfMeshes>;
+/// What a variant says of wide trees.
+inline std::string trees_of(const Variant& variant) {
+  return variant.kernel + ' ' + variant.volume + ' ' + variant.build + ' ' + variant.fit + ' ' +
+         std::to_string(variant.leaf_size);
+}
+
 struct ReplayOptions {
   Count count = Count::off;
   unsigned threads = 1;
@@ -65,6 +80,7 @@ struct ReplayOptions {
   bool keep_nearest = false;        ///< fill `nearest`, where the query is for distances
   bool keep_series = false;         ///< fill `series`
   bool keep_frame_seconds = false;  ///< fill `frame_seconds`: a reading of the clock in each frame
+  KeptTrees* trees = nullptr;       ///< takes wide trees from there, and leaves them there
   /// Called after every frame, for every pair, with what the strategy keeps of it, if it does.
   std::function<void(std::size_t frame, std::size_t pair, std::span<const NodePair>)> see_front;
   /// Called after every frame; what it throws ends the replay.

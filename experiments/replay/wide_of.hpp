@@ -6,6 +6,7 @@
 #include <concepts>
 #include <deque>
 #include <memory>
+#include <string>
 #include <type_traits>
 #include <unordered_map>
 
@@ -17,7 +18,7 @@
 #include "hierarchies/builds.hpp"
 #include "traversal/strategies/by_cost.hpp"
 #include "traversal/wide/list_memory.hpp"
-#include "traversal/wide/mixed_kernel.hpp"
+#include "traversal/wide/kernels.hpp"
 #include "traversal/wide/wide_pairs.hpp"
 
 namespace bvlab {
@@ -50,16 +51,16 @@ class WideHierarchies {
     requires requires(const Hierarchy& hierarchy) { hierarchy.made(); }
   {
     std::array<std::size_t, 2> sum{};
-    for (const auto& hierarchy : all_) sum[0] += hierarchy.size(), sum[1] += hierarchy.made();
+    for (const auto& hierarchy : all_) sum[0] += hierarchy.known(), sum[1] += hierarchy.made();
     return sum;
   }
 
  private:
   const Hierarchy& build(const TriangleMesh& mesh) {
-    Threads several(threads_);
-    if constexpr (requires { Hierarchy::on_demand(mesh, variant_.leaf_size, several); })
+    if constexpr (requires { Hierarchy::on_demand(mesh, variant_.leaf_size); })
       if (variant_.build == builds::OnDemand::name)
-        return all_.emplace_back(Hierarchy::on_demand(mesh, variant_.leaf_size, several));
+        return all_.emplace_back(Hierarchy::on_demand(mesh, variant_.leaf_size));
+    Threads several(threads_);
     // Leaves are made while the tree is collapsed.
     Variant down_to_triangles = variant_;
     down_to_triangles.leaf_size = 1;
@@ -72,12 +73,6 @@ class WideHierarchies {
   std::deque<Hierarchy> all_;  // a deque: bodies refer to its elements while it grows
   std::unordered_map<const TriangleMesh*, const Hierarchy*> known_;
 };
-
-/// The kernels that are compiled for a volume: `mixed` for those alone that have a sibling test of
-/// their own, since a kernel takes GCC 12 a processor minute for each volume.
-template <class V>
-using WideKernels = std::conditional_t<HasSiblingTest<V>, TypeList<SiblingsKernel, MixedKernel>,
-                                       TypeList<SiblingsKernel>>;
 
 /// Volumes that these kernels take: over float, with a sibling test of their own or
 /// PosedSiblingTest.
@@ -101,23 +96,38 @@ void with_memory(const Variant& variant, const With& with) {
   with(NoMemory());
 }
 
+/// The hierarchies of a variant, of those that are kept or new. Adds the time to build to
+/// `build_seconds`.
+template <class Hierarchies>
+std::shared_ptr<Hierarchies> hierarchies_of(std::span<const TriangleMesh> meshes,
+                                            const Variant& variant, int threads, KeptTrees* kept,
+                                            double& build_seconds) {
+  KeptTrees here;
+  TreesOfMeshes& of = (kept ? *kept : here)[trees_of(variant)];
+  if (!of.trees) {
+    const auto start = Clock::now();
+    of.trees = std::make_shared<Hierarchies>(meshes, variant, threads);
+    of.seconds = seconds_since(start);
+  }
+  build_seconds += of.seconds;
+  return std::static_pointer_cast<Hierarchies>(of.trees);
+}
+
 /// Adds the time to build to `build_seconds`.
 template <BoundingVolume V, class Query>
 std::unique_ptr<AnyPairs<Query>> wide_pairs(std::span<const TriangleMesh> meshes,
                                             std::size_t objects, const Variant& variant,
-                                            int threads, double& build_seconds) {
+                                            int threads, KeptTrees* kept, double& build_seconds) {
   std::unique_ptr<AnyPairs<Query>> made;
-  WideKernels<V>::with(variant.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+  Kernels::with(variant.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
     constexpr int fan_out = fan_out_of<Kernel, typename V::scalar>;
     using Hierarchies = WideHierarchies<typename Kernel::template Hierarchy<V, fan_out>>;
-    const auto start = Clock::now();
-    Hierarchies hierarchies(meshes, variant, threads);
-    build_seconds += seconds_since(start);
-    // Shapes point to what it holds, wherever it is moved.
-    const auto shapes = shapes_over(meshes, hierarchies.all(), objects);
+    const auto hierarchies =
+        hierarchies_of<Hierarchies>(meshes, variant, threads, kept, build_seconds);
+    const auto shapes = shapes_over(meshes, hierarchies->all(), objects);
     with_memory(variant, [&]<class Memory>(const Memory& memory) {
       using Pairs = WidePairs<V, fan_out, Memory, Kernel>;
-      made = std::make_unique<PairsOver<Pairs, Query, Hierarchies>>(std::move(hierarchies),
+      made = std::make_unique<PairsOver<Pairs, Query, Hierarchies>>(hierarchies,
                                                                     Pairs(shapes, memory));
     });
   });
@@ -128,7 +138,7 @@ template <BoundingVolume V, class Query>
 void play_wide(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
                const ReplayOptions& options, ReplayResult& result) {
   play_pairs(wide_pairs<V, Query>(meshes, trace.objects, variant, static_cast<int>(options.threads),
-                                  result.build_seconds),
+                                  options.trees, result.build_seconds),
              meshes, trace, variant, options, result);
 }
 
@@ -137,7 +147,7 @@ template <BoundingVolume V, class Query>
 std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, std::size_t objects,
                                         const Variant& variant, int threads) {
   double build_seconds = 0;
-  return world_of_pairs(wide_pairs<V, Query>(meshes, objects, variant, threads, build_seconds),
+  return world_of_pairs(wide_pairs<V, Query>(meshes, objects, variant, threads, nullptr, build_seconds),
                         variant, threads);
 }
 
@@ -145,7 +155,7 @@ template <BoundingVolume V>
 constexpr std::uint32_t fan_out_with(std::string_view kernel) {
   std::uint32_t fan_out = 0;
   if constexpr (WideVolume<V>)
-    WideKernels<V>::with(kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+    Kernels::with(kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
       fan_out = fan_out_of<Kernel, typename V::scalar>;
     });
   return fan_out;

@@ -304,7 +304,14 @@ std::vector<Cell> cells_with_answers(const Definition& definition, AbsentPeers a
 ReplayResult answered(const Prepared& ready, const Cell& cell, const ReplayOptions& options) {
   if (const Peer* const other = peer(cell["peer"]))
     return other->replay(ready.meshes, ready.trace, cell["query"], options);
-  return replay(ready.meshes, ready.trace, variant_of(cell), options);
+  if (cell["configuration"] != "recommended")
+    return replay(ready.meshes, ready.trace, variant_of(cell), options);
+  const Chosen chosen = configured(variant_of(cell), "recommended", ready.meshes, &ready.trace);
+  ReplayOptions with_trees = options;
+  with_trees.trees = chosen.trees.get();
+  ReplayResult result = replay(ready.meshes, ready.trace, chosen.variant, with_trees);
+  result.build_seconds += chosen.seconds;
+  return result;
 }
 
 std::vector<std::vector<std::size_t>> traces_of(const std::vector<Cell>& cells) {

@@ -27,7 +27,8 @@ bool is_of_variant(const std::string& name);
 /// Of a cell of `cells_with_answers`, in which a configuration is spelled out.
 Variant variant_of(const Cell& cell);
 
-/// By the cell's peer, or by us.
+/// By the cell's peer, or by us. Where a configuration chooses by the motion, the choice is part of
+/// what comes before the first frame, and so of `build_seconds`.
 ReplayResult answered(const Prepared& ready, const Cell& cell, const ReplayOptions& options);
 
 /// Throws Unusable for names that do not exist and values that cannot be.

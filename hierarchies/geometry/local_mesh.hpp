@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A mesh about an origin of its own, near its triangles, so that float volumes are as precise
 /// where vertices are in survey coordinates as near 0. O(triangles); a copy only where the origin
-/// is not 0, or where a vertex that no triangle uses lies outside.
+/// is not 0, or where a vertex that no triangle uses lies outside and is to be moved inside.
 ///
 /// Let L be the longest side of the box around the triangles, c its centre. The origin o is 0 where
 /// no |c_i| exceeds 16 L. Else o_i is the multiple of G that is nearest to c_i, G the power of two
@@ -16,7 +16,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "hierarchies/geometry/triangle_mesh.hpp"
@@ -25,18 +27,24 @@ namespace bvlab {
 
 class LocalMesh {
  public:
+  /// What becomes of vertices that no triangle uses and that lie outside the triangles' box.
+  enum class Unused : std::uint8_t { moved_inside, as_they_are };
+
   /// `mesh` must outlive this, and have at least one triangle.
-  explicit LocalMesh(const TriangleMesh& mesh) : mesh_(&mesh) {
-    Vec3<double> low = mesh.corners(0)[0], high = low;
-    for (const auto& triangle : mesh.triangles)
-      for (const auto v : triangle)
-        low = low.cwiseMin(mesh.vertices[v]), high = high.cwiseMax(mesh.vertices[v]);
+  explicit LocalMesh(const TriangleMesh& mesh, Unused unused = Unused::moved_inside)
+      : mesh_(&mesh) {
+    Box box = box_of_vertices(mesh);
+    const bool all_inside = reaches_all_sides(mesh, box);
+    if (!all_inside) box = box_of_triangles(mesh);
+    const Vec3<double>&low = box.low, &high = box.high;
     origin_ = origin_of(low, high);
     box_ = {low - origin_, high - origin_};
     const auto outside = [&](const Vec3<double>& v) {
       return (v.array() < low.array()).any() || (v.array() > high.array()).any();
     };
-    if (!has_own_origin(origin_) && std::ranges::none_of(mesh.vertices, outside)) return;
+    if (!has_own_origin(origin_) && (all_inside || unused == Unused::as_they_are ||
+                                     std::ranges::none_of(mesh.vertices, outside)))
+      return;
     moved_ = mesh;
     for (auto& v : moved_->vertices) v = v.cwiseMax(low).cwiseMin(high) - origin_;
   }
@@ -47,7 +55,8 @@ class LocalMesh {
     return local;
   }
 
-  /// The triangles relative to origin(). Vertices that no triangle uses are within their box.
+  /// The triangles relative to origin(). Vertices that no triangle uses are within their box, unless
+  /// they stay as they are.
   const TriangleMesh& mesh() const { return moved_ ? *moved_ : *mesh_; }
   const Vec3<double>& origin() const { return origin_; }
   /// Around the triangles, relative to origin(); empty for a mesh as it is given.
@@ -58,7 +67,58 @@ class LocalMesh {
   }
 
  private:
+  struct Box {
+    Vec3<double> low, high;
+  };
+
   LocalMesh() = default;
+
+  static Box box_of_vertices(const TriangleMesh& mesh) {
+    Box box{mesh.vertices[0], mesh.vertices[0]};
+    // Several vertices at a time, number by number: loops that are compiled to registers.
+    constexpr std::size_t several = 8;
+    std::array<double, 3 * several> low, high;
+    for (std::size_t k = 0; k < low.size(); ++k) low[k] = high[k] = mesh.vertices[0][k % 3];
+    std::size_t i = 0;
+    for (; i + several <= mesh.vertices.size(); i += several) {
+      const double* const numbers = mesh.vertices[i].data();
+      for (std::size_t k = 0; k < low.size(); ++k) {
+        low[k] = numbers[k] < low[k] ? numbers[k] : low[k];
+        high[k] = numbers[k] > high[k] ? numbers[k] : high[k];
+      }
+    }
+    for (std::size_t k = 0; k < low.size(); ++k) {
+      box.low[k % 3] = std::min(box.low[k % 3], low[k]);
+      box.high[k % 3] = std::max(box.high[k % 3], high[k]);
+    }
+    for (; i < mesh.vertices.size(); ++i)
+      box.low = box.low.cwiseMin(mesh.vertices[i]), box.high = box.high.cwiseMax(mesh.vertices[i]);
+    return box;
+  }
+  static Box box_of_triangles(const TriangleMesh& mesh) {
+    Box box{mesh.corners(0)[0], mesh.corners(0)[0]};
+    for (const auto& triangle : mesh.triangles)
+      for (const auto v : triangle)
+        box.low = box.low.cwiseMin(mesh.vertices[v]), box.high = box.high.cwiseMax(mesh.vertices[v]);
+    return box;
+  }
+  /// Whether triangles use, for each side of the vertices' box, the first vertex that lies there.
+  /// No vertex is read for a triangle: that takes a sixth of the time of their box.
+  static bool reaches_all_sides(const TriangleMesh& mesh, const Box& box) {
+    std::array<std::uint32_t, 6> on_side;
+    for (int k = 0; k < 6; ++k) {
+      const double side = k < 3 ? box.low[k] : box.high[k - 3];
+      const auto at = std::ranges::find(mesh.vertices, side,
+                                        [k](const Vec3<double>& v) { return v[k % 3]; });
+      on_side[static_cast<std::size_t>(k)] =
+          static_cast<std::uint32_t>(at - mesh.vertices.begin());
+    }
+    std::array<std::uint32_t, 6> used{};
+    for (const auto& triangle : mesh.triangles)
+      for (const auto v : triangle)
+        for (std::size_t k = 0; k < 6; ++k) used[k] |= v == on_side[k];
+    return std::ranges::all_of(used, [](std::uint32_t each) { return each != 0; });
+  }
 
   static Vec3<double> origin_of(const Vec3<double>& low, const Vec3<double>& high) {
     Vec3<double> centre = low / 2 + high / 2;

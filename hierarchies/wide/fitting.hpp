@@ -44,14 +44,18 @@ struct MeshSphere {
     for (const auto& corner : corners) radius = std::max(radius, stable_norm(corner - centre));
     radius *= 1 + 16 * unit_roundoff<double>;
   }
-  /// About the centre of the mesh's box, and so larger, in one pass.
+  /// About the centre of the mesh's box, and so larger, in one pass. Vertices outside the box are
+  /// taken to be on it.
   MeshSphere(const TriangleMesh& mesh, const Eigen::AlignedBox3d& box)
       : centre(box.min() / 2 + box.max() / 2) {
+    const auto from_centre = [&](const Vec3<double>& v) -> Vec3<double> {
+      return v.cwiseMax(box.min()).cwiseMin(box.max()) - centre;
+    };
     double squared = 0;
-    for (const auto& v : mesh.vertices) squared = std::max(squared, (v - centre).squaredNorm());
+    for (const auto& v : mesh.vertices) squared = std::max(squared, squared_norm(from_centre(v)));
     radius = std::sqrt(squared);
     if (!(squared > 1e-280 && squared < 1e300))  // squares may over- or underflow
-      for (const auto& v : mesh.vertices) radius = std::max(radius, stable_norm(v - centre));
+      for (const auto& v : mesh.vertices) radius = std::max(radius, stable_norm(from_centre(v)));
     radius *= 1 + 16 * unit_roundoff<double>;
   }
 };

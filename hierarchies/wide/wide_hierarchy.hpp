@@ -5,12 +5,14 @@
 ///
 /// Nothing in it depends on a body's pose: bodies of one mesh share it.
 ///
-/// A tree is made whole, or on demand. On demand its topology is that of MortonOrder, O(n), and a
-/// node is made, which is to say the volumes of its children or a leaf's triangles, when a
-/// traversal first opens it (`require`), once, by any thread.
+/// A tree is made whole, or on demand. On demand a node is made, which is to say its children and
+/// their volumes or a leaf's triangles, when a traversal first opens it (`require`), once, by any
+/// thread; its children are what RangeSplits splits its triangles into.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
@@ -18,10 +20,11 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
-#include "hierarchies/build/morton_order.hpp"
+#include "hierarchies/build/range_splits.hpp"
 #include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/local_mesh.hpp"
 #include "hierarchies/geometry/once.hpp"
@@ -51,8 +54,8 @@ class WideHierarchy {
   struct alignas(32) Node {
     V volume;
     scalar size;
-    std::uint32_t first;  ///< of its children; leaf: of its triangles, see triangle()
-    std::uint16_t lanes;  ///< which of its lanes hold a child
+    std::uint32_t first;  ///< of its children, once made; leaf: of its triangles, see triangle()
+    std::uint16_t lanes;  ///< which of its lanes hold a child, once made
     std::uint16_t leaf;   ///< 0 or 1
     std::uint32_t made;   ///< `whole` once its children are, else see once.hpp
   };
@@ -81,11 +84,10 @@ class WideHierarchy {
 
   /// A tree that is made on demand, of a volume that is a box in the mesh's own frame: its reach is
   /// bounded beforehand. `mesh` must outlive it.
-  static WideHierarchy on_demand(const TriangleMesh& mesh, std::uint32_t leaf_size,
-                                 Threads& threads)
+  static WideHierarchy on_demand(const TriangleMesh& mesh, std::uint32_t leaf_size)
     requires FittedToColumns<V>
   {
-    return WideHierarchy(LocalMesh(mesh), std::min<std::uint32_t>(leaf_size, F), threads);
+    return WideHierarchy(LocalMesh(mesh, LocalMesh::Unused::as_they_are), std::min<std::uint32_t>(leaf_size, F));
   }
 
  private:
@@ -94,7 +96,11 @@ class WideHierarchy {
         sphere_(local.mesh()),
         supports_(local.mesh(), sphere_.centre, threads) {
     const TriangleMesh& mesh = local.mesh();
-    make_room(topology);
+    std::vector<std::uint32_t> leaves;
+    for (std::uint32_t i = 0; i < topology.nodes.size(); ++i)
+      if (topology.nodes[i].leaf) leaves.push_back(i);
+    make_room(topology.nodes.size(), leaves.size());
+    std::copy(leaves.begin(), leaves.end(), leaves_.begin());
     const NodeFitting<V> fitting(mesh, topology.primitives, fit, threads);
     std::vector<Reach> reach(threads.count());
     threads.share(leaves_.size(), [&](std::size_t leaf, std::size_t worker) {
@@ -103,7 +109,7 @@ class WideHierarchy {
       reach[worker].add(put_node(i, node, fitting.around(node.begin, node.end), whole));
       nodes_[i].first = static_cast<std::uint32_t>(leaf * F);
       reach[worker].add(
-          put_triangles(i, node, &topology.primitives[node.first], fitting, node.first));
+          put_triangles(i, node.count, &topology.primitives[node.first], fitting, node.first));
     });
     threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
       const WideTopology::Node& node = topology.nodes[i];
@@ -118,7 +124,10 @@ class WideHierarchy {
   }
 
  public:
+  /// The number of nodes; on demand, the most that there may be.
   std::size_t size() const { return nodes_.size(); }
+  /// Those that exist: of a tree on demand the root and the children of all nodes that were made.
+  std::size_t known() const { return unmade_ ? unmade_->nodes.load() : size(); }
   const Node& node(std::uint32_t i) const { return nodes_[i]; }
   const NodeSphere& node_sphere(std::uint32_t i) const { return node_spheres_[i]; }
   const Siblings& children(std::uint32_t i) const { return siblings_[i]; }
@@ -134,8 +143,12 @@ class WideHierarchy {
   double reach() const { return reach_; }
 
   const MeshSphere& sphere() const { return sphere_; }
-  /// The support map about the sphere's centre.
+  /// The support map about the sphere's centre; of a tree on demand it is empty.
   const SupportMap& supports() const { return supports_; }
+  /// The mesh whose support map is not made, about the origin; null where it is.
+  const TriangleMesh* mesh_of_supports() const {
+    return unmade_ ? &unmade_->local.mesh() : nullptr;
+  }
 
   /// To be called before children(i) or the corners of leaf i are read: makes them unless that has
   /// been done. Any thread may call it. If it throws, for want of memory, they are not made.
@@ -164,87 +177,119 @@ class WideHierarchy {
   /// 300 with slabs, which for so many save up to a fifth of the tests.
   static constexpr std::uint32_t large = TriangleColumns::large;
 
-  /// What a tree on demand is made of.
+  /// What a tree on demand is made of. Threads split ranges that do not overlap.
   struct Unmade {
     LocalMesh local;
-    WideTopology topology;
+    std::uint32_t leaf_size;
+    std::optional<RangeSplits> splits;  // once the root is opened
+    LargeVector<RangeSplits::Range> ranges{
+        LargeAllocator<RangeSplits::Range>(Paging::when_written)};  // of the nodes
+    std::atomic<std::uint32_t> nodes = 0, leaves = 0;
+
+    Unmade(LocalMesh&& mesh, std::uint32_t leaf) : local(std::move(mesh)), leaf_size(leaf) {}
   };
 
   /// On demand.
-  WideHierarchy(LocalMesh&& local, std::uint32_t leaf_size, Threads& threads)
+  WideHierarchy(LocalMesh&& local, std::uint32_t leaf_size)
       : nodes_(LargeAllocator<Node>(Paging::when_written)),
         node_spheres_(LargeAllocator<NodeSphere>(Paging::when_written)),
         siblings_(LargeAllocator<Siblings>(Paging::when_written)),
         corners_(LargeAllocator<TriangleLanes<scalar, F>>(Paging::when_written)),
         triangles_(LargeAllocator<std::uint32_t>(Paging::when_written)),
+        leaves_(LargeAllocator<std::uint32_t>(Paging::when_written)),
         origin_(local.origin()),
-        sphere_(local.mesh(), local.box()),
-        supports_(local.mesh(), sphere_.centre, threads) {
+        sphere_(local.mesh(), local.box()) {
     const Eigen::AlignedBox3d box = local.box();
     // Of a box [a, b] within one from -m to m, |a + b| / 2 + |b - a| / 2 is at most the root of
-    // |a|^2 + |b|^2, and so of 2 |m|^2. A slab-box is rounded twice.
+    // |a|^2 + |b|^2, and so of 2 |m|^2. A slab-box is rounded twice, after its box.
     reach_ = std::sqrt(2.0) * stable_norm(box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs())) *
              (1 + 64 * unit_roundoff<scalar>)+std::numeric_limits<scalar>::min();
-    WideTopology topology = MortonOrder(local.mesh(), box, threads).wide(F, leaf_size);
-    make_room(topology);
-    put_node(0, topology.nodes[0], around({box.min(), box.max()}), nothing);
-    unmade_ = std::make_shared<const Unmade>(Unmade{std::move(local), std::move(topology)});
-    nodes_[0].first = first_of(0);
+    unmade_ = std::make_unique<Unmade>(std::move(local), leaf_size);
+    const auto triangles = static_cast<std::uint32_t>(unmade_->local.mesh().triangles.size());
+    make_room_for(triangles);
+    put_unmade(0, {0, triangles}, around({box.min(), box.max()}));
+    unmade_->nodes = 1;
   }
 
   [[gnu::noinline]] void make(std::uint32_t i) const {
-    if constexpr (FittedToColumns<V>) once(nodes_[i].made, whole, [&] { make_children(i); });
+    if constexpr (FittedToColumns<V>)
+      once(nodes_[i].made, whole, [&] {
+        if (!unmade_->splits) unmade_->splits.emplace(unmade_->local.mesh());  // i is the root
+        nodes_[i].leaf ? make_leaf(i) : make_children(i);
+      });
+  }
+  void make_leaf(std::uint32_t i) const {
+    const auto order = triangles_of(unmade_->ranges[i]);
+    Threads alone;
+    put_triangles(i, static_cast<std::uint32_t>(order.size()), order.data(),
+                  NodeFitting<V>(unmade_->local.mesh(), order, {}, alone), 0);
   }
   void make_children(std::uint32_t i) const {
-    const auto& [local, topology] = *unmade_;
-    const WideTopology::Node& node = topology.nodes[i];
-    const auto order = std::span(topology.primitives).subspan(node.begin, node.end - node.begin);
+    Unmade& of = *unmade_;
+    const RangeSplits::Range range = of.ranges[i];
+    RangeSplits::Parts parts;
+    const std::uint32_t count = of.splits->split(range, F, of.leaf_size, parts);
     Threads alone;
-    if (node.leaf) {
-      put_triangles(i, node, order.data(), NodeFitting<V>(local.mesh(), order, {}, alone), 0);
-      return;
-    }
     std::optional<NodeFitting<V>> fitting;
-    if (order.size() <= large) fitting.emplace(local.mesh(), order, Fit::published, alone);
-    for (std::uint32_t child = node.first; child < node.first + node.count; ++child) {
-      const WideTopology::Node& of = topology.nodes[child];
-      const std::uint32_t begin = of.begin - node.begin, end = of.end - node.begin;
-      put_node(child, of,
-               fitting ? fitting->around(begin, end)
-                       : around(box_of(local.mesh(), order.subspan(begin, end - begin))),
-               nothing);
-      nodes_[child].first = first_of(child);
+    if (range.size() <= large)
+      fitting.emplace(of.local.mesh(), triangles_of(range), Fit::published, alone);
+    const std::uint32_t first = of.nodes.fetch_add(count);
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const auto& [part, box, centres, priority] = parts[k];
+      put_unmade(first + k, part,
+                 fitting ? fitting->around(part.begin - range.begin, part.end - range.begin)
+                         : around(box_of(box)));
     }
-    put_children(i, node.count);
+    nodes_[i].first = first;
+    nodes_[i].lanes = all_lanes(count);
+    put_children(i, count);
+  }
+  std::vector<std::uint32_t> triangles_of(const RangeSplits::Range& range) const {
+    std::vector<std::uint32_t> triangles(range.size());
+    for (std::uint32_t k = 0; k < range.size(); ++k)
+      triangles[k] = unmade_->splits->triangle(range.begin + k);
+    return triangles;
+  }
+  void put_unmade(std::uint32_t i, const RangeSplits::Range& range,
+                  const std::pair<V, NodeSphere>& around) const {
+    unmade_->ranges[i] = range;
+    const bool leaf = range.size() <= unmade_->leaf_size;
+    put_node(i, {0, leaf ? range.size() : 0, leaf, 0, 0}, around, nothing);
+    if (!leaf) return;
+    const std::uint32_t slot = unmade_->leaves.fetch_add(1);
+    leaves_[slot] = i, nodes_[i].first = slot * F;
   }
 
   static std::pair<V, NodeSphere> around(const TriangleColumns::Box& box) {
     return {V::columns::around(box), sphere_around(box)};
   }
-  static TriangleColumns::Box box_of(const TriangleMesh& mesh,
-                                     std::span<const std::uint32_t> triangles) {
-    TriangleColumns::Box box;
-    for (const std::uint32_t triangle : triangles)
-      for (const std::uint32_t v : mesh.triangles[triangle])
-        box.low = box.low.cwiseMin(mesh.vertices[v]),
-        box.high = box.high.cwiseMax(mesh.vertices[v]);
-    return box;
+  static TriangleColumns::Box box_of(const RangeSplits::Box& box) {
+    return {Vec3<double>(box.low[0], box.low[1], box.low[2]),
+            Vec3<double>(box.high[0], box.high[1], box.high[2])};
   }
 
-  /// As in Node. All leaves of a tree on demand are at its end.
-  std::uint32_t first_of(std::uint32_t i) const {
-    const WideTopology::Node& node = unmade_->topology.nodes[i];
-    return node.leaf ? (i - leaves_[0]) * F : node.first;
+  static std::uint16_t all_lanes(std::uint32_t count) {
+    return static_cast<std::uint16_t>((1u << count) - 1);
   }
 
-  void make_room(const WideTopology& topology) {
-    nodes_.resize(topology.nodes.size());
-    node_spheres_.resize(topology.nodes.size());
-    siblings_.resize(topology.nodes.size());
-    for (std::size_t i = 0; i < nodes_.size(); ++i)
-      if (topology.nodes[i].leaf) leaves_.push_back(static_cast<std::uint32_t>(i));
-    corners_.resize(leaves_.size());
-    triangles_.resize(leaves_.size() * F);
+  /// Room for a tree on demand. That of a large mesh is not known before it is made: a leaf may have
+  /// one triangle. Its pages cost nothing until they are written. The splits of small meshes take
+  /// less time than so many pages.
+  void make_room_for(std::uint32_t triangles) {
+    constexpr std::uint32_t small = 1024;
+    std::size_t nodes = 1, leaves = 1;
+    if (triangles > small) {
+      nodes = 2 * std::size_t{triangles} - 1, leaves = triangles;
+    } else if (triangles > unmade_->leaf_size) {
+      unmade_->splits.emplace(unmade_->local.mesh());
+      std::tie(nodes, leaves) = unmade_->splits->sizes(F, unmade_->leaf_size);
+    }
+    make_room(nodes, leaves);
+    unmade_->ranges.resize(nodes);
+  }
+  void make_room(std::size_t nodes, std::size_t leaves) {
+    nodes_.resize(nodes), node_spheres_.resize(nodes), siblings_.resize(nodes);
+    leaves_.resize(leaves), corners_.resize(leaves), triangles_.resize(leaves * F);
   }
 
   /// Returns the volume's reach.
@@ -252,8 +297,7 @@ class WideHierarchy {
                   const std::pair<V, NodeSphere>& around, std::uint32_t made) const {
     assert(node.count <= F);
     const auto& [volume, sphere] = around;
-    const auto lanes = static_cast<std::uint16_t>((1u << node.count) - 1);
-    nodes_[i] = {volume, size_of(volume), node.first, lanes, node.leaf, made};
+    nodes_[i] = {volume, size_of(volume), node.first, all_lanes(node.count), node.leaf, made};
     node_spheres_[i] = sphere;
     return static_cast<double>(reach_of(volume));
   }
@@ -271,13 +315,12 @@ class WideHierarchy {
 
   /// Fills the lanes of leaf i, whose first triangle is number `at` of those that are fitted, and
   /// returns their reach.
-  double put_triangles(std::uint32_t i, const WideTopology::Node& node,
-                       const std::uint32_t* indices, const NodeFitting<V>& fitting,
-                       std::uint32_t at) const {
+  double put_triangles(std::uint32_t i, std::uint32_t count, const std::uint32_t* indices,
+                       const NodeFitting<V>& fitting, std::uint32_t at) const {
     const std::uint32_t first = nodes_[i].first;
     for (std::uint32_t lane = 0; lane < F; ++lane)
-      triangles_[first + lane] = indices[std::min(lane, node.count - 1)];
-    return fitting.put_each(at, node.count, siblings_[i], corners_[first / F]);
+      triangles_[first + lane] = indices[std::min(lane, count - 1)];
+    return fitting.put_each(at, count, siblings_[i], corners_[first / F]);
   }
 
   // Of a tree on demand, what is not made is not written.
@@ -286,12 +329,12 @@ class WideHierarchy {
   mutable LargeVector<Siblings> siblings_;
   mutable LargeVector<TriangleLanes<scalar, F>> corners_;
   mutable LargeVector<std::uint32_t> triangles_;
-  std::vector<std::uint32_t> leaves_;  // the node of each leaf, in the order of corners_
+  mutable LargeVector<std::uint32_t> leaves_;  // the node of each leaf, in the order of corners_
   double reach_ = 0;
   Vec3<double> origin_;
   MeshSphere sphere_;
   SupportMap supports_;
-  std::shared_ptr<const Unmade> unmade_;
+  std::unique_ptr<Unmade> unmade_;
 };
 
 }  // namespace bvlab

@@ -18,31 +18,61 @@ using V = SlabBox<float>;
 using Tree = WideHierarchy<V, 8>;
 
 Tree on_demand(const TriangleMesh& mesh, std::uint32_t leaf_size = 8) {
-  Threads alone;
-  return Tree::on_demand(mesh, leaf_size, alone);
+  return Tree::on_demand(mesh, leaf_size);
 }
+/// Level by level, so that nodes have the numbers that they have in `at_once`.
 void finish(const Tree& tree) {
-  for (std::uint32_t i = 0; i < tree.size(); ++i) tree.require(i);
+  for (std::uint32_t i = 0; i < tree.known(); ++i) tree.require(i);
+}
+/// The topology of such a tree, from the same splits without a tree.
+WideTopology at_once(const TriangleMesh& mesh, std::uint32_t leaf_size) {
+  RangeSplits splits(mesh);
+  RangeSplits::Parts parts;
+  WideTopology topology;
+  topology.nodes.push_back({0, 0, false, 0, splits.all().size()});
+  for (std::size_t i = 0; i < topology.nodes.size(); ++i) {
+    const auto [first, count, leaf, begin, end] = topology.nodes[i];
+    if (end - begin <= leaf_size) {
+      topology.nodes[i] = {begin, end - begin, true, begin, end};
+      continue;
+    }
+    const std::uint32_t children = splits.split({begin, end}, 8, leaf_size, parts);
+    topology.nodes[i] = {static_cast<std::uint32_t>(topology.nodes.size()), children, false, begin,
+                         end};
+    for (std::uint32_t k = 0; k < children; ++k)
+      topology.nodes.push_back({0, 0, false, parts[k].range.begin, parts[k].range.end});
+  }
+  for (std::uint32_t k = 0; k < splits.all().size(); ++k)
+    topology.primitives.push_back(splits.triangle(k));
+  return topology;
 }
 
 template <class T>
 bool same_bits(const T& a, const T& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
-/// What is in node i, its children and its triangles.
-void expect_same(const Tree& a, const Tree& b, std::uint32_t i) {
-  const auto &x = a.node(i), &y = b.node(i);
-  EXPECT_TRUE(x.first == y.first && x.lanes == y.lanes && x.leaf == y.leaf) << i;
-  EXPECT_TRUE(same_bits(a.children(i), b.children(i))) << i;
-  for (std::uint32_t k = x.first; !x.leaf && x.lanes >> (k - x.first) & 1; ++k)
-    EXPECT_TRUE(same_bits(a.node(k).volume, b.node(k).volume) && a.node(k).size == b.node(k).size &&
-                same_bits(a.node_sphere(k), b.node_sphere(k)))
-        << k;
+/// What is in node i of a and j of b, the volumes of its children, and its triangles.
+void expect_same(const Tree& a, std::uint32_t i, const Tree& b, std::uint32_t j) {
+  const auto &x = a.node(i), &y = b.node(j);
+  ASSERT_TRUE(x.lanes == y.lanes && x.leaf == y.leaf) << i;
+  EXPECT_TRUE(same_bits(a.children(i), b.children(j))) << i;
+  for (std::uint32_t k = 0; !x.leaf && x.lanes >> k & 1; ++k)
+    EXPECT_TRUE(same_bits(a.node(x.first + k).volume, b.node(y.first + k).volume) &&
+                a.node(x.first + k).size == b.node(y.first + k).size &&
+                same_bits(a.node_sphere(x.first + k), b.node_sphere(y.first + k)))
+        << x.first + k;
   if (!x.leaf) return;
-  EXPECT_TRUE(same_bits(a.corners(x.first), b.corners(x.first))) << i;
+  EXPECT_TRUE(same_bits(a.corners(x.first), b.corners(y.first))) << i;
   EXPECT_EQ(a.leaf_of(x.first), i);
   for (std::uint32_t k = 0; k < 8; ++k)
-    EXPECT_EQ(a.triangle(x.first + k), b.triangle(x.first + k)) << i;
+    EXPECT_EQ(a.triangle(x.first + k), b.triangle(y.first + k)) << i;
+}
+/// The same for all below: numbers of nodes depend on the order in which they were made.
+void expect_same_below(const Tree& a, std::uint32_t i, const Tree& b, std::uint32_t j) {
+  expect_same(a, i, b, j);
+  const auto &x = a.node(i), &y = b.node(j);
+  for (std::uint32_t k = 0; !x.leaf && x.lanes >> k & 1; ++k)
+    expect_same_below(a, x.first + k, b, y.first + k);
 }
 
 template <class Memory>
@@ -67,7 +97,7 @@ TEST(OnDemand, AnswersInMotionAreThoseOfBruteForce) {
 std::vector<TriangleMesh> meshes() {
   std::vector<TriangleMesh> all{single_triangle(), degenerate_mesh(), formula_mesh("box", 12),
                                 formula_mesh("knot", 9000)};
-  // All in one cell of the curve but one, and all in one place.
+  // All near each other but one, and all in one place.
   all.push_back(formula_mesh("torus", 2000));
   all.back().vertices.push_back({1e12, 0, 0});
   all.back().triangles.push_back(
@@ -80,21 +110,21 @@ std::vector<TriangleMesh> meshes() {
 TEST(OnDemand, FinishedTreesAreThoseBuiltAtOnce) {
   for (const auto& mesh : meshes())
     for (const std::uint32_t leaf_size : {1u, 8u}) {
-      Threads alone;
       const LocalMesh local(mesh);
-      const WideTopology topology =
-          MortonOrder(local.mesh(), local.box(), alone).wide(8, leaf_size);
+      const WideTopology topology = at_once(local.mesh(), leaf_size);
       const Tree whole(mesh, topology, Fit::published), tree = on_demand(mesh, leaf_size);
       EXPECT_EQ(tree.made(), 0u);
       finish(tree);
-      ASSERT_EQ(tree.size(), whole.size());
+      ASSERT_EQ(tree.known(), whole.size());
+      EXPECT_LE(tree.known(), tree.size());
       EXPECT_EQ(tree.made(), whole.made());
       EXPECT_GE(tree.reach(), whole.reach() * (1 - 1e-6));
-      for (std::uint32_t i = 0; i < tree.size(); ++i) {
+      for (std::uint32_t i = 0; i < tree.known(); ++i) {
         const WideTopology::Node& node = topology.nodes[i];
         EXPECT_LE(reach_of(tree.node(i).volume), tree.reach());
         if (node.end - node.begin <= TriangleColumns::large) {
-          expect_same(tree, whole, i);
+          EXPECT_EQ(tree.node(i).first, whole.node(i).first);
+          expect_same(tree, i, whole, i);
           continue;
         }
         for (std::uint32_t k = node.begin; k < node.end; ++k)
@@ -114,11 +144,18 @@ TEST(OnDemand, ThreadsMakeEachNodeOnce) {
   std::vector<std::thread> threads;
   for (int t = 0; t < 4; ++t)
     threads.emplace_back([&] {
-      // Parents come before children, and are asked for before these are.
-      for (std::uint32_t i = 0; i < shared.size(); ++i) shared.require(i);
+      for (std::vector<std::uint32_t> open{0}; !open.empty();) {
+        const std::uint32_t i = open.back();
+        open.pop_back();
+        shared.require(i);
+        const auto& node = shared.node(i);
+        for (std::uint32_t k = 0; !node.leaf && node.lanes >> k & 1; ++k)
+          open.push_back(node.first + k);
+      }
     });
   for (auto& thread : threads) thread.join();
-  for (std::uint32_t i = 0; i < shared.size(); ++i) expect_same(shared, alone, i);
+  EXPECT_EQ(shared.known(), alone.known());
+  expect_same_below(shared, 0, alone, 0);
 }
 
 struct Corner {
@@ -149,9 +186,10 @@ TEST(OnDemand, OnlyWhatIsOpenedIsMade) {
   const Counting counts = corner.played(1.98 * widest);
   EXPECT_GT(counts.n_p, 0u);
   EXPECT_GT(corner.tree.made(), 0u);
-  EXPECT_LT(10 * corner.tree.made(), corner.tree.size());
+  const std::size_t made = corner.tree.made();
   // What was made before makes no difference.
   finish(corner.tree);
+  EXPECT_LT(10 * made, corner.tree.made());
   const Counting again = corner.played(1.98 * widest);
   EXPECT_EQ(again.n_v, counts.n_v);
   EXPECT_EQ(again.n_p, counts.n_p);
@@ -167,7 +205,7 @@ TEST(OnDemand, FailedAllocationsLeaveNothingHalfMade) {
   const Tree tree = on_demand(mesh), other = on_demand(mesh);
   finish(other);
   int failures = 0;
-  for (std::uint32_t i = 0; i < tree.size(); ++i)
+  for (std::uint32_t i = 0; i < tree.known(); ++i)
     for (int k = 0;; ++k) {
       const std::size_t made = i < 3 ? tree.made() : 0;
       successes = k;
@@ -182,8 +220,8 @@ TEST(OnDemand, FailedAllocationsLeaveNothingHalfMade) {
         }
       }
     }
-  EXPECT_GT(failures, static_cast<int>(tree.size()) / 2);
-  for (std::uint32_t i = 0; i < tree.size(); ++i) expect_same(tree, other, i);
+  EXPECT_GT(failures, static_cast<int>(tree.known()) / 2);
+  expect_same_below(tree, 0, other, 0);
 }
 
 }  // namespace

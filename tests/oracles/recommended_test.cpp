@@ -15,11 +15,11 @@
 namespace bvlab {
 namespace {
 
-TEST(SampledFrames, LieInTheMotionAndAreAtMostAQuarterOfIt) {
+TEST(SampledFrames, LieInTheMotionAndAreAtMostATwentiethOfIt) {
   for (std::size_t length = 0; length < 3000; length += 1 + length / 7) {
     const SampledFrames samples(length);
-    EXPECT_EQ(samples.frames.empty(), length < 40) << length;
-    EXPECT_LE(4 * samples.frames.size(), length);
+    EXPECT_EQ(samples.frames.empty(), length < 200) << length;
+    EXPECT_LE(20 * samples.frames.size(), length);
     std::size_t counted = 0;
     for (std::size_t k = 0; k < samples.frames.size(); ++k) {
       EXPECT_LT(samples.frames[k], length);
@@ -109,9 +109,8 @@ TEST(Recommended, ProgramAndLibraryChooseAlikeAndAnswersStay) {
 }
 
 TEST(RunCosts, SayWhatMayPay) {
-  RunCosts costs(1000, 10'000);  // a dear run: 30 ms
-  EXPECT_TRUE(costs.may_pay(10'000)) << "twice 10 ms";
-  EXPECT_FALSE(costs.may_pay(11'000)) << "twice 11 ms, where at most 21 are saved";
+  RunCosts costs(1000, 10'000);
+  EXPECT_TRUE(costs.may_pay(1e9)) << "the first is tried in any case";
   EXPECT_TRUE(costs.is_best(600, 1000)) << "10.6 ms";
   EXPECT_FALSE(costs.may_pay(4000)) << "twice 4 ms, where at most 7 are saved";
   EXPECT_TRUE(costs.may_pay(3000));
@@ -137,7 +136,12 @@ TEST(Recommended, ShortMotionsTakeWhatIsBuiltFastest) {
     EXPECT_NE(of_motion.reason.find("too short"), std::string::npos) << of_motion.reason;
     EXPECT_EQ(of_motion.variant.volume, "slab-box");
     EXPECT_EQ(of_motion.variant.build, "on-demand");
-    EXPECT_EQ(of_meshes.variant.volume, stretch > 1 ? "obb" : "slab-box");
+    EXPECT_EQ(of_meshes.variant.volume, "slab-box");
+    const auto later = later_choice(of_meshes.variant, scene.meshes);
+    ASSERT_EQ(later.has_value(), stretch > 1);
+    if (later) {
+      EXPECT_EQ(later->variant.volume, "obb");
+    }
     const Variant library = by_library(scene, [](std::size_t) { return Touching(); });
     EXPECT_EQ(library.volume, of_motion.variant.volume);
     EXPECT_EQ(library.build, of_motion.variant.build);

@@ -238,7 +238,6 @@ TEST(WideReplays, RefuseWhatThereIsNot) {
     change(variant);
     EXPECT_THROW(check(variant), Unusable);
   };
-  refused([](Variant& v) { v.kernel = "mixed", v.volume = "sphere"; });
   refused([](Variant& v) { v.volume = "cylinder"; });
   refused([](Variant& v) { v.strategy = "deferred:many"; });
   refused([](Variant& v) { v.strategy = "patient"; });

@@ -51,6 +51,26 @@ class Worlds(unittest.TestCase):
                     world.update()
                     self.check(world, frame)
 
+    def test_long_triangles_change_trees_on_the_way(self):
+        vertices, faces = scenes.torus(16, 12)
+        plate = bvlab.Mesh(vertices * [40, 1, 1], faces)
+        poses = scenes.walk(frames=400, objects=5, side=2.5, step=0.3)
+        once = bvlab.World(plate, objects=5, kernel="mixed", frame="body", fan_out=4, volume="obb")
+        world = bvlab.World(plate, objects=5)
+        left = world.add(plate)
+        world.move(left, [1, 0, 0, 0, 0, 0, 1])
+        world.update()
+        world.remove(left)
+        touching = 0
+        for frame in poses:
+            for each in (once, world):
+                each.move(np.arange(5), frame)
+                each.update()
+            np.testing.assert_array_equal(world.touching(), once.touching())
+            touching += len(world.touching())
+        self.assertGreater(touching, 100)
+        np.testing.assert_array_equal(world.contacts(), once.contacts())
+
     def test_contacts_and_distances(self):
         for options in ({"volume": "obb"}, {"kernel": "siblings", "volume": "slab-box"},
                         {"fan_out": 8, "frame": "body", "volume": "obb"}):

@@ -86,12 +86,24 @@ class EarlyCulling {
  public:
   using Indices = PairSieve::Indices;
 
-  /// Adds the next body, by the support map of its mesh. Bodies of one mesh share one copy.
-  void add_body(const SupportMap& map) {
+  /// Adds the next body, by the support map of its mesh, which may be empty until `make_maps`. Bodies
+  /// of one mesh share one copy; returns whether this is the first of them.
+  bool add_body(const SupportMap& map) {
     const auto [known, fresh] = added_.try_emplace(&map, 0);
     if (fresh) known->second = directions_.add(map);
-    maps_.push_back(known->second);
+    maps_.push_back(known->second), of_body_.push_back(&map);
     directions_.resize(maps_.size());
+    return fresh;
+  }
+
+  /// Makes maps that were empty when they were added: `made(k)` has the table of empty[k].
+  template <class Made>
+  void make_maps(std::span<const SupportMap* const> empty, Made&& made) {
+    for (std::size_t k = 0; k < empty.size(); ++k) added_.at(empty[k]) = directions_.add(made(k));
+    for (std::size_t body = 0; body < maps_.size(); ++body) {
+      maps_[body] = added_.at(of_body_[body]);
+      directions_.set_map(body, maps_[body]);
+    }
   }
 
   /// `centre`: the sphere's, from the common origin; `error_bound`: as in OrthonormalPose.
@@ -143,7 +155,9 @@ class EarlyCulling {
 
   SeparatingDirections directions_;
   std::map<const SupportMap*, std::int32_t> added_;
-  std::vector<std::int32_t> maps_;  // for each body, the number of its map in directions_
+  // For each body, its map, and the number of that in directions_.
+  std::vector<const SupportMap*> of_body_;
+  std::vector<std::int32_t> maps_;
 };
 
 }  // namespace bvlab

@@ -53,6 +53,7 @@ class SeparatingDirections {
     samples_.insert(samples_.end(), map.table().begin(), map.table().end());
     return first;
   }
+  void set_map(std::size_t body, std::int32_t map) { bodies_[body].map = map; }
   void resize(std::size_t bodies) { bodies_.resize(bodies); }
 
   /// `centre` of the sphere that the map is about, from the common origin; `radius` of that sphere;

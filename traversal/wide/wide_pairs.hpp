@@ -30,9 +30,14 @@ namespace bvlab {
 template <BoundingVolume V, int F, class Kernel = SiblingsKernel>
 using WideShape = ShapeOver<typename Kernel::template Hierarchy<V, F>>;
 
+/// Hierarchies that may have been made on demand.
+template <class Hierarchy>
+concept MadeOnDemand = requires(const Hierarchy& hierarchy) { hierarchy.mesh_of_supports(); };
+
 template <BoundingVolume V, int F, class Memory = NoMemory, class Kernel = SiblingsKernel>
 class WidePairs {
   using Body = typename Kernel::template Body<V, F>;
+  using Hierarchy = typename Kernel::template Hierarchy<V, F>;
 
  public:
   /// One body for each shape, which must outlive this.
@@ -46,7 +51,12 @@ class WidePairs {
     const auto& [mesh, hierarchy] = shape;
     bodies_.emplace_back(*mesh, *hierarchy);
     meshes_.push_back(mesh);
-    culling_.add_body(hierarchy->supports());
+    [[maybe_unused]] const bool is_first = culling_.add_body(hierarchy->supports());
+    if constexpr (MadeOnDemand<Hierarchy>)
+      if (is_first && hierarchy->mesh_of_supports()) {
+        without_supports_.push_back(hierarchy);
+        cost_of_supports_ += traversals_for_map(*hierarchy->mesh_of_supports());
+      }
     const auto& sphere = hierarchy->sphere();
     memory_.add_body({sphere.centre, sphere.radius, hierarchy->reach(), hierarchy->size(), 0,
                       hierarchy->origin()});
@@ -75,6 +85,7 @@ class WidePairs {
   void begin_all(std::span<const Pose> poses, const Vec3<double>& origin, Threads& threads,
                  Counter&, MakeQuery& make_query) {
     make_room(threads);
+    make_supports();
     poses_ = poses, origin_ = &origin;
     memory_.template begin_frame<std::remove_cvref_t<decltype(make_query(0, ObjectPair{}))>>();
     if (threads.count() == 1)
@@ -91,6 +102,7 @@ class WidePairs {
   void begin(std::span<const std::uint32_t> movers, std::span<const Pose> poses,
              const Vec3<double>& origin, const Threads& threads) {
     make_room(threads);
+    make_supports();
     poses_ = poses, origin_ = &origin;
     memory_.template begin_frame<Query>();
     for (const auto i : moved_) memory_.rest(i);
@@ -130,7 +142,30 @@ class WidePairs {
   struct alignas(128) Worker {
     std::array<WideWorkspace, at_once> workspaces;
     PairSieve sieve;
+    std::uint64_t traversals = 0;
   };
+
+  /// About how many traversals of two bodies take as long as making a mesh's support map.
+  static std::uint64_t traversals_for_map(const TriangleMesh& mesh) {
+    return 64 + mesh.vertices.size() / 32;
+  }
+  /// Trees on demand begin without support maps, which would decide some pairs before they are
+  /// traversed. They are made once traversals have taken as long as that will.
+  void make_supports() {
+    if (without_supports_.empty()) return;
+    std::uint64_t traversals = 0;
+    for (const Worker& worker : workers_) traversals += worker.traversals;
+    if (traversals < cost_of_supports_) return;
+    if constexpr (MadeOnDemand<Hierarchy>) {
+      std::vector<const SupportMap*> empty;
+      for (const Hierarchy* hierarchy : without_supports_) empty.push_back(&hierarchy->supports());
+      culling_.make_maps(empty, [&](std::size_t k) {
+        const Hierarchy& of = *without_supports_[k];
+        return SupportMap(*of.mesh_of_supports(), of.sphere().centre);
+      });
+    }
+    without_supports_.clear(), cost_of_supports_ = 0;
+  }
 
   void move(std::size_t i) { memory_.move(i, bodies_[i], poses_[i], culling_, *origin_); }
 
@@ -158,9 +193,10 @@ class WidePairs {
     counter.bodies(sieve.undecided().size());
     if constexpr (!wants_bound<Query>()) {
       memory_.template cull<Query>(sieve, {pairs_, poses_, meshes_, culling_}, counter, make_query);
-      counter.bodies(culling_.cull_by_directions(
-          sieve, pairs_, [&](std::size_t p) { return memory_.skips_directions(p); },
-          [&](std::size_t p, double gap) { memory_.apart(p, pairs_[p], gap); }));
+      if (without_supports_.empty())
+        counter.bodies(culling_.cull_by_directions(
+            sieve, pairs_, [&](std::size_t p) { return memory_.skips_directions(p); },
+            [&](std::size_t p, double gap) { memory_.apart(p, pairs_[p], gap); }));
       for (const std::int32_t p : sieve.decided()) {
         counter.queried(before);
         repeat(static_cast<std::uint32_t>(p));
@@ -185,6 +221,7 @@ class WidePairs {
       std::optional<Query> query;
       std::optional<Traversal<WidePair<V, F, Kernel>, Query, Counting, Record>> traversal;
     };
+    worker.traversals += near.size();
     std::array<Running, at_once> all;
     std::array<Running*, at_once> running;
     std::size_t next = 0, active = 0;
@@ -227,6 +264,8 @@ class WidePairs {
   std::vector<Body> bodies_;
   std::vector<const TriangleMesh*> meshes_;
   EarlyCulling culling_;
+  std::vector<const Hierarchy*> without_supports_;
+  std::uint64_t cost_of_supports_ = 0;  // of these, in traversals
   std::vector<Worker> workers_;
   const Vec3<double>* origin_ = nullptr;  // of the spheres in culling_
   [[no_unique_address]] Memory memory_;
