@@ -17,9 +17,10 @@ const curves = (() => {
   const format = (value, k) => (kinds[k][1] === 'ms' ? rough : count).format(value);
   const lastOf = (run, k) => run?.past.at(-1)?.[k] ?? NaN;
 
-  function drawOne({ box, canvas, output }, k, runs) {
+  function drawOne({ box, canvas, output }, k, runs, shown) {
     if (box.hidden) return;
-    output.textContent = format(lastOf(runs[0], k), k);
+    output.textContent = format(lastOf(shown, k), k);
+    output.style.color = shown.colour;
     const { width, height } = canvas.getBoundingClientRect(), scale = devicePixelRatio;
     canvas.width = Math.max(1, Math.round(width * scale)), canvas.height = Math.max(1, Math.round(height * scale));
     const pen = canvas.getContext('2d');
@@ -44,13 +45,19 @@ const curves = (() => {
       run.past.push(values);
       if (run.past.length > most) run.past.shift();
     },
-    draw(runs) {
+    /** Numbers are those of the run that is shown. */
+    draw(runs, shown) {
       // What is hidden leaves its room to the others, which is measured after that.
-      boxes.forEach(({ box }, k) => { box.hidden = kinds[k][0] === 'hits' || Number.isNaN(lastOf(runs[0], k)); });
-      boxes.forEach((box, k) => drawOne(box, k, runs));
+      boxes.forEach(({ box }, k) => { box.hidden = kinds[k][0] === 'hits' || Number.isNaN(lastOf(shown, k)); });
+      boxes.forEach((box, k) => drawOne(box, k, runs, shown));
     },
-    /** A run's last frame, as HTML. */
-    said: run => Number.isNaN(lastOf(run, 1)) ? ''
-      : [1, 2, 3, 6].map(k => `${kinds[k][0]} ${format(lastOf(run, k), k)}`).join(' · ') + ' ms',
+    /** A run's last frame, as HTML; and how its frames compare with those of recursion. */
+    said(run, runs) {
+      if (Number.isNaN(lastOf(run, 1))) return '';
+      const base = runs.find(({ strategy, number }) => strategy === 'recursive' && number !== null);
+      const sum = ({ past }, k) => past.reduce((all, values) => all + values[k], 0);
+      return [1, 2, 3, 6].map(k => `${kinds[k][0]} ${format(lastOf(run, k), k)}`).join(' · ') + ' ms'
+        + (!base || run === base ? '' : `<br>so far <b>${[1, 6].map(k => rough.format(sum(run, k) / sum(base, k))).join('</b> of the volume tests and <b>')}</b> of the time of recursive`);
+    },
   };
 })();
