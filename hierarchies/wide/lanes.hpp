@@ -38,6 +38,20 @@ template <Scalar S>
   return a * b + c;
 }
 
+/// `fused`, for results that decide what is counted. Where BVLAB_FUSED is defined this processor
+/// has no FMA, and one that has is to be counted as (as by BVLAB_REGISTER_BYTES): the product is
+/// exact in double, so that all but one sum in 2^29 is rounded as if once.
+template <Batched S>
+[[gnu::always_inline]] inline S fused_as_counted(const S& a, const S& b, const S& c) {
+#if defined(BVLAB_FUSED)
+  using Wide = Batch<double, width<S>()>;
+  const auto wide = [](const S& x) { return stdx::static_simd_cast<Wide>(x); };
+  return stdx::static_simd_cast<S>(wide(a) * wide(b) + wide(c));
+#else
+  return fused<S>(a, b, c);
+#endif
+}
+
 /// c - a * b, rounded as `fused` is.
 template <Scalar S>
 [[gnu::always_inline]] inline S less_fused(const S& a, const S& b, const S& c) {

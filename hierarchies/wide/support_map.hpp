@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -145,8 +146,8 @@ class SupportMap {
     // The last one where there is no such point, as with NaN.
     std::size_t at = (b + 1) * block - 1;
     for (std::size_t k = b * block; k < (b + 1) * block; k += Several::size())
-      if (const auto found = along(g, from, k) == most; stdx::any_of(found)) {
-        at = k + static_cast<std::size_t>(stdx::find_first_set(found));
+      if (const std::uint64_t found = bits(along(g, from, k) == most); found != 0) {
+        at = k + static_cast<std::size_t>(std::countr_zero(found));
         break;
       }
     const double height = (points_[0][at] * g[0] + points_[1][at] * g[1]) + points_[2][at] * g[2];

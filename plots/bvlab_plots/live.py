@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGES, VIEWERS = ROOT / "plots" / "page", ROOT / "build" / "viewers"
 # What keeps a page below four megabytes: viewer and engine take half of it.
 MOST_TRIANGLES, MOST_BODIES, ROOM_FOR_MOTION = 50_000, 300, 900_000
-RUNS = ["margins", "separation-list", "recursive"]
+RUNS = ["deferred", "margins", "recursive"]
 NAMED = re.compile(r'<script src="([^"]+)"></script>|<link rel="stylesheet" href="([^"]+)">|<!--data-->')
 
 

@@ -9,7 +9,7 @@ function problem(sentence) {
 }
 
 const live = (() => {
-  const colours = ['accent', 'touching', 'second', 'contact', 'lit'];
+  const colours = ['accent', 'run-1', 'run-2', 'run-3', 'run-4'];
   const whole = new Intl.NumberFormat('en');
   const state = { frame: 0, playing: false, free: false, pair: null, waiting: null, held: null };
   const poses = new Float64Array(7 * data.objects), middle = Array.from(data.frameOf(0).subarray(0, 3));
@@ -47,12 +47,12 @@ const live = (() => {
   }
   self.moveBody = (i, way, turn) => { byHand(), moveBody(i, way, turn), playNow(); };
 
-  // Runs
-  const first = () => runs[0];
+  // Runs; of one of them volumes, answers and the front are drawn.
+  const drawn = () => runs.find(run => run.isDrawn) ?? runs[0];
   function start(run) {
     if (run.number !== null) self.engine.endRun(run.number);
     run.number = self.engine.addRun({ ...run, query: element('query').value });
-    run.past = [], run.times = [];
+    run.past = [], run.times = [], run.rebuilt = null, run.length = 0;
     run.said.textContent = run.number === null ? `not with ${element('query').value}` : '';
   }
   function restart() {
@@ -60,9 +60,9 @@ const live = (() => {
     takeTrees();
     watch();
   }
-  /** What the first run's trees look like. */
+  /** What the trees of the run that is drawn look like. */
   function takeTrees() {
-    const run = first();
+    const run = drawn();
     volumes.forget();
     data.drawn_as = run.number === null ? '' : self.engine.drawnAs(run.number);
     data.meshes.forEach((mesh, m) => {
@@ -82,9 +82,14 @@ const live = (() => {
     element('level').max = Math.max(...data.meshes.map(mesh => mesh.deepest));
   }
   const watch = () => {
-    if (first().number !== null) self.engine.watch(first().number, state.pair ? data.numberOf(...state.pair) : -1);
+    if (drawn().number !== null) self.engine.watch(drawn().number, state.pair ? data.numberOf(...state.pair) : -1);
   };
 
+  /** The mean of the middle half, since a browser's clock is coarse; of few times the least. */
+  function usual(times) {
+    const sorted = [...times].sort((a, b) => a - b), middle = sorted.slice(times.length >> 2, Math.ceil(0.75 * times.length));
+    return times.length < 8 ? sorted[0] : middle.reduce((a, b) => a + b) / middle.length;
+  }
   /** Plays the poses as they are: the next frame of all runs. */
   function advance() {
     self.engine.setPoses(poses);
@@ -97,8 +102,16 @@ const live = (() => {
       if (run.times.length > 30) run.times.shift();
       const [nu, nv, np, front, hits, nb] = self.engine.counts(run.number);
       run.counts = { nu, nv, np, nb, hits };
-      curves.add(run, [nu, nv, np, front, hits, nb, [...run.times].sort((a, b) => a - b)[run.times.length >> 1]]);
+      if (run === drawn()) noteRebuilding(run);
+      curves.add(run, [nu, nv, np, front, hits, nb, usual(run.times)]);
     }
+  }
+  /** A list that is never raised grows until it is built anew from the roots. */
+  function noteRebuilding(run) {
+    const { length } = self.engine.front(run.number);
+    if (length < run.length && ['separation-list', 'deferred'].includes(run.strategy)) run.rebuilt = 0;
+    else if (run.rebuilt !== null) ++run.rebuilt;
+    run.length = length;
   }
   const playNow = () => { advance(), draw(); };
   /** To a frame of the motion. What a front holds depends on all frames before, so these are played, too. */
@@ -115,7 +128,7 @@ const live = (() => {
 
   // What is seen
   function answer() {
-    const run = first(), pairs = new Set();
+    const run = drawn(), pairs = new Set();
     if (run.number === null) return pairs;
     const query = element('query').value;
     if (query === 'touching') self.engine.touching(run.number).forEach((hit, p) => { if (hit) pairs.add(p); });
@@ -130,7 +143,7 @@ const live = (() => {
   const seen = points => points.map((x, k) => x - middle[k % 3]);
 
   function showLines() {
-    const run = first(), query = element('query').value, corners = [];
+    const run = drawn(), query = element('query').value, corners = [];
     if (query === 'contacts' && run.number !== null) {
       const contacts = self.engine.contacts(run.number).slice(0, 5 * 4000);
       for (let k = 0; k < contacts.length; k += 5) {
@@ -150,25 +163,26 @@ const live = (() => {
       const level = Number(element('level').value), nodes = state.pair.map(i => volumes.level(data.meshIndexOf(i), level));
       return [nodes, `level ${level}: ${nodes[0].length} + ${nodes[1].length} volumes`];
     }
-    const entries = self.engine.front(first().number), rest = [new Set(), new Set()], lit = [new Set(), new Set()];
+    const entries = self.engine.front(drawn().number), rest = [new Set(), new Set()], lit = [new Set(), new Set()];
     let tested = 0;
     for (let k = 0; k < entries.length; k += 3) {
       tested += entries[k + 2];
       for (const side of [0, 1]) (entries[k + 2] ? lit : rest)[side].add(entries[k + side]);
     }
     for (const side of [0, 1]) for (const node of lit[side]) rest[side].delete(node);
-    const words = entries.length ? `front of ${whole.format(entries.length / 3)} entries, ${whole.format(tested)} tested in this frame (lit)`
-      : first().kernel !== 'gathered' ? 'An entry of this front is a step of many lanes: it is counted, not drawn.'
-      : first().strategy === 'recursive' ? 'recursive starts from the roots: it keeps no front.' : 'No front is kept in this frame.';
+    const words = entries.length ? `${whole.format(entries.length / 3)} entries, ${whole.format(tested)} of them tested in this frame (lit). `
+        + (drawn().rebuilt === null ? '' : `The list was rebuilt from the roots ${drawn().rebuilt ? `${drawn().rebuilt} frames ago` : 'in this frame'}.`)
+      : drawn().kernel !== 'gathered' ? 'An entry of this front is a step of many lanes: it is counted, not drawn.'
+      : drawn().strategy === 'recursive' ? 'recursive starts from the roots: it keeps no front.' : 'No front is kept in this frame.';
     return [[...rest, ...lit].map(nodes => [...nodes]), words];
   }
   function showVolumes() {
     element('level').disabled = which() !== 'level';
     element('level-number').textContent = element('level').value;
-    const some = state.pair !== null && which() !== 'none' && first().number !== null;
+    const some = state.pair !== null && which() !== 'none' && drawn().number !== null;
     const [nodes, words] = some ? nodesNow() : [[], ''];
     scene.showVolumes(some && volumes.drawable ? state.pair : null, nodes.map(each => each.slice(0, volumes.most)));
-    element('volumes-drawn').textContent = some && !volumes.drawable ? `${first().volume}: not a shape that can be drawn here.` : words;
+    element('volumes-drawn').textContent = some && !volumes.drawable ? `${drawn().volume}: not a shape that can be drawn here.` : words;
   }
 
   function draw() {
@@ -185,14 +199,14 @@ const live = (() => {
     const hits = new Set(runs.filter(run => run.number !== null && run.counts).map(run => run.counts.hits));
     element('agreement').textContent = hits.size > 1 ? 'They find different answers: that is a fault; please report it.'
       : runs.length > 1 ? 'All find the same.' : '';
-    for (const run of runs) run.numbers.innerHTML = run.number === null ? '' : curves.said(run);
+    for (const run of runs) run.numbers.innerHTML = run.number === null ? '' : curves.said(run, runs);
     self.drawn = true;
   }
   function sentence() {
     if (state.waiting !== null) return `Body ${state.waiting} and …`;
     if (!state.pair) return 'Click two bodies to choose a pair.';
     const p = data.numberOf(...state.pair), [i, j] = state.pair;
-    const apart = element('query').value === 'distance' && first().number !== null ? self.engine.distances(first().number)[p] : 0;
+    const apart = element('query').value === 'distance' && drawn().number !== null ? self.engine.distances(drawn().number)[p] : 0;
     return `Bodies ${i} and ${j} ` + (touching.has(p) ? 'touch.' : apart > 0 ? `are ${apart.toPrecision(6)} apart.` : 'do not touch.');
   }
 
@@ -256,6 +270,12 @@ const live = (() => {
     });
     if (flying) playNow();
   }
+  /** Sends the two bodies of the pair away from each other. */
+  function part() {
+    byHand();
+    const [i, j] = state.pair, way = unit3(add3(centreOf(j), centreOf(i), -1));
+    for (const [body, sign] of [[i, -1], [j, 1]]) Object.assign(speeds[body], { way: way.map(x => 0.6 * sign * largest * x), turn: [0, 0, 0] });
+  }
   const selected = () => state.pair?.[0] ?? 0;
   function key(event) {
     if (event.target.closest?.('input, select') || (event.target.closest?.('button') && event.key === ' ')) return;
@@ -284,9 +304,11 @@ const live = (() => {
   }
   function controlsOf(run) {
     run.row.replaceChildren();
-    const swatch = document.createElement('i');
-    swatch.style.background = run.colour;
-    run.row.append(swatch);
+    const draws = Object.assign(document.createElement('input'), { type: 'radio', name: 'drawn', checked: run === drawn() });
+    draws.setAttribute('aria-label', draws.title = 'draw its volumes and its front');
+    draws.style.accentColor = draws.style.outlineColor = run.colour;
+    draws.addEventListener('change', () => { runs.forEach(each => { each.isDrawn = each === run; }), changed(); });
+    run.row.append(draws);
     const change = what => {
       Object.assign(run, what);
       const kernel = offered[run.kernel];
@@ -300,13 +322,14 @@ const live = (() => {
     select(run.row, 'volume', kernel.volumes, run.volume, volume => change({ volume }));
     select(run.row, 'kernel', Object.keys(offered), run.kernel, name => change({ kernel: name }));
     select(run.row, 'fan-out', kernel.fanOuts, run.fanOut, fanOut => change({ fanOut: Number(fanOut) }));
-    if (run !== first()) {
+    if (run !== runs[0]) {
       const away = Object.assign(document.createElement('button'), { type: 'button', textContent: '×' });
       away.setAttribute('aria-label', 'take it away');
       away.addEventListener('click', () => {
         if (run.number !== null) self.engine.endRun(run.number);
         runs.splice(runs.indexOf(run), 1);
         run.row.remove();
+        if (run.isDrawn) runs[0].row.querySelector('input').click();
         draw();
       });
       run.row.append(away);
@@ -346,7 +369,7 @@ const live = (() => {
         fly(seconds);
       }
       scene.draw();
-      if (self.drawn) curves.draw(runs), self.drawn = false;
+      if (self.drawn) curves.draw(runs, drawn()), self.drawn = false;
     } catch (error) {
       return problem(`The engine stopped: ${error.message}`);
     }
@@ -388,6 +411,7 @@ const live = (() => {
     element('frame').addEventListener('input', event => self.seek(Number(event.target.value)));
     element('query').addEventListener('change', changed);
     element('add-run').addEventListener('click', () => self.addRun());
+    element('part').addEventListener('click', () => { if (state.pair) part(); });
     element('look').addEventListener('click', () => scene.lookAt(state.pair));
     for (const id of ['first', 'second'])
       element(id).addEventListener('change', () => choose([Number(element('first').value), Number(element('second').value)]));

@@ -3,37 +3,38 @@
 'use strict';
 
 const curves = (() => {
-  const most = 600, count = new Intl.NumberFormat('en', { maximumSignificantDigits: 6 });
+  const kept = 600, count = new Intl.NumberFormat('en', { maximumSignificantDigits: 6 });
   const kinds = [['N<sub>u</sub>', 'volumes posed'], ['N<sub>v</sub>', 'volume tests'], ['N<sub>p</sub>', 'triangle tests'],
-                 ['front', 'entries'], ['hits', ''], ['N<sub>b</sub>', 'whole bodies'], ['time', 'ms']];
+                 ['front', 'pairs kept'], ['hits', ''], ['N<sub>b</sub>', 'body tests'], ['time', 'ms']];
   const boxes = kinds.map(([symbol, meaning]) => {
     const box = document.createElement('div');
     box.className = 'curve';
-    box.innerHTML = `<h3><span>${symbol} <small>${meaning}</small></span><output></output></h3><canvas></canvas>`;
+    box.innerHTML = `<h3><span>${symbol}</span><output></output></h3><p>${meaning}<span></span></p><canvas></canvas>`;
     document.getElementById('curves').append(box);
-    return { box, canvas: box.querySelector('canvas'), output: box.querySelector('output') };
+    return { box, canvas: box.querySelector('canvas'), output: box.querySelector('output'), most: box.querySelector('p span') };
   });
   const rough = new Intl.NumberFormat('en', { maximumSignificantDigits: 3 });
   const format = (value, k) => (kinds[k][1] === 'ms' ? rough : count).format(value);
   const lastOf = (run, k) => run?.past.at(-1)?.[k] ?? NaN;
 
-  function drawOne({ box, canvas, output }, k, runs) {
+  function drawOne({ box, canvas, output, most }, k, runs, shown) {
     if (box.hidden) return;
-    output.textContent = format(lastOf(runs[0], k), k);
+    output.textContent = format(lastOf(shown, k), k);
+    output.style.color = shown.colour;
     const { width, height } = canvas.getBoundingClientRect(), scale = devicePixelRatio;
     canvas.width = Math.max(1, Math.round(width * scale)), canvas.height = Math.max(1, Math.round(height * scale));
     const pen = canvas.getContext('2d');
-    const top = Math.max(...runs.map(run => run.past.reduce((a, values) => Math.max(a, values[k]), 0))) || 1;
-    pen.fillStyle = look.colour('faint');
-    pen.font = `${10 * scale}px sans-serif`;
-    pen.fillText(format(top, k), 2 * scale, 9 * scale);
+    // The first times are those of a browser that still compiles.
+    const from = kinds[k][1] === 'ms' ? Math.min(20, runs[0].past.length >> 1) : 0;
+    const top = Math.max(...runs.map(run => run.past.slice(from).reduce((a, values) => Math.max(a, values[k]), 0))) || 1;
+    most.textContent = `, to ${format(top, k)}`;
     pen.lineWidth = 1.25 * scale;
     const across = Math.max(120, ...runs.map(run => run.past.length)) - 1;
     for (const run of [...runs].reverse()) {
       pen.strokeStyle = run.colour;
       pen.beginPath();
       run.past.forEach((values, at) =>
-        pen.lineTo(at / across * canvas.width, canvas.height - scale - values[k] / top * (canvas.height - 12 * scale)));
+        pen.lineTo(at / across * canvas.width, canvas.height - scale - values[k] / top * (canvas.height - 3 * scale)));
       pen.stroke();
     }
   }
@@ -42,15 +43,22 @@ const curves = (() => {
     /** Of a run: N_u, N_v, N_p, front, hits, N_b, milliseconds. */
     add(run, values) {
       run.past.push(values);
-      if (run.past.length > most) run.past.shift();
+      if (run.past.length > kept) run.past.shift();
     },
-    draw(runs) {
+    /** Numbers are those of the run that is shown. */
+    draw(runs, shown) {
       // What is hidden leaves its room to the others, which is measured after that.
-      boxes.forEach(({ box }, k) => { box.hidden = kinds[k][0] === 'hits' || Number.isNaN(lastOf(runs[0], k)); });
-      boxes.forEach((box, k) => drawOne(box, k, runs));
+      boxes.forEach(({ box }, k) => { box.hidden = kinds[k][0] === 'hits' || !runs.some(run => run.past.some(values => values[k] > 0)); });
+      boxes.forEach((box, k) => drawOne(box, k, runs, shown));
     },
-    /** A run's last frame, as HTML. */
-    said: run => Number.isNaN(lastOf(run, 1)) ? ''
-      : [1, 2, 3, 6].map(k => `${kinds[k][0]} ${format(lastOf(run, k), k)}`).join(' · ') + ' ms',
+    /** A run's last frame, as HTML; and how its frames compare with those of recursion. */
+    said(run, runs) {
+      if (Number.isNaN(lastOf(run, 1))) return '';
+      const base = runs.find(({ strategy, number }) => strategy === 'recursive' && number !== null);
+      const sum = ({ past }, k) => past.reduce((all, values) => all + values[k], 0);
+      return [1, 2, 3, 6].map(k => `${kinds[k][0]} ${format(lastOf(run, k), k)}`).join(' · ') + ' ms'
+        + (!base || run === base ? '' : `<br><b>${rough.format(sum(run, 1) / sum(base, 1))}</b> of the volume tests of recursive so far, <b>${
+          rough.format(lastOf(run, 6) / lastOf(base, 6))}</b> of its time`);
+    },
   };
 })();

@@ -14,11 +14,14 @@ function fromVrml(text, viewer) {
   function inFrame() {
     // X_ITE looks for files beside its script, which has no address here: they are not needed.
     window.URL = class extends URL { constructor(path, base) { super(path, base?.startsWith('about:') ? 'https://bvlab.invalid/' : base); } };
+    // Nor is there storage in such a frame, in which X_ITE would keep its settings.
+    Object.defineProperty(window, 'localStorage', { value: { getItem: () => null, setItem() {} } });
+    addEventListener('error', event => parent.postMessage({ problem: event.message }, '*'));
     addEventListener('message', async ({ data, source }) => {
       const answer = {};
       try {
         new Function(data.viewer)();
-        const { browser } = X3D.createBrowser();
+        const browser = X3D.getBrowser(document.body.appendChild(X3D.createBrowser()));
         browser.loadComponents = async () => {};
         browser.setBrowserOption('LoadUrlObjects', false);
         answer.x3d = (await browser.createX3DFromString(data.text)).toXMLString();
@@ -30,7 +33,8 @@ function fromVrml(text, viewer) {
   }
   const frame = document.createElement('iframe');
   frame.setAttribute('sandbox', 'allow-scripts');
-  frame.style.display = 'none';
+  // Where nothing is drawn, X_ITE waits for ever for the next frame.
+  frame.style = 'position: fixed; top: 0; left: 0; width: 2px; height: 2px; border: 0; opacity: 0.01';
   frame.srcdoc = `<meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'">`
     + `<body><script>(${inFrame})()<\/script>`;
   return new Promise((done, refuse) => {

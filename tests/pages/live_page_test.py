@@ -177,6 +177,27 @@ return live.runs.map(run => {
             self.assertLess(due, of_margins / 2)
 
 
+    def test_bodies_that_part(self):
+        """A list keeps its entries while two bodies are pulled apart, and is then rebuilt; which the page says."""
+        with Browser() as browser:
+            browser.open(self.live("--trace", self.folder / "trace.npy", "--query", "touching", "--run", "deferred", "--run", "recursive"))
+            self.assertTrue(browser.wait_for(READY))
+            browser.run("const all = []; for (let f = 0; f < data.motionFrames; ++f) live.seek(f), all.push(live.touching());"
+                        "const f = all.findIndex(hits => hits.length > 0); live.seek(f); window.pair = data.pairOf(all[f][0]);"
+                        "for (const [k, id] of ['first', 'second'].entries()) document.getElementById(id).value = pair[k];"
+                        "document.getElementById('first').dispatchEvent(new Event('change'));")
+            self.assertIn("touch", browser.text("#pair-hint"))
+            entries = "return live.engine.front(live.runs[0].number).length / 3"
+            close = browser.run(entries)
+            browser.click("#part")
+            self.assertTrue(browser.wait_for("return document.getElementById('volumes-drawn').textContent.includes('rebuilt')"))
+            self.assertTrue(browser.wait_for(f"return ({entries.removeprefix('return ')}) < {close / 4}"), (close, browser.run(entries)))
+            self.assertIn("do not touch", browser.text("#pair-hint"))
+            self.assertIn("of the volume tests", browser.text("#runs"))
+            browser.keep("live-parted")
+            self.assertEqual(browser.errors(), [])
+
+
 class SaysWhyNot(LivePages):
     def test_no_webgl(self):
         with Browser(more_options=["--disable-3d-apis"]) as browser:
@@ -213,15 +234,23 @@ class SaysWhyNot(LivePages):
             self.assertEqual((done.returncode, len(done.stderr.strip().splitlines())), (2, 1), done.stderr)
             self.assertIn(said, done.stderr)
 
-    def test_no_name_is_executed(self):
-        hostile = self.folder / "<img src=x onerror=alert(1)><script>alert(1)<\\script>.off"
-        hostile.write_bytes(self.mesh.read_bytes())
-        with Browser() as browser:
-            browser.open(self.page("--mesh", hostile))
-            self.assertTrue(browser.wait_for(READY))
-            self.assertIn("<img", browser.text("#title"))
-            self.assertEqual(browser.run("return document.querySelectorAll('h1 img, h1 script').length"), 0)
-            self.assertEqual(browser.errors(), [])
+    def test_nothing_of_a_file_is_executed(self):
+        """Neither of its name, nor of a mesh, nor of an error about it."""
+        bad = "<\\script>window.hit=1<\\script>"  # a name holds no slash
+        names = (f"<img src=x onerror=window.hit=1>{bad}.off", "'\"`${window.hit=1}`;window.hit=1;//.off",
+                 "\u2028window.hit=1\u2029\u202e<!--<script>.off", "]]>&lt;script&gt;&#0;%3Cscript%3E.off")
+        for name in names:
+            hostile = self.folder / name
+            hostile.write_text(self.mesh.read_text().replace("OFF", f"OFF\n# </script><script>window.hit=1</script> {name}", 1))
+            for words in ((), ("--trace", self.folder / "trace.npy", "--peers")):
+                with self.subTest(name=name, words=words), Browser() as browser:
+                    browser.open(self.page("--mesh", hostile, *words))
+                    self.assertTrue(browser.wait_for("return typeof peers !== 'undefined' && peers.done" if words else READY, 300))
+                    self.assertTrue(browser.run("return document.title").endswith(name), browser.run("return document.title"))
+                    self.assertIn(name.split("\u202e")[-1], browser.run("return document.getElementById('title').textContent"))
+                    self.assertEqual(browser.run("return document.querySelectorAll('h1 *').length"), 0)
+                    self.assertIsNone(browser.run("return window.hit ?? null"))
+                    self.assertEqual(browser.errors(), [])
 
 
 class InAnX3dBrowser(LivePages):
@@ -272,15 +301,40 @@ class InAnX3dBrowser(LivePages):
     def test_nothing_of_a_scene_is_executed(self):
         part = ('<Transform DEF="&lt;/script&gt;&lt;script&gt;window.hit=1&lt;/script&gt;{0}" translation="{0} 0 0" '
                 'onclick="window.hit=1"><Shape><Box/></Shape></Transform>')
-        (self.folder / "scene.x3d").write_text(
-            '<X3D><Scene><Script url="javascript:window.hit=1"/><script>window.hit=1</script><img src="x" onerror="window.hit=1"/>'
-            '<Anchor url="javascript:window.hit=1"><Shape><Box/></Shape></Anchor><!-- </script><script>window.hit=1</script> -->'
-            + part.format(0) + part.format(5) + "</Scene></X3D>")
-        with Browser() as browser:
-            browser.open(self.page("--x3d", self.folder / "scene.x3d", name="x3d.html"))
-            self.assertTrue(browser.wait_for(self.ATTACHED), browser.text("#problem"))
-            self.assertIsNone(browser.run("return window.hit ?? null"))
-            self.assertEqual(browser.run("return document.querySelectorAll('x3d script, x3d img, x3d anchor, x3d [onclick]').length"), 0)
+        x3d = ('<X3D><Scene><Script url="javascript:window.hit=1"/><script>window.hit=1</script><img src="x" onerror="window.hit=1"/>'
+               '<Anchor url="javascript:window.hit=1"><Shape><Box/></Shape></Anchor><!-- </script><script>window.hit=1</script> -->'
+               + part.format(0) + part.format(5) + "</Scene></X3D>")
+        # Of these signs VRML allows < > & $ ` ; and separators of lines in a name.
+        names = ("<img/src=x/onerror=window.hit=1>", "</script><script>window.hit=1</script>", "`${window.hit=1}`", "\u2028window.hit=1;//")
+        vrml = ("#VRML V2.0 utf8 </script><script>window.hit=1</script>\n"
+                'WorldInfo { title "</script><script>window.hit=1</script>\u2028\\"" info "<img src=x onerror=window.hit=1>" }\n'
+                + "".join(f"DEF {name} Transform {{ translation {3 * k} 0 0 children Shape {{ geometry Box {{}} }} }}\n"
+                          for k, name in enumerate(names)))
+        touching = vrml.replace("translation 3 0 0", "translation 1 0 0")  # two are named in the page's sentence
+        for name, scene in (("scene.x3d", x3d), ("scene.x3d", x3d.replace('translation="5', 'translation="1')), ("scene.wrl", vrml),
+                            ("<img src=x onerror=window.hit=1>'\".wrl", touching)):
+            (self.folder / name).write_text(scene, encoding="utf-8")
+            with self.subTest(name), Browser() as browser:
+                browser.open(self.page("--x3d", self.folder / name, name="x3d.html"))
+                self.assertTrue(browser.wait_for(self.ATTACHED), browser.text("#problem"))
+                time.sleep(0.3)
+                self.assertIsNone(browser.run("return window.hit ?? null"))
+                self.assertEqual(browser.run("return document.querySelectorAll('x3d script, x3d img, x3d anchor, x3d [onclick], header img, header script')"
+                                             ".length"), 0)
+                self.assertEqual(browser.errors(), [])
+
+    def test_what_a_vrml_scene_may_not_do(self):
+        """A Script, or what is fetched: refused or left out, not run."""
+        two = "Transform { children Shape { geometry Box {} } } Transform { translation 5 0 0 children Shape { geometry Box {} } } "
+        for more in ('Script { url "javascript:window.hit=1;parent.hit=1" }', 'Inline { url "https://example.org/a.wrl" }',
+                     'Anchor { url "javascript:window.hit=1" children Shape { geometry Sphere {} } }'):
+            (self.folder / "scene.wrl").write_text(f"#VRML V2.0 utf8\n{two}{more}\n")
+            with self.subTest(more), Browser() as browser:
+                browser.open(self.page("--x3d", self.folder / "scene.wrl", name="x3d.html"))
+                self.assertTrue(browser.wait_for("return page.contact !== null || !document.getElementById('problem').hidden"))
+                time.sleep(0.3)
+                self.assertIsNone(browser.run("return window.hit ?? null"))
+                self.assertEqual(browser.run("return document.querySelectorAll('x3d script, x3d inline, x3d anchor').length"), 0)
 
 
 class BesideOthers(LivePages):
