@@ -88,7 +88,7 @@ struct SceneGraph {
               const std::string& name) const;
 };
 
-/// COLLADA: its scene's nodes, triangles and polygons.
+/// COLLADA (DAE): its scene's nodes, triangles and polygons.
 SceneGraph parse_dae(std::string_view bytes, const std::string& name);
 /// 3MF: what its build list has.
 SceneGraph parse_3mf(std::string_view bytes, const std::string& name);
