@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// `bvlab scene NAME`: writes a built-in scene as a trace, and its meshes.
+#include <Eigen/Geometry>
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -214,12 +216,59 @@ void add_public(CLI::App& parent) {
   command->callback([arguments] { run_public(*arguments); });
 }
 
+struct FileArguments {
+  std::string file, out, meshes;
+  double scale = 1;
+};
+
+/// A part's name as that of a file: other characters than these could lead elsewhere.
+std::string file_name_of(std::string name) {
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
+  return name.empty() ? "part" : name.substr(0, 100);
+}
+
+/// Every part is a body with a mesh of its own; their poses are the one frame of the trace.
+void run_file(const FileArguments& arguments) {
+  const NamedFile read[] = {{"file", arguments.file}};
+  const NamedFile written[] = {{"--out", arguments.out}};
+  require_places(read, written);
+  const auto parts = read_parts(arguments.file, {.scale = arguments.scale});
+  std::vector<std::string> names;
+  std::vector<TriangleMesh> meshes;
+  Array<double> trace{{1, parts.size(), 7}, {}};
+  for (const MeshPart& part : parts) {
+    names.push_back(file_name_of(part.name));
+    meshes.push_back(*part.mesh);
+    const Eigen::Quaterniond q(part.pose.rotation);
+    const Vec3<double>& t = part.pose.translation;
+    trace.data.insert(trace.data.end(), {t[0], t[1], t[2], q.w(), q.x(), q.y(), q.z()});
+  }
+  require_places_of_meshes(arguments.meshes, names, read, written[0]);
+  write_meshes(arguments.meshes, names, meshes);
+  write_npy<double>(arguments.out, trace.shape, trace.data);
+}
+
+void add_file(CLI::App& parent) {
+  CLI::App* command = parent.add_subcommand(
+      "file", "the parts of a file (nodes of a DAE, glTF or 3MF, objects of an OBJ) as they stand");
+  auto arguments = std::make_shared<FileArguments>();
+  command->add_option("file", arguments->file, "a mesh file")->required();
+  add_scale_option(*command, arguments->scale);
+  command->add_option("--out", arguments->out, "the trace: .npy, float64, (1, parts, 7)")
+      ->required();
+  command->add_option("--meshes", arguments->meshes,
+                      "directory to write the parts' meshes to, as OFF");
+  command->callback([arguments] { run_file(*arguments); });
+}
+
 }  // namespace
 
 void add_scene(CLI::App& app) {
   CLI::App* command = app.add_subcommand("scene", "Writes a built-in scene as a trace");
   Scenes::for_each([&]<class S>(std::type_identity<S>) { add<S>(*command); });
   add_public(*command);
+  add_file(*command);
   command->allow_extras();
   command->callback([command] {
     if (!command->get_subcommands().empty()) return;

@@ -26,6 +26,12 @@ void limit_to(const Guard& guard, std::size_t bytes_before) {
     std::signal(signal, SIG_DFL);
 }
 
+/// What a library prints as it breaks off is not the line that a refusal is.
+void silence_standard_error() {
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);
+}
+
 [[noreturn]] void work_and_exit(const std::function<std::string()>& work, int out) {
   try {
     const std::string bytes = work();
@@ -57,6 +63,7 @@ Guarded guarded(const Guard& guard, const std::function<std::string()>& work) {
   if (child == 0) {
     close(ends[0]);
     limit_to(guard, bytes_before);
+    silence_standard_error();
     work_and_exit(work, ends[1]);
   }
   close(ends[1]);

@@ -129,6 +129,14 @@ void write_beside(const std::filesystem::path& path, std::span<const std::string
   fail(path, error);
 }
 
+/// Where a link leads, whether there is a file yet or not.
+std::filesystem::path end_of_links(std::filesystem::path path) {
+  std::error_code none;
+  for (int links = 0; links < 40 && std::filesystem::is_symlink(path, none); ++links)
+    path = path.parent_path() / std::filesystem::read_symlink(path, none);
+  return path;
+}
+
 /// A file of its own, or standard output; a terminal or /dev/null has room for several.
 bool is_same_place(const std::filesystem::path& a, const std::filesystem::path& b) {
   if (a.empty() || b.empty()) return false;
@@ -139,7 +147,8 @@ bool is_same_place(const std::filesystem::path& a, const std::filesystem::path& 
   if (a == "/dev/stdout" || (has_a && !S_ISCHR(of_a.st_mode))) return a == b;
   const auto canonical = [](const std::filesystem::path& path) {
     std::error_code ignored;
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(end_of_links(path), ignored),
+                                             ignored);
   };
   return !has_a && !has_b && canonical(a) == canonical(b);
 }
@@ -177,10 +186,7 @@ void write_whole(const std::filesystem::path& path, std::span<const std::string_
   if (path == "/dev/stdout" || (exists && !S_ISREG(status.st_mode)))
     return write_through(path, parts);
   // A link stays; what it points to is replaced.
-  std::error_code ignored;
-  const auto place = exists && std::filesystem::is_symlink(path, ignored)
-                         ? std::filesystem::canonical(path)
-                         : path;
+  const auto place = end_of_links(path);
   const mode_t mask = ::umask(0);
   ::umask(mask);
   const mode_t mode = exists ? (status.st_mode & 07777) : (0666 & ~mask);
@@ -210,7 +216,10 @@ void require_place(const std::string& option, const std::filesystem::path& path)
     if (S_ISDIR(status.st_mode)) refuse("is a directory");
     if (!S_ISREG(status.st_mode)) return;  // a device says itself what it thinks of writing
   }
-  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  std::error_code ignored;
+  const auto place = end_of_links(path);
+  if (std::filesystem::is_symlink(place, ignored)) refuse(std::strerror(ELOOP));
+  const auto folder = place.has_parent_path() ? place.parent_path() : std::filesystem::path(".");
   if (::stat(folder.c_str(), &status) != 0)
     refuse("folder " + folder.string() + ": " + std::strerror(errno));
   if (!S_ISDIR(status.st_mode)) refuse("folder " + folder.string() + ": is not a folder");

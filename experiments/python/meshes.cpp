@@ -247,10 +247,11 @@ are legal. ValueError: another shape or type, NaN, infinity, an index out of ran
              "The address from which each mesh's vertices are read, for tests.");
   module.def(
       "read", &read, py::arg("path"), py::kw_only(), py::arg("scale") = 1.0,
-      R"(The mesh in a file: OFF, OBJ, PLY and STL to the last digit, others as assimp reads them.
+      R"(The mesh in a file: OFF, OBJ, PLY, STL, DAE and 3MF to the last digit, others as assimp reads
+them (coordinates in float32).
 
 The transformations of a scene's nodes are applied. Coordinates are used as they stand, whatever
-unit and axes the file names, and multiplied by `scale`.
+unit and axes the file names, and multiplied by `scale`. Skins and morph targets are refused.
 ValueError: missing, truncated, or no mesh; names the file, what is wrong, and where. UserWarning:
 what was passed over.)");
   module.def("_read_parts", &read_all_parts, py::arg("path"), py::arg("scale"));

@@ -13,6 +13,29 @@
 
 namespace bvlab {
 
+/// What is to be said of a file, if anything.
+class Note {
+ public:
+  /// A face that makes no triangle; `where` says which.
+  void leave_out(const std::string& where) {
+    if (left_out_++ == 0) first_left_out_ = where;
+  }
+  void say(const std::string& what) {
+    if (said_.find(what) == said_.npos) said_ += (said_.empty() ? "" : "; ") + what;
+  }
+  std::string text() const {
+    if (left_out_ == 0) return said_;
+    return (said_.empty() ? "" : said_ + "; ") + first_left_out_ +
+           ": a face of fewer than three corners is left out" +
+           (left_out_ > 1 ? " (" + std::to_string(left_out_) + " in all)" : "") +
+           "; triangles are numbered without it";
+  }
+
+ private:
+  std::string said_, first_left_out_;
+  std::size_t left_out_ = 0;
+};
+
 /// What a file holds.
 struct ParsedMesh {
   /// Triangles from `first` on, up to the next part's, bear the name.
@@ -23,17 +46,7 @@ struct ParsedMesh {
 
   TriangleMesh mesh;
   std::vector<Part> parts;  ///< in order of `first`; none where the file has no names
-  std::string note;         ///< what is to be said of it, if anything
-
-  /// A face that makes no triangle; `where` says which.
-  void leave_out(const std::string& where) {
-    if (left_out++ == 0) first_left_out = where;
-    note = first_left_out + ": a face of fewer than three corners is left out" +
-           (left_out > 1 ? " (" + std::to_string(left_out) + " in all)" : "") +
-           "; triangles are numbered without it";
-  }
-  std::size_t left_out = 0;
-  std::string first_left_out;
+  Note note;
 };
 
 /// OFF, COFF, NOFF, CNOFF, STOFF ...: text, three coordinates a vertex, one vertex or face a line.
@@ -62,10 +75,11 @@ struct SceneNode {
   Transformation to_world;
 };
 
-/// A scene as assimp reads it: nodes with meshes, parents first.
+/// A scene: nodes with meshes, parents first.
 struct SceneGraph {
   std::vector<SceneNode> nodes;
   std::vector<TriangleMesh> meshes;  ///< in their nodes' frames; those that no node has are empty
+  std::string note;                  ///< what is to be said of it, if anything
 
   /// All nodes in the world's frame, one after the other. Throws Unusable.
   TriangleMesh joined(const std::string& name) const;
@@ -73,6 +87,11 @@ struct SceneGraph {
   void append(TriangleMesh& result, const SceneNode& node, const SceneNode::Transformation& to,
               const std::string& name) const;
 };
+
+/// COLLADA (DAE): its scene's nodes, triangles and polygons.
+SceneGraph parse_dae(std::string_view bytes, const std::string& name);
+/// 3MF: what its build list has.
+SceneGraph parse_3mf(std::string_view bytes, const std::string& name);
 
 /// What assimp adds at the root to turn a file's axes and unit into its own.
 enum class Conversion { none, of_assimp };
@@ -83,15 +102,17 @@ SceneGraph read_with_assimp(const std::filesystem::path& path, std::string_view 
 SceneGraph parse_with_assimp(std::string_view bytes, const std::string& name,
                              Conversion conversion = Conversion::none);
 
-/// The parser of a file of that name; nullptr where assimp is to read it.
+/// The parser of a file of that name; nullptr where it is one of scenes.
 const MeshFormat* own_format(const std::string& name);
 /// By that parser; says what there is to be said.
 ParsedMesh parsed_mesh(std::string_view bytes, const std::string& name, const MeshFormat& format,
                        const ReadOptions& options);
+/// The scene in these bytes: by a parser of ours, or by assimp; of a `file`, others beside it may
+/// be read. Says what there is to be said.
+SceneGraph parsed_scene(std::string_view bytes, const std::string& name, const ReadOptions& options,
+                        const std::filesystem::path& file = {});
 /// The bytes of a file, of which there are some. Checks the options, too.
 std::string bytes_of(const std::filesystem::path& path, const ReadOptions& options);
-/// The scene in a file whose bytes are these.
-SceneGraph scene_of(const std::filesystem::path& path, std::string_view bytes);
 /// The mesh multiplied by the options' scale.
 TriangleMesh scaled_mesh(TriangleMesh mesh, const std::string& name, const ReadOptions& options);
 

@@ -38,6 +38,11 @@ bool says_nothing_here(std::string_view keyword) {
   return is_letter && std::string_view("vVfF").find(first) == std::string_view::npos;
 }
 
+/// Whether a line of this keyword is a surface that is no polygon.
+bool is_free_form(std::string_view keyword) {
+  return keyword == "surf" || keyword == "bzp" || keyword == "bsp" || keyword == "cdp";
+}
+
 /// The names that faces bear, as the lines come: of an object, of a group, or of both.
 class Names {
  public:
@@ -87,6 +92,8 @@ ParsedMesh parse_obj(std::string_view bytes, const std::string& name) {
       scanner.fault("call: other files are not read");
     } else if (!says_nothing_here(keyword)) {
       scanner.fault("unknown word " + TextScanner::shown(keyword));
+    } else if (is_free_form(keyword)) {
+      parsed.note.say("surfaces of free form are left out");
     }
   }
   if (mesh.vertices.size() >= std::numeric_limits<std::uint32_t>::max())
@@ -106,7 +113,7 @@ ParsedMesh parse_obj(std::string_view bytes, const std::string& name) {
                       face.line);
       polygon.push_back(static_cast<std::uint32_t>(vertex));
     }
-    if (face.size < 3) parsed.leave_out(TextScanner::place(face.line));
+    if (face.size < 3) parsed.note.leave_out(TextScanner::place(face.line));
     append_polygon(mesh, polygon);
   }
   return parsed;

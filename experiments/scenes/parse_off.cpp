@@ -22,7 +22,7 @@ std::size_t count(TextScanner& scanner, const char* what) {
 [[noreturn]] void truncated(const std::string& name, const char* what, std::size_t held,
                             std::size_t promised) {
   throw Unusable(name, "truncated: holds " + std::to_string(held) + " of " +
-                           std::to_string(promised) + " " + what);
+                           std::to_string(promised) + " " + what + ", one a line");
 }
 
 /// Passes over the header's keyword, if there is one: [ST][C][N]OFF, to which the first count may
@@ -77,10 +77,18 @@ ParsedMesh parse_off(std::string_view bytes, const std::string& name) {
   TriangleMesh& mesh = parsed.mesh;
   mesh.vertices.reserve(vertices);
   mesh.triangles.reserve(faces);
+  std::size_t values_each = 0;
   for (std::size_t i = 0; i < vertices; ++i) {
     scanner.next_line();
     const double x = scanner.coordinate(), y = scanner.coordinate(), z = scanner.coordinate();
     mesh.vertices.push_back({x, y, z});
+    // A face among the vertices is told by its length.
+    std::size_t values = 3;
+    for (; !scanner.at_line_end(); ++values) scanner.word();
+    if (i == 0) values_each = values;
+    if (values != values_each)
+      scanner.fault("a vertex of " + std::to_string(values) + " values, where the first has " +
+                    std::to_string(values_each));
   }
   std::vector<std::uint32_t> corners;
   for (std::size_t i = 0; i < faces; ++i) {
@@ -94,7 +102,7 @@ ParsedMesh parse_off(std::string_view bytes, const std::string& name) {
                       std::to_string(vertices) + ", from 0");
       corners.push_back(static_cast<std::uint32_t>(vertex));
     }
-    if (size < 3) parsed.leave_out(scanner.place());
+    if (size < 3) parsed.note.leave_out(scanner.place());
     append_polygon(mesh, corners);
   }
   return parsed;

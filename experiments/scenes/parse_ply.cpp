@@ -75,6 +75,10 @@ const Property* corner_list(const PlyElement& element) {
   return named.size() == 1 ? named[0] : nullptr;
 }
 
+bool makes_surface(const PlyElement& element) {
+  return element.name == "face" || element.name == "tristrips";
+}
+
 enum class Format { text, little, big };
 
 struct Header {
@@ -241,6 +245,8 @@ class Reader {
     for (const PlyElement& element : header_.elements) {
       if (element.properties.empty()) continue;
       for (std::uint64_t i = 0; i < element.count; ++i) read_one(element, i);
+      if (element.count > 0 && !makes_surface(element) && corner_list(element))
+        parsed_.note.say("element " + element.name + ", which lists vertices, is passed over");
       last = &element;
     }
     if (last) check_end(*last);
@@ -291,7 +297,7 @@ class Reader {
       const std::size_t left = values_.bytes_left();
       while (values_.bytes_left() > 0 && pass(element)) ++held;
       if (held == element.count && left > 0)
-        parsed_.note = std::to_string(left) + " bytes beyond the last element are passed over";
+        parsed_.note.say(std::to_string(left) + " bytes beyond the last element are passed over");
     }
     if (held > element.count)
       throw Unusable(name_, "holds " + std::to_string(held) + " of element " + element.name +
@@ -320,7 +326,7 @@ class Reader {
     begin(element, number);
     Vec3<double> point = Vec3<double>::Zero();
     const bool is_vertex = element.name == "vertex", is_strip = element.name == "tristrips";
-    const Property* corners = is_strip || element.name == "face" ? corner_list(element) : nullptr;
+    const Property* corners = makes_surface(element) ? corner_list(element) : nullptr;
     for (const Property& property : element.properties) {
       const int axis = is_vertex ? property.axis() : 3;
       if (axis < 3) {
@@ -380,7 +386,7 @@ class Reader {
   }
 
   void append_face(const PlyElement& element, std::uint64_t number) {
-    if (entries_.size() < 3) parsed_.leave_out(place(element, number));
+    if (entries_.size() < 3) parsed_.note.leave_out(place(element, number));
     faces_.push_back({corners_.size(), entries_.size()});
     corners_.insert(corners_.end(), entries_.begin(), entries_.end());
   }
@@ -390,7 +396,7 @@ class Reader {
   void append_strip(const PlyElement& element, std::uint64_t number) {
     std::size_t length = 0;
     const auto end_strip = [&] {
-      if (length == 1 || length == 2) parsed_.leave_out(place(element, number));
+      if (length == 1 || length == 2) parsed_.note.leave_out(place(element, number));
       length = 0;
     };
     for (std::size_t i = 0; i < entries_.size(); ++i) {
@@ -440,8 +446,7 @@ ParsedMesh parse_ply(std::string_view bytes, const std::string& name) {
   bool has_position[4] = {};
   std::uint64_t vertices = 0;
   for (const PlyElement& element : header.elements) {
-    if ((element.name == "face" || element.name == "tristrips") && element.count > 0 &&
-        !corner_list(element))
+    if (makes_surface(element) && element.count > 0 && !corner_list(element))
       throw Unusable(
           name, "element " + element.name + " has not one list vertex_indices or vertex_index");
     if (element.name != "vertex") continue;

@@ -60,8 +60,8 @@ std::vector<std::size_t> places_of_records(std::string_view bytes, std::size_t p
                                std::to_string(announced));
     break;
   }
-  parsed.note = std::to_string(beyond) + " bytes beyond the " + std::to_string(promised) +
-                " triangles are passed over";
+  parsed.note.say(std::to_string(beyond) + " bytes beyond the " + std::to_string(promised) +
+                  " triangles are passed over");
   return plain;
 }
 

@@ -14,6 +14,13 @@
 namespace bvlab {
 namespace {
 
+std::string extension_of(const std::string& name) {
+  std::string extension = std::filesystem::path(name).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(c < 128 ? std::tolower(c) : c); });
+  return extension;
+}
+
 void require_scale(const ReadOptions& options) {
   if (!(options.scale > 0) || !std::isfinite(options.scale))
     throw Unusable("scale", "must be finite and above 0");
@@ -40,8 +47,8 @@ ParsedMesh parsed_mesh(std::string_view bytes, const std::string& name, const Me
                        const ReadOptions& options) {
   ParsedMesh parsed = format.parse(bytes, name);
   // Of a mesh without triangles that is said alone.
-  if (!parsed.note.empty() && !parsed.mesh.triangles.empty())
-    options.say(one_line(name + ": " + parsed.note));
+  const std::string note = parsed.note.text();
+  if (!note.empty() && !parsed.mesh.triangles.empty()) options.say(one_line(name + ": " + note));
   return parsed;
 }
 
@@ -52,23 +59,30 @@ std::string bytes_of(const std::filesystem::path& path, const ReadOptions& optio
   return bytes;
 }
 
-SceneGraph scene_of(const std::filesystem::path& path, std::string_view bytes) {
-  // A pipe is read only once; of texts with a byte-order mark assimp does not read all.
-  const bool is_file = std::filesystem::is_regular_file(path) && !has_mark(bytes);
-  return is_file ? read_with_assimp(path, bytes) : parse_with_assimp(bytes, path.string());
-}
-
 void ReadOptions::say_on_standard_error(const std::string& line) {
   std::fprintf(stderr, "bvlab: %s\n", line.c_str());
 }
 
 const MeshFormat* own_format(const std::string& name) {
-  std::string extension = std::filesystem::path(name).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(c < 128 ? std::tolower(c) : c); });
+  const std::string extension = extension_of(name);
   for (const auto& format : own_formats)
     if (extension == format.extension) return &format;
   return nullptr;
+}
+
+SceneGraph parsed_scene(std::string_view bytes, const std::string& name, const ReadOptions& options,
+                        const std::filesystem::path& file) {
+  const std::string extension = extension_of(name);
+  if (extension == ".zae") throw Unusable(name, "a packed DAE is not read: unpack it");
+  const bool is_dae = extension == ".dae", is_3mf = extension == ".3mf";
+  // A pipe is read only once; of texts with a byte-order mark assimp does not read all.
+  const bool is_file = std::filesystem::is_regular_file(file) && !has_mark(bytes);
+  SceneGraph scene = is_dae    ? parse_dae(bytes, name)
+                     : is_3mf  ? parse_3mf(bytes, name)
+                     : is_file ? read_with_assimp(file, bytes)
+                               : parse_with_assimp(bytes, name);
+  if (!scene.note.empty()) options.say(one_line(name + ": " + scene.note));
+  return scene;
 }
 
 TriangleMesh parse_mesh(std::string_view bytes, const std::string& name,
@@ -76,13 +90,13 @@ TriangleMesh parse_mesh(std::string_view bytes, const std::string& name,
   if (bytes.empty()) throw Unusable(name, "is empty");
   if (const MeshFormat* format = own_format(name))
     return checked(parsed_mesh(bytes, name, *format, options).mesh, name, options);
-  return checked(parse_with_assimp(bytes, name).joined(name), name, options);
+  return checked(parsed_scene(bytes, name, options).joined(name), name, options);
 }
 
 TriangleMesh read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string bytes = bytes_of(path, options), name = path.string();
   if (own_format(name)) return parse_mesh(bytes, name, options);
-  return checked(scene_of(path, bytes).joined(name), name, options);
+  return checked(parsed_scene(bytes, name, options, path).joined(name), name, options);
 }
 
 void say_if_nothing_is_culled(const TriangleMesh& mesh, const std::string& name) {

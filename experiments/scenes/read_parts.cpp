@@ -126,13 +126,13 @@ std::vector<MeshPart> parse_parts(std::string_view bytes, const std::string& nam
                                   const ReadOptions& options) {
   if (const MeshFormat* format = own_format(name))
     return checked(parts_of(parsed_mesh(bytes, name, *format, options)), name, options);
-  return checked(parts_of(parse_with_assimp(bytes, name), name), name, options);
+  return checked(parts_of(parsed_scene(bytes, name, options), name), name, options);
 }
 
 std::vector<MeshPart> read_parts(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string bytes = bytes_of(path, options), name = path.string();
   if (own_format(name)) return parse_parts(bytes, name, options);
-  return checked(parts_of(scene_of(path, bytes), name), name, options);
+  return checked(parts_of(parsed_scene(bytes, name, options, path), name), name, options);
 }
 
 }  // namespace bvlab

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <assimp/ColladaMetaData.h>
-#include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
 
@@ -46,7 +44,7 @@ Vec3<double> image(const Transformation& t, const Vec3<double>& v) {
 Transformation own_root(const Transformation& root, std::string_view importer) {
   // All that their roots have is what was added.
   for (const std::string_view name :
-       {"Collada", "Discreet 3DS", "Autodesk FBX", "Drawing Interchange Format", "ASE ", "Cinema4D",
+       {"Discreet 3DS", "Autodesk FBX", "Drawing Interchange Format", "ASE ", "Cinema4D",
         "Inter-Quake", "Quake", "Doom 3", "Return To Castle Wolfenstein"})
     if (importer.starts_with(name)) return identity;
   if (!importer.starts_with("Industry Foundation Classes")) return root;
@@ -57,29 +55,42 @@ Transformation own_root(const Transformation& root, std::string_view importer) {
   return unit > 0 ? Transformation(turn * root / unit) : root;
 }
 
-/// The name in the file; of a DAE's node that has none, its id.
-std::string name_of(const aiNode& node) {
-  const std::string name = node.mName.C_Str();
-  if (!name.starts_with("$ColladaAutoName$")) return name;
-  aiString id;
-  return node.mMetaData && node.mMetaData->Get(AI_METADATA_COLLADA_ID, id) ? id.C_Str() : "";
-}
-
 class Gatherer {
  public:
-  Gatherer(const aiScene& scene, const std::string& name) : scene_(scene), name_(name) {
+  /// `written`: the nodes' transformations to the last digit, should these be known.
+  Gatherer(const aiScene& scene, const std::string& name, std::vector<Transformation> written)
+      : scene_(scene), name_(name), written_(std::move(written)) {
     result_.meshes.resize(scene.mNumMeshes);
   }
 
-  SceneGraph gathered(const Transformation& root) {
-    if (scene_.mRootNode) visit(*scene_.mRootNode, root, 0);
+  SceneGraph gathered(Transformation root) {
+    if (!scene_.mRootNode) return {};
+    // Several roots get another one.
+    const std::size_t nodes = count(*scene_.mRootNode, 0);
+    if (nodes == written_.size())
+      root = written_[next_++];
+    else if (nodes != written_.size() + 1)
+      written_.clear();
+    visit(*scene_.mRootNode, root, 0);
     return std::move(result_);
   }
 
  private:
+  static std::size_t count(const aiNode& node, int depth) {
+    std::size_t sum = 1;
+    for (unsigned i = 0; i < node.mNumChildren && depth < 1000; ++i)
+      if (node.mChildren[i]) sum += count(*node.mChildren[i], depth + 1);
+    return sum;
+  }
+
+  Transformation to_parent(const aiNode& node) {
+    return next_ < written_.size() ? written_[next_++] : transformation_of(node);
+  }
+
   void visit(const aiNode& node, const Transformation& here, int depth) {
     if (depth > 1000) throw Unusable(name_, "nodes more than 1000 deep");
-    SceneNode found{name_of(node), {}, here};
+    SceneNode found{node.mName.C_Str(), {}, here};
+    if (found.name.starts_with("nodes[")) found.name.clear();  // given by assimp's reader of glTF
     for (unsigned i = 0; node.mMeshes && i < node.mNumMeshes; ++i) {
       const unsigned number = node.mMeshes[i];
       if (number >= scene_.mNumMeshes)
@@ -94,7 +105,7 @@ class Gatherer {
     if (!found.meshes.empty()) result_.nodes.push_back(std::move(found));
     for (unsigned i = 0; i < node.mNumChildren; ++i)
       if (const aiNode* child = node.mChildren[i])
-        visit(*child, product(here, transformation_of(*child)), depth + 1);
+        visit(*child, product(here, to_parent(*child)), depth + 1);
   }
 
   void take(const aiMesh& mesh, unsigned number) {
@@ -125,11 +136,13 @@ class Gatherer {
 
   const aiScene& scene_;
   const std::string& name_;
+  std::vector<Transformation> written_;
+  std::size_t next_ = 0;
   SceneGraph result_;
 };
 
 SceneGraph gathered(const Assimp::Importer& importer, const aiScene* scene, const std::string& name,
-                    Conversion conversion) {
+                    Conversion conversion, std::vector<Transformation> written) {
   if (!scene) {
     std::string why = importer.GetErrorString();
     why = why.substr(0, why.find('\n'));
@@ -141,7 +154,7 @@ SceneGraph gathered(const Assimp::Importer& importer, const aiScene* scene, cons
   const aiImporterDesc* by =
       index < 0 ? nullptr : importer.GetImporterInfo(static_cast<std::size_t>(index));
   if (conversion == Conversion::none && by && by->mName) root = own_root(root, by->mName);
-  return Gatherer(*scene, name).gathered(root);
+  return Gatherer(*scene, name, std::move(written)).gathered(root);
 }
 
 /// A scene as bytes, from the process that reads it to this one.
@@ -254,8 +267,8 @@ SceneGraph imported(const std::string& name, std::string_view bytes, Conversion 
   require_what_assimp_reads(bytes, name);
   return read_guarded(name, bytes.size(), [&] {
     Assimp::Importer importer;
-    importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
-    SceneGraph scene = gathered(importer, import(importer), name, conversion);
+    SceneGraph scene =
+        gathered(importer, import(importer), name, conversion, transformations_of_gltf(bytes));
     if (const auto promised = triangles_of_gltf(bytes)) require_triangles(scene, *promised, name);
     return scene;
   });

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/scenes/scene_checks.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <charconv>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -15,82 +17,6 @@ namespace {
 
 using Json = nlohmann::json;
 constexpr std::string_view blanks = " \t\r\n";
-
-/// A COLLADA file, of which tags are found by their letters: assimp tells what is no XML.
-class Collada {
- public:
-  Collada(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
-
-  void require_lists() const {
-    for (const std::string_view tag : {"<p>", "<h>", "<v>", "<vcount>"})
-      for (std::size_t at = 0; (at = bytes_.find(tag, at)) != bytes_.npos;)
-        require_indices(tag, at);
-    for (std::size_t at = 0; (at = bytes_.find("<float_array", at)) != bytes_.npos;)
-      require_numbers(at);
-    for (std::size_t at = 0; (at = bytes_.find("<accessor", at)) != bytes_.npos; ++at)
-      require_names(at);
-  }
-
- private:
-  [[noreturn]] void fault(std::size_t at, const std::string& what) const {
-    const auto end = bytes_.begin() + static_cast<std::ptrdiff_t>(at);
-    const auto line = static_cast<std::size_t>(1 + std::count(bytes_.begin(), end, '\n'));
-    throw Unusable(name_, TextScanner::place(line) + ": " + what);
-  }
-
-  void require_indices(std::string_view tag, std::size_t& at) const {
-    at += tag.size();
-    const std::size_t wrong = bytes_.find_first_not_of("0123456789 \t\r\n", at);
-    if (wrong == bytes_.npos || bytes_[wrong] == '<') return;
-    const std::size_t begin = bytes_.find_last_of("> \t\r\n", wrong) + 1;
-    const std::size_t end = bytes_.find_first_of("< \t\r\n", wrong);
-    fault(wrong, std::string(tag) + ": " + TextScanner::shown(bytes_.substr(begin, end - begin)) +
-                     " is not an index");
-  }
-
-  void require_numbers(std::size_t& at) const {
-    const std::size_t begin = at, close = std::min(bytes_.find('>', at), bytes_.size());
-    const std::string_view tag = bytes_.substr(begin, close - begin);
-    at = close;
-    if (tag.ends_with('/')) return;
-    std::size_t held = 0;
-    for (at = std::min(at + 1, bytes_.size());; ++held) {
-      at = std::min(bytes_.find_first_not_of(blanks, at), bytes_.size());
-      if (at == bytes_.size() || bytes_[at] == '<') break;
-      const std::size_t end = std::min(bytes_.find_first_of("< \t\r\n", at), bytes_.size());
-      const std::string_view word = bytes_.substr(at, end - at);
-      double value;
-      if (!TextScanner::parse(word, value))
-        fault(at, "<float_array>: " + TextScanner::shown(word) + " is not a number");
-      at = end;
-    }
-    const std::size_t count = tag.find("count=");
-    if (count == tag.npos) return;
-    std::size_t promised = 0;
-    const std::string_view digits = tag.substr(std::min(count + 7, tag.size()));
-    std::from_chars(digits.data(), digits.data() + digits.size(), promised);
-    if (promised != held)
-      fault(begin, "<float_array>: holds " + std::to_string(held) +
-                       " numbers, where its count is " + std::to_string(promised));
-  }
-
-  /// Values without a name are none that count.
-  void require_names(std::size_t at) const {
-    const std::size_t end = std::min(bytes_.find("</accessor", at), bytes_.size());
-    const std::string_view accessor = bytes_.substr(at, end - at);
-    std::size_t all = 0;
-    for (std::size_t param = 0; (param = accessor.find("<param", param)) != accessor.npos;
-         ++param) {
-      const std::size_t close = std::min(accessor.find('>', param), accessor.size());
-      if (accessor.substr(param, close - param).find(" name=") != accessor.npos) return;
-      ++all;
-    }
-    if (all >= 3) fault(at, "<accessor>: none of its values has a name");
-  }
-
-  std::string_view bytes_;
-  const std::string& name_;
-};
 
 /// The JSON of a glTF, of text or of a GLB's first chunk; null where there is none.
 Json gltf_of(std::string_view bytes) {
@@ -131,11 +57,47 @@ void require_float_positions(const Json& gltf, const std::string& name) {
     for (const Json& primitive : mesh.at("primitives")) {
       const Json& attributes = primitive.at("attributes");
       if (!attributes.contains("POSITION")) continue;
-      const auto accessor = attributes.at("POSITION").get<std::size_t>();
-      if (gltf.at("accessors").at(accessor).at("componentType") != float32)
-        throw Unusable(
-            name, "accessor " + std::to_string(accessor) + ": only positions of float32 are read");
+      const auto number = attributes.at("POSITION").get<std::size_t>();
+      const Json& accessor = gltf.at("accessors").at(number);
+      if (accessor.at("componentType") != float32 || accessor.at("type") != "VEC3")
+        throw Unusable(name, "accessor " + std::to_string(number) +
+                                 ": only positions of three float32 are read");
     }
+}
+
+/// Targets that are weighed with 0 change nothing.
+bool has_weight(const Json& of) {
+  for (const Json& weight : of.value("weights", Json::array()))
+    if (weight != 0) return true;
+  return false;
+}
+
+/// What a node does that is not applied, or that assimp applies as if it were a transformation.
+void require_nodes(const Json& gltf, const std::string& name) {
+  const Json nodes = gltf.value("nodes", Json::array()),
+             meshes = gltf.value("meshes", Json::array());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Json& node = nodes[i];
+    const auto fault = [&](const std::string& what) {
+      throw Unusable(name, "node " + std::to_string(i) + ": " + what);
+    };
+    if (node.contains("mesh") && node.contains("skin")) fault("skins are not applied, so not read");
+    if (node.contains("mesh") &&
+        has_weight(node.contains("weights") ? node : meshes.at(node.at("mesh").get<std::size_t>())))
+      fault("morph targets are not applied, so not read");
+    if (node.contains("matrix")) {
+      const auto matrix = node.at("matrix").get<std::vector<double>>();
+      if (matrix.size() != 16 || matrix[3] != 0 || matrix[7] != 0 || matrix[11] != 0 ||
+          matrix[15] != 1)
+        fault("its matrix is no 4 by 4 whose last row is 0 0 0 1");
+    }
+    if (node.contains("rotation")) {
+      double square = 0;
+      for (const Json& each : node.at("rotation")) square += std::pow(each.get<double>(), 2);
+      if (std::abs(std::sqrt(square) - 1) > 1e-3)
+        fault("its rotation is no quaternion of length 1");
+    }
+  }
 }
 
 std::size_t triangles_of(const Json& gltf, const Json& primitive) {
@@ -147,6 +109,38 @@ std::size_t triangles_of(const Json& gltf, const Json& primitive) {
   const int mode = primitive.value("mode", triangles);
   if (mode == triangles) return count / 3;
   return mode == strip || mode == fan ? std::max<std::size_t>(count, 2) - 2 : 0;
+}
+
+using Transformation = SceneNode::Transformation;
+
+Transformation transformation_of(const Json& node) {
+  Transformation t = Transformation::Identity();
+  if (node.contains("matrix")) {
+    const auto matrix = node.at("matrix").get<std::array<double, 16>>();
+    return Eigen::Map<const Eigen::Matrix4d>(matrix.data()).topRows<3>();
+  }
+  const auto three = [&](const char* name, double otherwise) {
+    const auto n = node.value(name, std::array<double, 3>{otherwise, otherwise, otherwise});
+    return Vec3<double>(n[0], n[1], n[2]);
+  };
+  const auto [x, y, z, w] = node.value("rotation", std::array<double, 4>{0, 0, 0, 1});
+  t.leftCols<3>() = Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix() *
+                    three("scale", 1).asDiagonal();
+  t.col(3) = three("translation", 0);
+  return t;
+}
+
+void append_transformations(std::vector<Transformation>& all, const Json& gltf, const Json& node) {
+  all.push_back(transformation_of(node));
+  for (const Json& child : node.value("children", Json::array()))
+    append_transformations(all, gltf, gltf.at("nodes").at(child.get<std::size_t>()));
+}
+
+/// Calls with each root of the scene that is shown.
+template <class Visit>
+void each_root(const Json& gltf, const Visit& visit) {
+  const Json& scene = gltf.at("scenes").at(gltf.value("scene", std::size_t{0}));
+  for (const Json& root : scene.at("nodes")) visit(gltf.at("nodes").at(root.get<std::size_t>()));
 }
 
 std::size_t triangles_below(const Json& gltf, const Json& node) {
@@ -163,13 +157,19 @@ std::size_t triangles_below(const Json& gltf, const Json& node) {
 }  // namespace
 
 void require_what_assimp_reads(std::string_view bytes, const std::string& name) {
-  if (bytes.substr(0, 4096).find("<COLLADA") != bytes.npos)
-    return Collada(bytes, name).require_lists();
+  if (bytes.starts_with("glTF") && bytes.size() >= 12) {
+    std::uint32_t length;
+    std::memcpy(&length, bytes.data() + 8, sizeof length);
+    if (length > bytes.size())
+      throw Unusable(name, "truncated: holds " + std::to_string(bytes.size()) + " of " +
+                               std::to_string(length) + " bytes");
+  }
   const Json gltf = gltf_of(bytes);
   if (gltf.is_null()) return;
   try {
     require_extensions(gltf, name);
     require_float_positions(gltf, name);
+    require_nodes(gltf, name);
   } catch (const Json::exception&) {
     // Other than the format has it: assimp says what.
   }
@@ -180,13 +180,23 @@ std::optional<std::size_t> triangles_of_gltf(std::string_view bytes) {
   if (gltf.is_null()) return std::nullopt;
   try {
     std::size_t sum = 0;
-    const Json& scene = gltf.at("scenes").at(gltf.value("scene", std::size_t{0}));
-    for (const Json& root : scene.at("nodes"))
-      sum += triangles_below(gltf, gltf.at("nodes").at(root.get<std::size_t>()));
+    each_root(gltf, [&](const Json& root) { sum += triangles_below(gltf, root); });
     return sum;
   } catch (const Json::exception&) {
     return std::nullopt;
   }
+}
+
+std::vector<Transformation> transformations_of_gltf(std::string_view bytes) {
+  const Json gltf = gltf_of(bytes);
+  std::vector<Transformation> all;
+  if (gltf.is_null()) return all;
+  try {
+    each_root(gltf, [&](const Json& root) { append_transformations(all, gltf, root); });
+  } catch (const Json::exception&) {
+    all.clear();
+  }
+  return all;
 }
 
 }  // namespace bvlab

@@ -10,23 +10,6 @@ namespace {
 
 using namespace std::string_view_literals;
 
-void append_utf8(std::string& text, std::uint32_t code) {
-  const auto put = [&](std::uint32_t byte) { text += static_cast<char>(byte); };
-  if (code < 0x80) return put(code);
-  if (code < 0x800) {
-    put(0xc0 | code >> 6);
-  } else {
-    if (code < 0x10000) {
-      put(0xe0 | code >> 12);
-    } else {
-      put(0xf0 | code >> 18);
-      put(0x80 | (code >> 12 & 0x3f));
-    }
-    put(0x80 | (code >> 6 & 0x3f));
-  }
-  put(0x80 | (code & 0x3f));
-}
-
 /// Where the more significant byte of each pair stands.
 enum class HighByte : std::size_t { first = 0, second = 1 };
 
@@ -50,6 +33,23 @@ std::string from_utf16(std::string_view bytes, HighByte high, const std::string&
 }
 
 }  // namespace
+
+void append_utf8(std::string& text, std::uint32_t code) {
+  const auto put = [&](std::uint32_t byte) { text += static_cast<char>(byte); };
+  if (code < 0x80) return put(code);
+  if (code < 0x800) {
+    put(0xc0 | code >> 6);
+  } else {
+    if (code < 0x10000) {
+      put(0xe0 | code >> 12);
+    } else {
+      put(0xf0 | code >> 18);
+      put(0x80 | (code >> 12 & 0x3f));
+    }
+    put(0x80 | (code >> 6 & 0x3f));
+  }
+  put(0x80 | (code & 0x3f));
+}
 
 std::string_view as_utf8(std::string_view bytes, std::string& room, const std::string& name) {
   if (bytes.starts_with("\xef\xbb\xbf")) return bytes.substr(3);

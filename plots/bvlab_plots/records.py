@@ -64,6 +64,7 @@ def read(record, table="", needs=(), clock="wall"):
         return rows
     check_compared(rows, name, kind)
     settings = setting_columns(rows, kind)
+    check_numbers(rows, name, [column for column in rows if column not in settings])
     rows, settings = with_peers(rows, definition, settings)
     rows = with_coherence(rows, record / f"{name}.coherence.csv", names_in(definition))
     rows = own_times(rows)
@@ -127,6 +128,17 @@ def check_compared(rows, name, kind):
     blank = pd.to_numeric(rows[column], errors="coerce").isna() if column else pd.Series(False, rows.index)
     if blank.any():
         raise Refused(f"{name}.csv: {column} is empty in {blank.sum()} of {len(rows)} rows: nobody compared their answers")
+
+
+def check_numbers(rows, name, measured):
+    """What was measured is a number, or blank where nothing was: times always, other columns where most are."""
+    for column in measured:
+        text = rows[column].astype(str).where(rows[column].notna(), "")
+        numbers = pd.to_numeric(rows[column], errors="coerce")
+        wrong = (text != "") & ~np.isfinite(numbers)
+        if wrong.any() and (words.is_time(column) or wrong.sum() < (text != "").sum() / 2):
+            row = int(np.flatnonzero(wrong)[0])
+            raise Refused(f"{name}.csv: row {row + 1}: {column}: {text.iloc[row]!r} is no number")
 
 
 def read_toml(path):

@@ -197,6 +197,17 @@ class Refuses(unittest.TestCase):
             (record / "own.csv").write_text(text[:-4])
             self.refuse(record, mentions=["own.csv", "cut off"])
 
+    def test_damaged_numbers(self):
+        """A time or a count that is none would be left out of a median without a word."""
+        for column in ("time_ns", "n_v"):
+            for wrong in ("12.3.4", "1e999"):
+                def damaged(rows):
+                    rows = rows.astype({column: object})
+                    rows.loc[rows.index[3], column] = wrong
+                    return rows
+                with tempfile.TemporaryDirectory() as folder:
+                    self.refuse(own_record(folder, change=damaged), mentions=["own.csv: row 4", column, "is no number"])
+
     def test_an_unfinished_record_says_so_in_its_figures(self):
         with tempfile.TemporaryDirectory() as folder:
             record = own_record(folder)

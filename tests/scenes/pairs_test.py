@@ -163,6 +163,23 @@ values = ["recursive", "margins"]
         self.assertGreater(json.loads((self.folder / "totals.json").read_text())["touching"], 30)
         self.assertEqual(run("scene", "parts", "--joints", "glue", "--out", trace).returncode, 2)
 
+    def test_parts_of_a_file(self):
+        """Each a body with its pose and mesh; names lead nowhere else."""
+        cube = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
+        (self.folder / "a.obj").write_text(cube + "o base\nf 1 2 3\no ../../lid x\nf 3 2 1\nf 1 3 2\n")
+        trace, folder = self.folder / "file.npy", self.folder / "of-file"
+        done = run("scene", "file", self.folder / "a.obj", "--scale", 2, "--out", trace, "--meshes", folder)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(np.load(trace).tolist(), [[[0, 0, 0, 1, 0, 0, 0]] * 2])
+        self.assertEqual(sorted(file.name for file in folder.iterdir()), ["0-base.off", "1-______lid_x.off"])
+        self.assertEqual((folder / "0-base.off").read_text(), "OFF\n3 1 0\n0 0 0\n2 0 0\n0 2 0\n3 0 1 2\n")
+        for words, said in ((["nowhere.obj", "--out", trace], "nowhere.obj: No such file"),
+                            ([self.folder / "a.obj", "--out", self.folder / "a.obj"], "is the place of file"),
+                            ([self.folder / "a.obj", "--out", trace, "--scale", 0], "scale: must be finite and above 0")):
+            done = run("scene", "file", *words)
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1))
+            self.assertIn(said, done.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()

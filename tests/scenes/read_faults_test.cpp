@@ -265,6 +265,15 @@ TEST(ReadFaults, PlyRowsOfAnotherLength) {
             "a.ply: line 18: vertex 8 does not exist: there are 8, from 0");
 }
 
+/// Elements that others made of vertices.
+TEST(ReadFaults, PlyElementsThatAreNotRead) {
+  const std::string fans = "element trifans 1\n" + replaced(face_list, "uchar", "int");
+  const Outcome outcome =
+      read(replaced(ply(), "end_header\n", fans + "end_header\n") + "4 0 1 2 3\n", "a.ply");
+  EXPECT_EQ(outcome.said, "a.ply: element trifans, which lists vertices, is passed over");
+  EXPECT_EQ(surface(outcome.mesh), surface(cube()));
+}
+
 /// Rows of the cube as binary PLY; `Index` is the type of a strip's or face's entries.
 template <class Index>
 std::string binary_ply(const std::string& types, bool big,
@@ -434,7 +443,10 @@ TEST(ReadFaults, OffHeaders) {
         << header;
   EXPECT_EQ(refusal(off("OFFx 12 0\n"), "a.off"),
             "a.off: line 1: not an OFF file: begins with 'OFFx'");
-  EXPECT_EQ(refusal(off("OFF\n9 12 0\n"), "a.off"), "a.off: truncated: holds 11 of 12 faces");
+  EXPECT_EQ(refusal(off("OFF\n9 12 0\n"), "a.off"),
+            "a.off: truncated: holds 11 of 12 faces, one a line");
+  EXPECT_EQ(refusal(off("OFF\n9 11 0\n"), "a.off"),
+            "a.off: line 11: a vertex of 4 values, where the first has 3");
   EXPECT_EQ(refusal(off("OFF\n7 12 0\n"), "a.off"),
             "a.off: holds 20 lines of vertices and faces, where the header promises 7 and 12");
   EXPECT_EQ(refusal(off("OFF\n8 10 0\n"), "a.off"),
@@ -465,6 +477,12 @@ TEST(ReadFaults, Obj) {
         << word;
   EXPECT_EQ(refusal(obj() + "call b.obj\n", "a.obj"),
             "a.obj: line 21: call: other files are not read");
+  for (const std::string form :
+       {"surf 0 1 0 1 1 2 3 4\nend", "bsp 1 2 3", "bzp 1 2 3", "cdp 1 2 3"}) {
+    const Outcome outcome = read("cstype bezier\n" + obj() + form + "\n", "a.obj");
+    EXPECT_EQ(outcome.said, "a.obj: surfaces of free form are left out");
+    EXPECT_EQ(surface(outcome.mesh), surface(cube()));
+  }
   expect_cube(obj() + "usemtl a\nmtllib b c\ns off\nlod 1\nl 1 2\np 1\nvp 1 2\n", "a.obj",
               "passed over");
 }

@@ -21,7 +21,7 @@ using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
 TEST(ReadMesh, OffKeepsEveryDigitAndTheOrder) {
   const TriangleMesh mesh = parse_mesh(
-      "OFF # a comment\n\n4 3 0\n0.1 0 0\n1 0 0 255 0 0\n0 +1e-320 0\n0 0 1\r\n"
+      "OFF # a comment\n\n4 3 0\n0.1 0 0 1 2 3\n1 0 0 255 0 0\n0 +1e-320 0 4 5 6\n0 0 1 7 8 9\r\n"
       "3 2 1 0\n3 1 1 1 0.5 0.5 0.5\n3 2 1 0\n",
       "a.off");
   EXPECT_EQ(mesh.triangles, (Triangles{{2, 1, 0}, {1, 1, 1}, {2, 1, 0}}));
@@ -51,8 +51,8 @@ TEST(ReadMesh, OffFaultsSayWhere) {
   EXPECT_EQ(off("4OFF\n"), "a.off: line 1: '4OFF': only three coordinates a vertex are read");
   EXPECT_EQ(off("OFF\n-1 1 0\n"), "a.off: line 2: the number of vertices cannot be -1");
   EXPECT_EQ(off("OFF\n4000000000 4000000000 0\n0 0 0\n"),
-            "a.off: truncated: holds 1 of 4000000000 vertices");
-  EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n"), "a.off: truncated: holds 0 of 1 faces");
+            "a.off: truncated: holds 1 of 4000000000 vertices, one a line");
+  EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n"), "a.off: truncated: holds 0 of 1 faces, one a line");
   EXPECT_EQ(off("OFF\n1 1 0\n0 0\n3 0 0 0\n"), "a.off: line 3: a coordinate is missing");
   EXPECT_EQ(off("OFF\n1 1 0\n0 nan 0\n3 0 0 0\n"), "a.off: line 3: coordinate 'nan' is not finite");
   EXPECT_EQ(off("OFF\n1 1 0\n0 1e999 0\n3 0 0 0\n"), "a.off: line 3: coordinate '1e999' is not finite");

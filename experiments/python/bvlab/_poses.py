@@ -113,7 +113,7 @@ def _fault(matrix: NDArray[np.float64], tolerance: float) -> str:
         faults.append(f"mirrored: its determinant is {np.linalg.det(matrix):.6g}")
     if stretch[0] / stretch[2] - 1 <= 2 * tolerance:
         if (np.abs(stretch - 1) > tolerance).any():
-            faults.append(f"scaled by {stretch[1]:.6g}")
+            faults.append(f"scaled by {stretch[np.argmax(np.abs(stretch - 1))]:.6g}")
     else:
         # Along its own axes, or those of the world, it can be scaled by several factors; all else is shear.
         angles, lengths = zip(*map(_axes_of, (matrix, matrix.T)))

@@ -15,6 +15,7 @@
 #include "experiments/scenes/extent.hpp"
 #include "experiments/scenes/read_mesh.hpp"
 #include "experiments/scenes/trace.hpp"
+#include "tests/scenes/zipped.hpp"
 
 namespace bvlab::fuzz {
 namespace {
@@ -165,8 +166,12 @@ void mesh(std::string_view bytes) {
 
 void scene(std::string_view bytes) {
   if (bytes.empty()) return;
-  static const std::string names[] = {"a.dae", "a.gltf"};
-  mesh_and_parts(bytes.substr(1), names[static_cast<unsigned char>(bytes[0]) % 2]);
+  const auto kind = static_cast<unsigned char>(bytes[0]);
+  bytes.remove_prefix(1);
+  if (kind % 2 != 0) return void(mesh_and_parts(bytes, "a.gltf"));
+  if (kind % 4 == 0) return void(mesh_and_parts(bytes, "a.dae"));
+  // The model of a 3MF file, or all of that file.
+  mesh_and_parts(kind % 8 == 2 ? as_3mf(bytes) : std::string(bytes), "a.3mf");
 }
 
 }  // namespace bvlab::fuzz

@@ -232,6 +232,20 @@ class Replay(ProgramTest):
         self.assertTrue((self.folder / "out.npy").is_symlink())
         self.array("elsewhere/out.npy", "u1", (3, 6))
 
+    def test_a_link_to_a_file_that_is_not_there_yet(self):
+        self.write("poses.npy", poses(3, 4))
+        (self.folder / "elsewhere").mkdir()
+        for name, target in (("out.npy", "elsewhere/out.npy"), ("same.json", "elsewhere/out.npy"),
+                             ("lost.npy", "nowhere/out.npy"), ("self.npy", "self.npy")):
+            (self.folder / name).symlink_to(target)
+        given = ["replay", "--mesh", "triangle.off", "--trace", "poses.npy"]
+        self.refuse(*given, "--out", "out.npy", "--json", "same.json", mentions=["out.npy", "--out", "--json"])
+        self.refuse(*given, "--out", "lost.npy", "--json", "out.json", mentions=["nowhere", "No such file"])
+        self.refuse(*given, "--out", "self.npy", "--json", "out.json", mentions=["self.npy", "symbolic links"])
+        self.take(*given, "--out", "out.npy", "--json", "out.json")
+        self.assertTrue((self.folder / "out.npy").is_symlink())
+        self.array("elsewhere/out.npy", "u1", (3, 6))
+
 
 class Boxes(ProgramTest):
     def boxes(self, trace, *more):
