@@ -2,8 +2,8 @@
 /// The recommended configuration for the queries touching and contacts, where triangles are about
 /// as long as wide, as in scans and simulations: slab-boxes (slab_box.hpp) in wide trees that are
 /// made on demand, as many children per node as a register has lanes, tested in the bodies' own
-/// frames, with margins from frame to frame. recommended_for.hpp has others and chooses, as `bvlab replay --recommended`
-/// does. For distances see recommended_distances.hpp.
+/// frames, with margins from frame to frame. recommended_for.hpp has others and chooses, as `bvlab
+/// replay --recommended` does. For distances see recommended_distances.hpp.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -80,9 +80,9 @@ using MarginsOver = WideConfiguration<Trees, WideMargins>;
 template <class Trees>
 using RootsOf = WideConfiguration<Trees, NoMemory>;
 
-/// Trees are made on demand: a node when a traversal first opens it. Meshes must outlive hierarchies.
-using Recommended =
-    MarginsOver<WideTrees<SlabBox<float>, native_fan_out<float>, SiblingsKernel, builds::OnDemand,
-                          Fit::published, native_fan_out<float>>>;
+/// Trees are made on demand: a node when a traversal first opens it. Meshes must outlive
+/// hierarchies.
+using Recommended = MarginsOver<WideTrees<SlabBox<float>, native_fan_out<float>, SiblingsKernel,
+                                          builds::OnDemand, Fit::published, native_fan_out<float>>>;
 
 }  // namespace bvlab

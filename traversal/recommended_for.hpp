@@ -98,7 +98,8 @@ struct RecommendedCandidate {
   }
 };
 
-/// What a tree that is made on demand costs before anything of it is made, in nanoseconds a triangle.
+/// What a tree that is made on demand costs before anything of it is made, in nanoseconds a
+/// triangle.
 inline constexpr double on_demand = 50;
 
 /// The candidates; one from the roots follows the one with the same trees. Small leaves from the
@@ -136,8 +137,8 @@ class RunCosts {
       : triangles_(static_cast<double>(triangles)), pairs_(static_cast<double>(pairs)) {}
 
   /// Whether a candidate with such a build is worth trying: whether it would still be cheaper than
-  /// the best so far if it saved most of what a pair costs, and its trees were built twice. The first
-  /// one is.
+  /// the best so far if it saved most of what a pair costs, and its trees were built twice. The
+  /// first one is.
   bool may_pay(double build) const {
     constexpr double most_saved = 0.7;
     return !is_known_ || 2 * build * triangles_ < most_saved * pairs_ * pair_;

@@ -41,8 +41,8 @@ std::vector<NamedMesh> meshes_of(const S& scene, const Arguments& arguments) {
   if constexpr (HasOwnMeshes<S>) return scene.own_meshes();
   std::vector<NamedMesh> meshes;
   for (const auto& file : arguments.files)
-    meshes.push_back({std::filesystem::path(file).stem().string(),
-                      read_mesh(file, {.scale = arguments.scale})});
+    meshes.push_back(
+        {std::filesystem::path(file).stem().string(), read_mesh(file, {.scale = arguments.scale})});
   for (const auto& name : arguments.names)
     for (auto& mesh : named_meshes(name, arguments.polygons)) meshes.push_back(std::move(mesh));
   if (meshes.empty()) meshes = named_meshes(default_meshes<S>(), arguments.polygons);

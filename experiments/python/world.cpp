@@ -204,11 +204,11 @@ class PyWorld : public MadeByCalls {
   std::invoke_result_t<const Work&> fresh(const Work& work) {
     return alone([&] {
       if (is_stale_)
-        throw std::runtime_error(
-            std::string("World: ") +
-            (is_updated_ ? "bodies were moved, added or removed since the last update"
-                         : "there was no update yet") +
-            "; call update() first");
+        throw std::runtime_error(std::string("World: ") +
+                                 (is_updated_
+                                      ? "bodies were moved, added or removed since the last update"
+                                      : "there was no update yet") +
+                                 "; call update() first");
       return work();
     });
   }
@@ -347,9 +347,7 @@ class PyWorld : public MadeByCalls {
     auto near = near_->pairs(stands_, present_, below);
     std::erase_if(near, [&](const ObjectPair& pair) { return !chosen_(pair); });
     const auto all = answers().distances(near, stands_);
-    const auto mesh = [&](std::uint32_t i) -> const TriangleMesh& {
-      return *of(i).mesh;
-    };
+    const auto mesh = [&](std::uint32_t i) -> const TriangleMesh& { return *of(i).mesh; };
     Within kept;
     for (std::size_t k = 0; k < near.size(); ++k) {
       if (!(all[k].distance <= below)) continue;
@@ -411,27 +409,24 @@ several threads run one after the other.
 
 pairs, without, groups   which pairs are asked about, as in replay: pairs (k, 2) alone, without (k, 2),
                          no pairs within a group (objects,)); of the bodies that are given here)")
-      .def(py::init([](const py::object& meshes, std::optional<std::size_t> objects,
-                       const std::optional<std::string>& volume,
-                       const std::optional<std::string>& strategy,
-                       const std::optional<std::uint32_t>& fan_out,
-                       const std::optional<std::string>& frame,
-                       const std::optional<std::string>& kernel,
-                       const std::optional<std::string>& configuration,
-                       const std::optional<std::string>& build,
-                       std::optional<std::uint32_t> leaf_size,
-                       const std::optional<std::string>& fit, const std::string& precision,
-                       int threads, const py::object& pairs, const py::object& without,
-                       const py::object& groups) {
-             VariantWords words{volume, strategy,      "touching", fan_out,   frame,
-                                kernel, configuration, build,      leaf_size, fit,
-                                precision, 0};
-             if (!words.said() && !configuration) words.configuration = "recommended";
-             check(variant_from(words));
-             check_threads(threads);
-             return std::make_shared<PyWorld>(meshes, objects, words, threads,
-                                              pair_arrays(pairs, without, groups));
-           }),
+      .def(py::init(
+               [](const py::object& meshes, std::optional<std::size_t> objects,
+                  const std::optional<std::string>& volume,
+                  const std::optional<std::string>& strategy,
+                  const std::optional<std::uint32_t>& fan_out,
+                  const std::optional<std::string>& frame, const std::optional<std::string>& kernel,
+                  const std::optional<std::string>& configuration,
+                  const std::optional<std::string>& build, std::optional<std::uint32_t> leaf_size,
+                  const std::optional<std::string>& fit, const std::string& precision, int threads,
+                  const py::object& pairs, const py::object& without, const py::object& groups) {
+                 VariantWords words{volume,        strategy, "touching", fan_out, frame,     kernel,
+                                    configuration, build,    leaf_size,  fit,     precision, 0};
+                 if (!words.said() && !configuration) words.configuration = "recommended";
+                 check(variant_from(words));
+                 check_threads(threads);
+                 return std::make_shared<PyWorld>(meshes, objects, words, threads,
+                                                  pair_arrays(pairs, without, groups));
+               }),
            "meshes"_a = py::tuple(), py::kw_only(), "objects"_a = py::none(),
            "volume"_a = py::none(), "strategy"_a = py::none(), "fan_out"_a = py::none(),
            "frame"_a = py::none(), "kernel"_a = py::none(), "configuration"_a = py::none(),

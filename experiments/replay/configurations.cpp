@@ -50,11 +50,14 @@ void set_as_published(Variant& variant) {
 constexpr Configuration list[] = {
     {"recommended",
      "touching and contacts: the cheapest, builds included, in counted samples of the motion, of "
-     "(1) slab-box, kernel siblings, built on-demand, leaves as large as a register; (2) obb, kernel "
+     "(1) slab-box, kernel siblings, built on-demand, leaves as large as a register; (2) obb, "
+     "kernel "
      "mixed, built bottom-up, fit tight, leaves of 4; either of them with margins or recursive; "
      "with margins (3) slab-box, kernel siblings, built bottom-up, leaves of 4; (4) obb, kernel "
-     "siblings, built bottom-up, fit tight, leaves of 8. In short runs, and where the motion is not "
-     "known, (1) with margins; a World of long triangles changes to (2). distance: by the motion one of "
+     "siblings, built bottom-up, fit tight, leaves of 8. In short runs, and where the motion is "
+     "not "
+     "known, (1) with margins; a World of long triangles changes to (2). distance: by the motion "
+     "one of "
      "(1), (2), and rss in binary "
      "trees, frame body, built bottom-up, fit tight, leaves of 1, witness; the last where the "
      "motion is not known",
@@ -118,10 +121,10 @@ double mean_motion(std::span<const TriangleMesh> meshes, const Trace& trace) {
   return count ? sum / static_cast<double>(count) : 0;
 }
 
-/// Distances of bunnies of 500 triangles take 30 us a pair with the trees that are built fastest and
-/// 15 with others, whose builds take 7 us a triangle more. Of these, oriented boxes with margins take
-/// .6 of the time of rectangle swept spheres at .001 radii and .1 degrees a frame, .85 at .003 and .3,
-/// 1.2 at .06 and 1.
+/// Distances of bunnies of 500 triangles take 30 us a pair with the trees that are built fastest
+/// and 15 with others, whose builds take 7 us a triangle more. Of these, oriented boxes with
+/// margins take .6 of the time of rectangle swept spheres at .001 radii and .1 degrees a frame, .85
+/// at .003 and .3, 1.2 at .06 and 1.
 Chosen recommended_distances(Variant variant, std::span<const TriangleMesh> meshes,
                              const Trace& trace) {
   constexpr double slow = 0.007;
@@ -149,8 +152,7 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
   const std::vector<Option> all = options_for(variant);
   if (all.empty() || trace.pairs() == 0) return recommended(variant, meshes);
   RunCosts costs(triangles_of(meshes), trace.frames * trace.pairs());
-  Chosen best{all[0].variant,
-              std::string(all[0].name) + ": the run is too short to repay samples"};
+  Chosen best{all[0].variant, std::string(all[0].name) + ": the run is too short to repay samples"};
   if (samples.frames.empty()) return best;
   const Trace sampled = part_of(trace, samples.frames);
   std::vector<std::vector<Pose>> poses(sampled.frames, std::vector<Pose>(sampled.objects));
@@ -168,8 +170,8 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
     double cost = 0;
     for (std::size_t k = 0; k < series.size(); ++k)
       if (SampledFrames::counted(k))
-        cost += option.unit(pairs_of_moved(poses[k - 1], poses[k]), series[k].front,
-                            series[k].n_v, series[k].n_p);
+        cost += option.unit(pairs_of_moved(poses[k - 1], poses[k]), series[k].front, series[k].n_v,
+                            series[k].n_p);
     cost /= static_cast<double>(samples.size() * trace.pairs());
     tried << (tried.tellp() > 0 ? ", " : "") << option.name << ' ' << std::setprecision(3) << cost;
     if (costs.is_best(option.build, cost)) best = {option.variant, std::string(option.name)};
@@ -229,9 +231,8 @@ Chosen configured(Variant variant, std::string_view configuration,
   Chosen chosen = trace ? recommended(std::move(variant), meshes, *trace, broad_phase, *trees)
                         : recommended(std::move(variant), meshes);
   // Trees of what was not chosen go; those of what was are the run's.
-  std::erase_if(*trees, [of = trees_of(chosen.variant)](const auto& each) {
-    return each.first != of;
-  });
+  std::erase_if(*trees,
+                [of = trees_of(chosen.variant)](const auto& each) { return each.first != of; });
   chosen.seconds = seconds_since(start);
   for (const auto& [name, each] : *trees) chosen.seconds -= each.seconds;
   chosen.trees = std::move(trees);

@@ -99,7 +99,7 @@ struct ReplayResult {
   /// Of all trees, those of kernel `siblings`, and how many of them have been made.
   std::size_t nodes = 0, nodes_made = 0;
   std::uint64_t n_b = 0, n_u = 0, n_v = 0, n_p = 0;  ///< where counted
-  std::uint64_t considered = 0;        ///< pairs, over all frames, for which anything was tested
+  std::uint64_t considered = 0;  ///< pairs, over all frames, for which anything was tested
   /// Pairs whose boxes overlap, over all frames; nothing where no broad phase was used.
   std::optional<std::uint64_t> near;
   double front = 0;                    ///< mean entries per pair and frame

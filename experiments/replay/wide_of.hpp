@@ -17,8 +17,8 @@
 #include "experiments/replay/wide_entry.hpp"
 #include "hierarchies/builds.hpp"
 #include "traversal/strategies/by_cost.hpp"
-#include "traversal/wide/list_memory.hpp"
 #include "traversal/wide/kernels.hpp"
+#include "traversal/wide/list_memory.hpp"
 #include "traversal/wide/wide_pairs.hpp"
 
 namespace bvlab {
@@ -80,9 +80,10 @@ template <class V>
 concept WideVolume = std::same_as<typename V::scalar, float> &&
                      (HasSiblingTest<V> || (std::same_as<Posed<V>, V> && PlacedRelatively<V>));
 
-/// Calls `with` with what pairs keep under the variant's strategy, whose name and parameter have been
-/// checked. Steps of these kernels open one node or both by the nodes' sizes, so that the two ways
-/// to recur are one. Margins begin and end with the motion of each pair, so they are `adaptive`.
+/// Calls `with` with what pairs keep under the variant's strategy, whose name and parameter have
+/// been checked. Steps of these kernels open one node or both by the nodes' sizes, so that the two
+/// ways to recur are one. Margins begin and end with the motion of each pair, so they are
+/// `adaptive`.
 template <class With>
 void with_memory(const Variant& variant, const With& with) {
   const std::string_view name = name_of(variant.strategy);
@@ -147,8 +148,9 @@ template <BoundingVolume V, class Query>
 std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, std::size_t objects,
                                         const Variant& variant, int threads) {
   double build_seconds = 0;
-  return world_of_pairs(wide_pairs<V, Query>(meshes, objects, variant, threads, nullptr, build_seconds),
-                        variant, threads);
+  return world_of_pairs(
+      wide_pairs<V, Query>(meshes, objects, variant, threads, nullptr, build_seconds), variant,
+      threads);
 }
 
 template <BoundingVolume V>

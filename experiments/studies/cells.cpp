@@ -139,8 +139,7 @@ void set_lengths_of_recordings(std::vector<Cell>& cells) {
     auto& held = known[cell["trace"]];
     if (held.empty()) {
       const Trace trace = read_trace(cell["trace"]);
-      held = {{"objects", std::to_string(trace.objects)},
-              {"frames", std::to_string(trace.frames)}};
+      held = {{"objects", std::to_string(trace.objects)}, {"frames", std::to_string(trace.frames)}};
     }
     for (auto& [name, value] : cell.parameters)
       for (const auto& [key, text] : held)

@@ -135,8 +135,8 @@ class RangeSplits {
                          mean = t[0] / 3 + t[1] / 3 + t[2] / 3;
       const auto widened = [](double x, float by) {
         const auto y = static_cast<float>(x);
-        return y + by * (std::abs(y) * (8 * unit_roundoff<float>) +
-                         4 * std::numeric_limits<float>::denorm_min());
+        return y + by * (std::abs(y) * (8 * unit_roundoff<float>)+4 *
+                         std::numeric_limits<float>::denorm_min());
       };
       for (int k = 0; k < 3; ++k) {
         low[k] = widened(least[k], -1), high[k] = widened(most[k], 1);

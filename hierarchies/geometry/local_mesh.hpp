@@ -55,8 +55,8 @@ class LocalMesh {
     return local;
   }
 
-  /// The triangles relative to origin(). Vertices that no triangle uses are within their box, unless
-  /// they stay as they are.
+  /// The triangles relative to origin(). Vertices that no triangle uses are within their box,
+  /// unless they stay as they are.
   const TriangleMesh& mesh() const { return moved_ ? *moved_ : *mesh_; }
   const Vec3<double>& origin() const { return origin_; }
   /// Around the triangles, relative to origin(); empty for a mesh as it is given.
@@ -99,7 +99,8 @@ class LocalMesh {
     Box box{mesh.corners(0)[0], mesh.corners(0)[0]};
     for (const auto& triangle : mesh.triangles)
       for (const auto v : triangle)
-        box.low = box.low.cwiseMin(mesh.vertices[v]), box.high = box.high.cwiseMax(mesh.vertices[v]);
+        box.low = box.low.cwiseMin(mesh.vertices[v]),
+        box.high = box.high.cwiseMax(mesh.vertices[v]);
     return box;
   }
   /// Whether triangles use, for each side of the vertices' box, the first vertex that lies there.
@@ -108,10 +109,9 @@ class LocalMesh {
     std::array<std::uint32_t, 6> on_side;
     for (int k = 0; k < 6; ++k) {
       const double side = k < 3 ? box.low[k] : box.high[k - 3];
-      const auto at = std::ranges::find(mesh.vertices, side,
-                                        [k](const Vec3<double>& v) { return v[k % 3]; });
-      on_side[static_cast<std::size_t>(k)] =
-          static_cast<std::uint32_t>(at - mesh.vertices.begin());
+      const auto at =
+          std::ranges::find(mesh.vertices, side, [k](const Vec3<double>& v) { return v[k % 3]; });
+      on_side[static_cast<std::size_t>(k)] = static_cast<std::uint32_t>(at - mesh.vertices.begin());
     }
     std::array<std::uint32_t, 6> used{};
     for (const auto& triangle : mesh.triangles)

@@ -87,7 +87,8 @@ class WideHierarchy {
   static WideHierarchy on_demand(const TriangleMesh& mesh, std::uint32_t leaf_size)
     requires FittedToColumns<V>
   {
-    return WideHierarchy(LocalMesh(mesh, LocalMesh::Unused::as_they_are), std::min<std::uint32_t>(leaf_size, F));
+    return WideHierarchy(LocalMesh(mesh, LocalMesh::Unused::as_they_are),
+                         std::min<std::uint32_t>(leaf_size, F));
   }
 
  private:
@@ -272,9 +273,9 @@ class WideHierarchy {
     return static_cast<std::uint16_t>((1u << count) - 1);
   }
 
-  /// Room for a tree on demand. That of a large mesh is not known before it is made: a leaf may have
-  /// one triangle. Its pages cost nothing until they are written. The splits of small meshes take
-  /// less time than so many pages.
+  /// Room for a tree on demand. That of a large mesh is not known before it is made: a leaf may
+  /// have one triangle. Its pages cost nothing until they are written. The splits of small meshes
+  /// take less time than so many pages.
   void make_room_for(std::uint32_t triangles) {
     constexpr std::uint32_t small = 1024;
     std::size_t nodes = 1, leaves = 1;

@@ -18,9 +18,9 @@ Variant binary(const std::string& query) {
   return variant;
 }
 
-constexpr const char* all_strategies[] = {"recursive", "recursive-both", "witness",
-                                          "separation-list", "deferred", "deferred:3", "by-cost",
-                                          "raise", "margins", "adaptive"};
+constexpr const char* all_strategies[] = {
+    "recursive",  "recursive-both", "witness", "separation-list", "deferred",
+    "deferred:3", "by-cost",        "raise",   "margins",         "adaptive"};
 
 Variant wide(const std::string& query, const char* kernel = "siblings") {
   Variant variant = binary(query);

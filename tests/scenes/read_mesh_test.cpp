@@ -55,7 +55,8 @@ TEST(ReadMesh, OffFaultsSayWhere) {
   EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n"), "a.off: truncated: holds 0 of 1 faces, one a line");
   EXPECT_EQ(off("OFF\n1 1 0\n0 0\n3 0 0 0\n"), "a.off: line 3: a coordinate is missing");
   EXPECT_EQ(off("OFF\n1 1 0\n0 nan 0\n3 0 0 0\n"), "a.off: line 3: coordinate 'nan' is not finite");
-  EXPECT_EQ(off("OFF\n1 1 0\n0 1e999 0\n3 0 0 0\n"), "a.off: line 3: coordinate '1e999' is not finite");
+  EXPECT_EQ(off("OFF\n1 1 0\n0 1e999 0\n3 0 0 0\n"),
+            "a.off: line 3: coordinate '1e999' is not finite");
   EXPECT_EQ(off("OFF\n1 1 0\n0 1e-400 0\n3 0 0 0\n"),
             "a.off: line 3: coordinate '1e-400' is too small for float64");
   EXPECT_EQ(off("OFF\n1 1 0\n0 -0.00025E-323 0\n3 0 0 0\n"),

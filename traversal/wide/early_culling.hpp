@@ -86,8 +86,8 @@ class EarlyCulling {
  public:
   using Indices = PairSieve::Indices;
 
-  /// Adds the next body, by the support map of its mesh, which may be empty until `make_maps`. Bodies
-  /// of one mesh share one copy; returns whether this is the first of them.
+  /// Adds the next body, by the support map of its mesh, which may be empty until `make_maps`.
+  /// Bodies of one mesh share one copy; returns whether this is the first of them.
   bool add_body(const SupportMap& map) {
     const auto [known, fresh] = added_.try_emplace(&map, 0);
     if (fresh) known->second = directions_.add(map);
@@ -127,8 +127,8 @@ class EarlyCulling {
                                  Apart&& apart) const {
     return sieve.sift_batches(skips, [&](const Indices& numbers, std::size_t used) {
       const auto batch = pairs_of(pairs, numbers, used);
-      const auto gaps = directions_.gaps(batch, SeparatingDirections::normalized(batch.between),
-                                         most_directions);
+      const auto gaps =
+          directions_.gaps(batch, SeparatingDirections::normalized(batch.between), most_directions);
       const std::uint64_t near = ~bits(gaps > 0.0f);
       for (std::size_t lane = 0; lane < used; ++lane)
         if (!(near >> lane & 1)) apart(static_cast<std::size_t>(numbers[lane]), gaps[lane]);

@@ -68,8 +68,7 @@ class WidePairs {
   const Vec3<double>& mesh_origin(std::size_t i) const { return bodies_[i].hierarchy().origin(); }
 
   void put(std::uint32_t slot, const ObjectPair& pair) {
-    if (slot >= most_pairs)
-      fail(std::length_error("wide trees: more than 2^30 pairs of bodies"));
+    if (slot >= most_pairs) fail(std::length_error("wide trees: more than 2^30 pairs of bodies"));
     if (slot >= pairs_.size()) memory_.resize(slot + 1), pairs_.resize(slot + 1);
     pairs_[slot] = pair;
   }
