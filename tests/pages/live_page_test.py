@@ -88,6 +88,22 @@ class SaysWhatTheProgramSays(LivePages):
                             self.assertEqual(counts, [totals[key] for key in ("n_u", "n_v", "n_p", "n_b")])
                 self.assertNotIn("fault", browser.text("#agreement"))
 
+    def test_gaps_are_rounded_as_the_program_s(self):
+        """Without fused multiply-adds, where the program has them, an entry of nine bunnies is not due in frame 133."""
+        done = run(BVLAB, "scene", "random-walk", "--objects", 9, "--side", "4body", "--frames", 140, "--step", "1leaf", "--degrees", 5,
+                   "--out", self.folder / "nine.npy", "--meshes", self.folder / "nine")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        mesh = next((self.folder / "nine").iterdir())
+        with Browser() as browser:
+            browser.open(self.page("--mesh", mesh, "--trace", self.folder / "nine.npy", "--query", "distance", "--run", "margins"))
+            self.assertTrue(browser.wait_for(READY))
+            if browser.run("return live.engine.lanes") != lanes_of_the_program():
+                self.skipTest("the page has other lanes than the program")
+            found = browser.run(SUMS)[0]
+        done = run(BVLAB, "replay", "--mesh", mesh, "--trace", self.folder / "nine.npy", "--count", "on", "--query", "distance", "--strategy", "margins")
+        totals = json.loads(done.stdout)
+        self.assertEqual(found[:4], [totals[key] for key in ("n_u", "n_v", "n_p", "n_b")])
+
     def test_a_scripted_drag(self):
         """Bodies pulled through each other with the mouse: the poses that the page went through, given to the program,
         have its verdicts."""
