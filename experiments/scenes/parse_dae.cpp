@@ -142,38 +142,48 @@ class Collada {
   static constexpr std::string_view kinds[] = {"triangles", "polylist", "polygons", "tristrips",
                                                "trifans"};
 
-  void read_primitives(const XmlElement& element) {
-    const auto kind = std::find(std::begin(kinds), std::end(kinds), element.name());
-    if (kind == std::end(kinds)) return;  // lines, sources, what others added
+  /// What an element of primitives holds.
+  struct Primitives {
     std::size_t stride = 0, offset = 0;
-    std::optional<XmlElement> vertices;
+    std::optional<XmlElement> vertices;  // the input of that name
     std::vector<std::vector<std::uint32_t>> lists;
     std::optional<std::vector<std::uint32_t>> sizes;
+  };
+
+  static Primitives primitives_of(const XmlElement& element) {
+    Primitives all;
     element.each_child([&](const XmlElement& child) {
       if (child.name() == "input") {
         const std::uint32_t at = child.index("offset", 0);
         if (at > 1000) child.fault("an offset of " + std::to_string(at));
-        stride = std::max<std::size_t>(stride, at + 1);
-        if (child.needed("semantic") == "VERTEX") vertices = child, offset = at;
+        all.stride = std::max<std::size_t>(all.stride, at + 1);
+        if (child.needed("semantic") == "VERTEX") all.vertices = child, all.offset = at;
       } else if (child.name() == "p") {
-        lists.push_back(child.indices());
+        all.lists.push_back(child.indices());
       } else if (child.name() == "vcount") {
-        sizes = child.indices();
+        all.sizes = child.indices();
       } else if (child.name() == "ph") {
         child.fault("polygons with holes are not read");
       }
     });
+    return all;
+  }
+
+  void read_primitives(const XmlElement& element) {
+    const auto kind = std::find(std::begin(kinds), std::end(kinds), element.name());
+    if (kind == std::end(kinds)) return;  // lines, sources, what others added
+    const Primitives all = primitives_of(element);
     const std::uint32_t count = element.index("count");
-    if (lists.empty() && count == 0) return;
-    if (!vertices) element.fault("has no input VERTEX");
-    const Positions from = positions_of(target(*vertices, "vertices", "source"));
+    if (all.lists.empty() && count == 0) return;
+    if (!all.vertices) element.fault("has no input VERTEX");
+    const Positions from = positions_of(target(*all.vertices, "vertices", "source"));
     std::vector<std::uint32_t> corners;
     std::vector<std::size_t> ends;  // of each list, among the corners
-    for (const auto& list : lists) {
-      if (list.size() % stride != 0)
+    for (const auto& list : all.lists) {
+      if (list.size() % all.stride != 0)
         element.fault("holds " + std::to_string(list.size()) + " indices, no multiple of " +
-                      std::to_string(stride));
-      for (std::size_t i = offset; i < list.size(); i += stride) {
+                      std::to_string(all.stride));
+      for (std::size_t i = all.offset; i < list.size(); i += all.stride) {
         if (list[i] >= from.count)
           element.fault("vertex " + std::to_string(list[i]) + " does not exist: there are " +
                         std::to_string(from.count) + ", from 0");
@@ -185,10 +195,15 @@ class Collada {
       ends.assign(corners.size() / 3, 0);
       for (std::size_t i = 0; i < ends.size(); ++i) ends[i] = 3 * (i + 1);
     } else if (element.name() == "polylist") {
-      if (!sizes) element.fault("has no <vcount>");
+      if (!all.sizes) element.fault("has no <vcount>");
       ends.clear();
-      for (std::size_t end = 0; const std::uint32_t size : *sizes) ends.push_back(end += size);
+      for (std::size_t end = 0; const std::uint32_t size : *all.sizes) ends.push_back(end += size);
     }
+    append_faces(element, count, corners, ends);
+  }
+
+  void append_faces(const XmlElement& element, std::size_t count,
+                    std::span<const std::uint32_t> corners, std::span<const std::size_t> ends) {
     if (ends.size() != count)
       element.fault("holds " + std::to_string(ends.size()) + " faces, where its count is " +
                     std::to_string(count));
@@ -196,14 +211,15 @@ class Collada {
       element.fault("has " + std::to_string(corners.size()) + " corners, where its faces need " +
                     std::to_string(needed));
     for (std::size_t begin = 0; const std::size_t end : ends) {
-      append(element, std::span(corners).subspan(begin, end - begin));
+      append(element, corners.subspan(begin, end - begin));
       begin = end;
     }
   }
 
   void append(const XmlElement& element, std::span<const std::uint32_t> corners) {
     TriangleMesh& mesh = result_.meshes.back();
-    if (corners.size() < 3) note_.leave_out(element.place());
+    // Lines are counted from the beginning, so once.
+    if (corners.size() < 3) note_.leave_out(note_.text().empty() ? element.place() : "");
     const bool is_strip = element.name() == "tristrips";
     if (!is_strip && element.name() != "trifans") return append_polygon(mesh, corners);
     for (std::size_t i = 2; i < corners.size(); ++i) {

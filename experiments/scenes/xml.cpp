@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/text_encoding.hpp"
@@ -56,6 +57,7 @@ class XmlParser {
   struct Open {
     std::string_view name;  // with its prefix
     std::uint32_t number, last_child = Xml::none;
+    std::string joined;  // of a text in several pieces
   };
 
   [[noreturn]] void fault(const std::string& what) const {
@@ -135,7 +137,7 @@ class XmlParser {
       attribute(number);
     }
     ++at_;
-    open_.push_back({name, number});
+    open_.push_back({name, number, Xml::none, {}});
   }
 
   void attribute(std::uint32_t element) {
@@ -149,7 +151,9 @@ class XmlParser {
     const std::string_view quote = text_.substr(at_++, 1);
     const std::string_view value = until(quote, "the value of an attribute");
     if (value.find('<') != value.npos) fault("'<' in attribute " + TextScanner::shown(name));
-    for (auto i = xml_.elements_[element].attributes; i < xml_.attributes_.size(); ++i)
+    const std::size_t first = xml_.elements_[element].attributes;
+    if (xml_.attributes_.size() > first + 1000) fault("more than 1000 attributes");
+    for (std::size_t i = first; i < xml_.attributes_.size(); ++i)
       if (xml_.attributes_[i].name == name) fault("a second attribute " + TextScanner::shown(name));
     xml_.attributes_.push_back({name, decoded(value)});
   }
@@ -164,16 +168,21 @@ class XmlParser {
           "</" + std::string(name) + "> where " +
           (open_.empty() ? "nothing is open" : "<" + std::string(open_.back().name) + "> is open"));
     ++at_;
+    if (std::string& joined = open_.back().joined; !joined.empty())
+      xml_.elements_[open_.back().number].text = xml_.decoded_.emplace_back(std::move(joined));
     open_.pop_back();
   }
 
   void append(std::string_view text) {
-    std::string_view& all = xml_.elements_[open_.back().number].text;
     if (text.find_first_not_of(blanks) == text.npos) return;
-    if (all.empty())
+    std::string_view& all = xml_.elements_[open_.back().number].text;
+    std::string& joined = open_.back().joined;
+    if (all.empty()) {
       all = text;
-    else
-      all = xml_.decoded_.emplace_back(std::string(all).append(text));
+    } else {
+      if (joined.empty()) joined = all;
+      joined += text;
+    }
   }
 
   /// With the five entities that need no declaration, and characters by their number.

@@ -265,6 +265,11 @@ TEST(Xml, IsTakenOrRefused) {
       text_of("\xef\xbb\xbf<?xml version='1.0'?>\n<!DOCTYPE a>\n<a:b x = '&lt;&#65;&#x20ac;'/>\n"),
       "<A\xe2\x82\xac");
   EXPECT_EQ(text_of("<a>1<!-- 2 -->3<b>4</b><![CDATA[<5>]]>&amp;</a>"), "13<5>&");
+  std::string pieces, many = "<a", expected;
+  for (int i = 0; i < 20000; ++i) pieces += "1<!-- -->&amp;", expected += "1&";
+  EXPECT_EQ(text_of("<a>" + pieces + "</a>"), expected);
+  for (int i = 0; i < 2000; ++i) many += " x" + std::to_string(i) + "=''";
+  EXPECT_EQ(text_of(many + "/>"), "a: line 1: more than 1000 attributes");
   for (const auto& [xml, line] :
        {std::pair("", "line 1: no XML"),
         {"  ", "line 1: no XML"},
