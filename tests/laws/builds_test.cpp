@@ -282,10 +282,12 @@ TEST(Builds, ThreadsChangeNoVolume) {
 }
 
 TEST(Builds, ThreadsChangeNoWideHierarchy) {
+  using Whole = WideTrees<SlabBox<float>, native_fan_out<float>, SiblingsKernel,
+                          builds::TopDownSurfaceArea, Fit::published, native_fan_out<float>>;
   for (const auto& mesh : meshes()) {
-    const auto one = Recommended::hierarchy(mesh);
+    const auto one = Whole::hierarchy(mesh);
     for (const int threads : {2, 3, 7}) {
-      const auto more = Recommended::hierarchy(mesh, threads);
+      const auto more = Whole::hierarchy(mesh, threads);
       ASSERT_EQ(one.size(), more.size());
       EXPECT_EQ(one.reach(), more.reach());
       for (std::uint32_t i = 0; i < one.size(); ++i) {
@@ -295,7 +297,7 @@ TEST(Builds, ThreadsChangeNoWideHierarchy) {
         EXPECT_TRUE(same_bits(one.children(i), more.children(i)));
         if (!a.leaf) continue;
         EXPECT_TRUE(same_bits(one.corners(a.first), more.corners(a.first)));
-        for (std::uint32_t k = 0; k < Recommended::fan_out; ++k)
+        for (std::uint32_t k = 0; k < Whole::fan_out; ++k)
           EXPECT_EQ(one.triangle(a.first + k), more.triangle(a.first + k));
         EXPECT_EQ(one.leaf_of(a.first), more.leaf_of(a.first));
       }
