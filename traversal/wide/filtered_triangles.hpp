@@ -113,7 +113,6 @@ class FilteredTriangles {
   std::size_t pending_ = 0;
 
  private:
-
   [[gnu::noinline]] bool filter(const OpenPair& pair, std::size_t entry) {
     const auto triangles = frame_.triangles(pair);
     const std::uint64_t lanes = triangles.lanes();
@@ -156,8 +155,8 @@ class FilteredTriangles {
     near &= triangles.lanes();
     counter_.primitives(static_cast<std::uint64_t>(std::popcount(near)));
     for (std::uint64_t rest = near; rest; rest &= rest - 1)
-      if (hold(triangles.numbers(std::countr_zero(rest)))) return true;
-    if (finish()) return true;
+      if (hold(triangles.numbers(std::countr_zero(rest)))) return end_within(pair, entry);
+    if (finish()) return end_within(pair, entry);
     recorder_.record_distances(pair, entry, [&] {
       // What was tested or culled is not nearer than the limit now.
       const S limit(just_below(query_.limit()));
@@ -168,6 +167,13 @@ class FilteredTriangles {
       return std::pair(stdx::hmin(least), triangles.reference_sphere());
     });
     return false;
+  }
+
+  /// The run ends before the triangles of a pair are recorded: the lane that they are of is due.
+  bool end_within(const OpenPair& pair, std::size_t entry) {
+    if (entry == WideFront::none)
+      recorder_.culled(pair.from, -std::numeric_limits<float>::infinity(), frame_);
+    return true;
   }
 
   bool flush() {

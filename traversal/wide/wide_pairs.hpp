@@ -192,10 +192,17 @@ class WidePairs {
     counter.bodies(sieve.undecided().size());
     if constexpr (!wants_bound<Query>()) {
       memory_.template cull<Query>(sieve, {pairs_, poses_, meshes_, culling_}, counter, make_query);
-      if (without_supports_.empty())
+      if (without_supports_.empty()) {
         counter.bodies(culling_.cull_by_directions(
             sieve, pairs_, [&](std::size_t p) { return memory_.skips_directions(p); },
             [&](std::size_t p, double gap) { memory_.apart(p, pairs_[p], gap); }));
+      } else {
+        // No node is made of bodies whose spheres are apart.
+        const std::size_t known = sieve.decided().size();
+        culling_.cull_by_spheres(sieve, pairs_);
+        for (const std::int32_t p : sieve.decided().subspan(known))
+          memory_.apart(static_cast<std::size_t>(p), pairs_[static_cast<std::size_t>(p)], 0);
+      }
       for (const std::int32_t p : sieve.decided()) {
         counter.queried(before);
         repeat(static_cast<std::uint32_t>(p));
