@@ -23,6 +23,7 @@
 #include <any>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <tuple>
@@ -264,10 +265,11 @@ decltype(auto) with_recommended(std::span<const TriangleMesh> meshes,
   for_each_candidate([&]<class Best>(const RecommendedCandidate<Best>& candidate) {
     const std::size_t k = number++;
     if (!costs.may_pay(candidate.build)) return;
-    using Hierarchies = HierarchiesBy<typename Best::Trees>;
-    if (!std::any_cast<Hierarchies>(&built)) built.emplace<Hierarchies>(meshes);
+    using Hierarchies = std::shared_ptr<const HierarchiesBy<typename Best::Trees>>;
+    if (!std::any_cast<Hierarchies>(&built))
+      built = std::make_shared<const HierarchiesBy<typename Best::Trees>>(meshes);
     const auto shapes =
-        shapes_over(meshes, std::any_cast<Hierarchies>(&built)->of_mesh, samples[0].size());
+        shapes_over(meshes, (*std::any_cast<Hierarchies>(&built))->of_mesh, samples[0].size());
     const double cost =
         expected_cost<Best>(shapes, samples, candidate.costs(Query::name), make_query);
     if (costs.is_best(candidate.build, cost / static_cast<double>(sampled.size() * pairs)))
