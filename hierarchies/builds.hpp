@@ -68,8 +68,7 @@ struct OnDemand {
   static constexpr std::string_view name = "on-demand";
   static constexpr std::string_view description =
       "longest axis, surface-area heuristic over 32 bins in float, built fastest; of slab-boxes "
-      "with "
-      "kernel siblings a node is made when a traversal first opens it";
+      "with kernel siblings a node is made when a traversal first opens it";
   static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size) {
     return RangeSplits(LocalMesh(mesh).mesh()).binary(leaf_size);
   }

@@ -49,18 +49,15 @@ void set_as_published(Variant& variant) {
 
 constexpr Configuration list[] = {
     {"recommended",
-     "touching and contacts: the cheapest, builds included, in counted samples of the motion, of "
-     "(1) slab-box, kernel siblings, built on-demand, leaves as large as a register; (2) obb, "
-     "kernel "
-     "mixed, built bottom-up, fit tight, leaves of 4; either of them with margins or recursive; "
-     "with margins (3) slab-box, kernel siblings, built bottom-up, leaves of 4; (4) obb, kernel "
-     "siblings, built bottom-up, fit tight, leaves of 8. In short runs, and where the motion is "
-     "not "
-     "known, (1) with margins; a World of long triangles changes to (2). distance: by the motion "
-     "one of "
-     "(1), (2), and rss in binary "
-     "trees, frame body, built bottom-up, fit tight, leaves of 1, witness; the last where the "
-     "motion is not known",
+     "touching and contacts: the cheapest, builds included, in counted samples of the motion, "
+     "of (1) slab-box, kernel siblings, built on-demand, leaves as large as a register; (2) "
+     "obb, kernel mixed, built bottom-up, fit tight, leaves of 4; either of them with margins "
+     "or recursive; with margins (3) slab-box, kernel siblings, built bottom-up, leaves of 4; "
+     "(4) obb, kernel siblings, built bottom-up, fit tight, leaves of 8. In short runs, and "
+     "where the motion is not known, (1) with margins; a World of long triangles changes to "
+     "(2). distance: by the motion one of (1), (2), and rss in binary trees, frame body, "
+     "built bottom-up, fit tight, leaves of 1, witness; the last where the motion is not "
+     "known",
      set_recommended},
     {"as-published",
      "the talk's (Li and Chen 1998): spheres in binary trees, one triangle per leaf, and a "
@@ -95,7 +92,7 @@ bool is_compiled() {
 }
 
 /// Of a motion that is not known.
-Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes) {
+Chosen recommended(Variant variant) {
   set_recommended(variant);
   if (variant.query == "distance")
     return {variant,
@@ -139,7 +136,7 @@ Chosen recommended_distances(Variant variant, std::span<const TriangleMesh> mesh
             "bodies move slowly (" + measured.str() +
                 " radii and radians a frame): margins on oriented "
                 "boxes skip most tests"};
-  Chosen chosen = recommended(std::move(variant), meshes);
+  Chosen chosen = recommended(std::move(variant));
   chosen.reason += "; bodies move fast (" + measured.str() + " radii and radians a frame)";
   return chosen;
 }
@@ -150,7 +147,7 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
     return recommended_distances(std::move(variant), meshes, trace);
   const SampledFrames samples(trace.frames);
   const std::vector<Option> all = options_for(variant);
-  if (all.empty() || trace.pairs() == 0) return recommended(variant, meshes);
+  if (all.empty() || trace.pairs() == 0) return recommended(variant);
   RunCosts costs(triangles_of(meshes), trace.frames * trace.pairs());
   Chosen best{all[0].variant, std::string(all[0].name) + ": the run is too short to repay samples"};
   if (samples.frames.empty()) return best;
@@ -190,11 +187,10 @@ std::optional<LaterChoice> later_choice(const Variant& variant,
   if (variant.query == "distance" || !is_compiled<RecommendedOriented>() ||
       elongation(meshes) < long_triangles)
     return std::nullopt;
-  const Variant later = variant_of<RecommendedOriented>(variant);
-  for (const Option& option : options_for(variant))
-    if (option.variant.volume == later.volume && option.variant.kernel == later.kernel)
-      return LaterChoice{later, 1e-9 * option.build * static_cast<double>(triangles_of(meshes))};
-  return std::nullopt;
+  constexpr double build =
+      std::get<RecommendedCandidate<RecommendedOriented>>(recommended_candidates).build;
+  return LaterChoice{variant_of<RecommendedOriented>(variant),
+                     1e-9 * build * static_cast<double>(triangles_of(meshes))};
 }
 
 std::vector<Named> configurations() {
@@ -229,7 +225,7 @@ Chosen configured(Variant variant, std::string_view configuration,
   const auto start = Clock::now();
   auto trees = std::make_shared<KeptTrees>();
   Chosen chosen = trace ? recommended(std::move(variant), meshes, *trace, broad_phase, *trees)
-                        : recommended(std::move(variant), meshes);
+                        : recommended(std::move(variant));
   // Trees of what was not chosen go; those of what was are the run's.
   std::erase_if(*trees,
                 [of = trees_of(chosen.variant)](const auto& each) { return each.first != of; });

@@ -75,6 +75,14 @@ struct SceneNode {
   Transformation to_world;
 };
 
+/// The child's transformation first, then the parent's.
+inline SceneNode::Transformation product(const SceneNode::Transformation& parent,
+                                         const SceneNode::Transformation& child) {
+  SceneNode::Transformation t = parent.leftCols<3>() * child;
+  t.col(3) += parent.col(3);
+  return t;
+}
+
 /// A scene: nodes with meshes, parents first.
 struct SceneGraph {
   std::vector<SceneNode> nodes;

@@ -81,9 +81,7 @@ class Model {
     const auto found = objects_.find(id);
     if (found == objects_.end()) place.fault("there is no object " + std::to_string(id));
     const XmlElement object = xml_[found->second];
-    const Transformation own = transformation_of(place);
-    Transformation here = parent.leftCols<3>() * own;
-    here.col(3) += parent.col(3);
+    const Transformation here = product(parent, transformation_of(place));
     const auto mesh = object.child("mesh"), components = object.child("components");
     if (!mesh && !components) object.fault("has neither a mesh nor components");
     if (mesh)

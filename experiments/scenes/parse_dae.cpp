@@ -15,12 +15,6 @@ namespace {
 
 using Transformation = SceneNode::Transformation;
 
-Transformation product(const Transformation& parent, const Transformation& child) {
-  Transformation t = parent.leftCols<3>() * child;
-  t.col(3) += parent.col(3);
-  return t;
-}
-
 /// Quarters of a turn are exact.
 Mat3<double> rotation(const Vec3<double>& axis, double degrees) {
   double sine = std::sin(degrees * std::numbers::pi / 180);

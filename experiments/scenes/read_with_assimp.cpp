@@ -30,12 +30,6 @@ Transformation transformation_of(const aiNode& node) {
   return t;
 }
 
-Transformation product(const Transformation& parent, const Transformation& child) {
-  Transformation t = parent.leftCols<3>() * child;
-  t.col(3) += parent.col(3);
-  return t;
-}
-
 Vec3<double> image(const Transformation& t, const Vec3<double>& v) {
   return t == identity ? v : Vec3<double>(t.leftCols<3>() * v + t.col(3));
 }

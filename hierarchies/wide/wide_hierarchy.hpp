@@ -236,10 +236,10 @@ class WideHierarchy {
       fitting.emplace(of.local.mesh(), triangles_of(range), Fit::published, alone);
     const std::uint32_t first = of.nodes.fetch_add(count);
     for (std::uint32_t k = 0; k < count; ++k) {
-      const auto& [part, box, centres, priority] = parts[k];
+      const RangeSplits::Range part = parts[k].range;
       put_unmade(first + k, part,
                  fitting ? fitting->around(part.begin - range.begin, part.end - range.begin)
-                         : around(box_of(box)));
+                         : around(box_of(parts[k].box)));
     }
     nodes_[i].first = first;
     nodes_[i].lanes = all_lanes(count);
