@@ -247,7 +247,7 @@ are legal. ValueError: another shape or type, NaN, infinity, an index out of ran
              "The address from which each mesh's vertices are read, for tests.");
   module.def(
       "read", &read, py::arg("path"), py::kw_only(), py::arg("scale") = 1.0,
-      R"(The mesh in a file: OFF, OBJ, PLY, STL, DAE and 3MF to the last digit, others as assimp reads
+      R"(The mesh in a file: OFF, OBJ, PLY, STL, DAE, 3MF and glTF to the last digit, others as assimp reads
 them (coordinates in float32).
 
 The transformations of a scene's nodes are applied. Coordinates are used as they stand, whatever

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -103,6 +104,11 @@ SceneGraph parse_3mf(std::string_view bytes, const std::string& name);
 
 /// What assimp adds at the root to turn a file's axes and unit into its own.
 enum class Conversion { none, of_assimp };
+
+/// glTF 2.0 (text and GLB): its scene's nodes and triangles. Of a `file`, others beside it are
+/// read. Nothing where it is of version 1 or packed by Draco, which assimp reads.
+std::optional<SceneGraph> parse_gltf(std::string_view bytes, const std::string& name,
+                                     const std::filesystem::path& file);
 
 /// By assimp, from a file of these bytes (which may refer to others beside it) and from memory. It
 /// runs in a process of its own (experiments/files/guarded.hpp).

@@ -40,7 +40,10 @@ class Collada {
  public:
   Collada(std::string_view bytes, const std::string& name) : xml_(bytes, name), name_(name) {
     for (std::size_t i = 0; i < xml_.size(); ++i)
-      if (const auto id = xml_[i].attribute("id")) ids_.try_emplace(*id, xml_[i].number());
+      if (const auto id = xml_[i].attribute("id")) {
+        const auto [known, is_new] = ids_.try_emplace({xml_[i].name(), *id}, xml_[i].number());
+        if (!is_new) known->second = twice;
+      }
   }
 
   SceneGraph scene() {
@@ -63,9 +66,10 @@ class Collada {
     const std::string_view reference = from.needed(attribute);
     if (!reference.starts_with('#'))
       from.fault("refers to '" + std::string(reference) + "': other files are not read");
-    const auto found = ids_.find(reference.substr(1));
-    if (found == ids_.end() || xml_[found->second].name() != name)
-      from.fault("there is no " + std::string(name) + " '" + std::string(reference) + "'");
+    const auto found = ids_.find({name, reference.substr(1)});
+    const std::string what = std::string(name) + " '" + std::string(reference) + "'";
+    if (found == ids_.end()) from.fault("there is no " + what);
+    if (found->second == twice) from.fault("there are two " + what);
     return xml_[found->second];
   }
 
@@ -214,12 +218,9 @@ class Collada {
     TriangleMesh& mesh = result_.meshes.back();
     // Lines are counted from the beginning, so once.
     if (corners.size() < 3) note_.leave_out(note_.text().empty() ? element.place() : "");
-    const bool is_strip = element.name() == "tristrips";
-    if (!is_strip && element.name() != "trifans") return append_polygon(mesh, corners);
-    for (std::size_t i = 2; i < corners.size(); ++i) {
-      const std::size_t a = is_strip ? i - 2 + i % 2 : 0, b = is_strip ? i - 1 - i % 2 : i - 1;
-      mesh.triangles.push_back({corners[a], corners[b], corners[i]});
-    }
+    if (element.name() == "tristrips") return append_strip(mesh, corners);
+    if (element.name() == "trifans") return append_fan(mesh, corners);
+    append_polygon(mesh, corners);
   }
 
   /// Where in the mesh the positions of a source stand.
@@ -286,7 +287,8 @@ class Collada {
 
   Xml xml_;
   const std::string& name_;
-  std::map<std::string_view, std::uint32_t> ids_;
+  static constexpr std::uint32_t twice = 0xffffffff;
+  std::map<std::pair<std::string_view, std::string_view>, std::uint32_t> ids_;  // of each kind
   std::map<std::uint32_t, unsigned> meshes_;
   std::map<std::uint32_t, Positions> positions_;
   std::size_t visited_ = 0;

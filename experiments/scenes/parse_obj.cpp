@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <charconv>
+#include <optional>
 #include <vector>
 
 #include "experiments/scenes/mesh_formats.hpp"
@@ -43,6 +45,45 @@ bool is_free_form(std::string_view keyword) {
   return keyword == "surf" || keyword == "bzp" || keyword == "bsp" || keyword == "cdp";
 }
 
+/// What follows a vertex's coordinates, a weight or colours, is numbers: words may be a vertex
+/// whose line has lost its beginning.
+void require_numbers(TextScanner& scanner) {
+  while (!scanner.at_line_end()) {
+    const std::string_view word = scanner.word();
+    double value;
+    if (!TextScanner::parse(word, value) && word.find(".#") == word.npos)
+      scanner.fault(TextScanner::shown(word) + " is not a number");
+  }
+}
+
+/// Whether a vertex or a face follows in the line, which a backslash at its end has joined: names
+/// of folders end so.
+bool hides_next_line(std::string_view line) {
+  for (std::size_t at = 0; (at = line.find_first_of("\r\n", at)) != line.npos;) {
+    at = std::min(line.find_first_not_of(" \t\r\n", at), line.size());
+    const std::string_view next = line.substr(at, 2);
+    if (next == "v " || next == "f " || next == "v\t" || next == "f\t") return true;
+  }
+  return false;
+}
+
+/// The numbers of vertices and of faces, which some write into the first line.
+struct Counts {
+  std::size_t vertices, faces;
+};
+
+std::optional<Counts> counts_of(TextScanner scanner) {
+  const auto count = [](std::string_view word, std::size_t& value) {
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc{} && end == word.data() + word.size();
+  };
+  Counts counts{};
+  if (!scanner.next_line() || !count(scanner.word(), counts.vertices) ||
+      !count(scanner.word(), counts.faces) || !scanner.at_line_end())
+    return std::nullopt;
+  return counts;
+}
+
 /// The names that faces bear, as the lines come: of an object, of a group, or of both.
 class Names {
  public:
@@ -71,11 +112,15 @@ ParsedMesh parse_obj(std::string_view bytes, const std::string& name) {
   std::vector<std::int64_t> corners;
   std::vector<ParsedMesh::Part> named;  // from which face on
   Names names;
+  const auto counts = counts_of(scanner);
+  if (counts) scanner.next_line();
+  const std::size_t line_of_counts = scanner.line_number();
   while (scanner.next_line()) {
     const std::string_view keyword = scanner.word();
     if (keyword == "v") {
       const double x = scanner.coordinate(), y = scanner.coordinate(), z = scanner.coordinate();
       mesh.vertices.push_back({x, y, z});
+      require_numbers(scanner);
     } else if (keyword == "f" || keyword == "fo") {
       Face face{corners.size(), 0, scanner.line_number()};
       while (!scanner.at_line_end())
@@ -85,6 +130,8 @@ ParsedMesh parse_obj(std::string_view bytes, const std::string& name) {
           !bytes.ends_with('\r'))
         scanner.fault("truncated: ends within a face");
       faces.push_back(face);
+    } else if (hides_next_line(scanner.line())) {
+      scanner.fault("the backslash at its end makes the next line a part of it");
     } else if (keyword == "o" || keyword == "g") {
       keyword == "o" ? names.set_object(scanner.name()) : names.set_group(scanner.name());
       named.push_back({names.name(), faces.size()});
@@ -98,6 +145,11 @@ ParsedMesh parse_obj(std::string_view bytes, const std::string& name) {
   }
   if (mesh.vertices.size() >= std::numeric_limits<std::uint32_t>::max())
     throw Unusable(name, "has more vertices than 32 bits number");
+  if (counts && (counts->vertices != mesh.vertices.size() || counts->faces != faces.size()))
+    scanner.fault("promises " + std::to_string(counts->vertices) + " vertices and " +
+                      std::to_string(counts->faces) + " faces, where there are " +
+                      std::to_string(mesh.vertices.size()) + " and " + std::to_string(faces.size()),
+                  line_of_counts);
   std::vector<std::uint32_t> polygon;
   auto part = named.begin();
   for (const Face& face : faces) {

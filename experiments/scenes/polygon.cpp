@@ -223,4 +223,16 @@ void append_polygon(TriangleMesh& mesh, Corners corners) {
   LeastArea(mesh, corners).append();
 }
 
+void append_strip(TriangleMesh& mesh, Corners corners) {
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    const std::size_t turned = i % 2;
+    mesh.triangles.push_back({corners[i - 2 + turned], corners[i - 1 - turned], corners[i]});
+  }
+}
+
+void append_fan(TriangleMesh& mesh, Corners corners) {
+  for (std::size_t i = 2; i < corners.size(); ++i)
+    mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+}
+
 }  // namespace bvlab

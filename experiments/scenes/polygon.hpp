@@ -22,4 +22,8 @@ namespace bvlab {
 /// itself. Signs are exact.
 void append_polygon(TriangleMesh& mesh, std::span<const std::uint32_t> corners);
 
+/// Appends the n-2 triangles of a strip, every other one turned about, and those of a fan.
+void append_strip(TriangleMesh& mesh, std::span<const std::uint32_t> corners);
+void append_fan(TriangleMesh& mesh, std::span<const std::uint32_t> corners);
+
 }  // namespace bvlab

@@ -77,7 +77,11 @@ SceneGraph parsed_scene(std::string_view bytes, const std::string& name, const R
   const bool is_dae = extension == ".dae", is_3mf = extension == ".3mf";
   // A pipe is read only once; of texts with a byte-order mark assimp does not read all.
   const bool is_file = std::filesystem::is_regular_file(file) && !has_mark(bytes);
-  SceneGraph scene = is_dae    ? parse_dae(bytes, name)
+  const bool is_gltf = extension == ".gltf" || extension == ".glb";
+  std::optional<SceneGraph> own;
+  if (is_gltf) own = parse_gltf(bytes, name, file);
+  SceneGraph scene = own       ? std::move(*own)
+                     : is_dae  ? parse_dae(bytes, name)
                      : is_3mf  ? parse_3mf(bytes, name)
                      : is_file ? read_with_assimp(file, bytes)
                                : parse_with_assimp(bytes, name);

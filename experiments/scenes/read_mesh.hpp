@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Meshes from files, as they stand: nothing moved, scaled, merged, dropped or put in order.
 ///
-/// OFF, OBJ, PLY, STL, DAE and 3MF are read here, coordinates to the last digit of float64, in
-/// UTF-8 or UTF-16 and with any ends of lines. Whatever else the installed assimp knows (glTF, ...;
-/// WRL only where it has a reader of that) is read by assimp, whose coordinates are float32, as
-/// those of a glTF are.
+/// OFF, OBJ, PLY, STL, DAE, 3MF and glTF 2.0 (also GLB) are read here, coordinates to the last
+/// digit of float64, in UTF-8 or UTF-16 and with any ends of lines. Whatever else the installed
+/// assimp knows (FBX, 3DS, glTF packed by Draco, ...; WRL only where it has a reader of that) is
+/// read by assimp, whose coordinates are float32.
 ///
 /// Applied are the transformations of a scene's nodes, in float64; its meshes follow each other in
 /// the order of the nodes, parents first. Not applied are the unit and the axes that a file says

@@ -13,7 +13,6 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/mesh_formats.hpp"
 #include "experiments/scenes/polygon.hpp"
-#include "experiments/scenes/scene_checks.hpp"
 #include "experiments/scenes/text_encoding.hpp"
 
 namespace bvlab {
@@ -51,36 +50,16 @@ Transformation own_root(const Transformation& root, std::string_view importer) {
 
 class Gatherer {
  public:
-  /// `written`: the nodes' transformations to the last digit, should these be known.
-  Gatherer(const aiScene& scene, const std::string& name, std::vector<Transformation> written)
-      : scene_(scene), name_(name), written_(std::move(written)) {
+  Gatherer(const aiScene& scene, const std::string& name) : scene_(scene), name_(name) {
     result_.meshes.resize(scene.mNumMeshes);
   }
 
-  SceneGraph gathered(Transformation root) {
-    if (!scene_.mRootNode) return {};
-    // Several roots get another one.
-    const std::size_t nodes = count(*scene_.mRootNode, 0);
-    if (nodes == written_.size())
-      root = written_[next_++];
-    else if (nodes != written_.size() + 1)
-      written_.clear();
-    visit(*scene_.mRootNode, root, 0);
+  SceneGraph gathered(const Transformation& root) {
+    if (scene_.mRootNode) visit(*scene_.mRootNode, root, 0);
     return std::move(result_);
   }
 
  private:
-  static std::size_t count(const aiNode& node, int depth) {
-    std::size_t sum = 1;
-    for (unsigned i = 0; i < node.mNumChildren && depth < 1000; ++i)
-      if (node.mChildren[i]) sum += count(*node.mChildren[i], depth + 1);
-    return sum;
-  }
-
-  Transformation to_parent(const aiNode& node) {
-    return next_ < written_.size() ? written_[next_++] : transformation_of(node);
-  }
-
   void visit(const aiNode& node, const Transformation& here, int depth) {
     if (depth > 1000) throw Unusable(name_, "nodes more than 1000 deep");
     SceneNode found{node.mName.C_Str(), {}, here};
@@ -99,7 +78,7 @@ class Gatherer {
     if (!found.meshes.empty()) result_.nodes.push_back(std::move(found));
     for (unsigned i = 0; i < node.mNumChildren; ++i)
       if (const aiNode* child = node.mChildren[i])
-        visit(*child, product(here, to_parent(*child)), depth + 1);
+        visit(*child, product(here, transformation_of(*child)), depth + 1);
   }
 
   void take(const aiMesh& mesh, unsigned number) {
@@ -130,13 +109,11 @@ class Gatherer {
 
   const aiScene& scene_;
   const std::string& name_;
-  std::vector<Transformation> written_;
-  std::size_t next_ = 0;
   SceneGraph result_;
 };
 
 SceneGraph gathered(const Assimp::Importer& importer, const aiScene* scene, const std::string& name,
-                    Conversion conversion, std::vector<Transformation> written) {
+                    Conversion conversion) {
   if (!scene) {
     std::string why = importer.GetErrorString();
     why = why.substr(0, why.find('\n'));
@@ -148,7 +125,7 @@ SceneGraph gathered(const Assimp::Importer& importer, const aiScene* scene, cons
   const aiImporterDesc* by =
       index < 0 ? nullptr : importer.GetImporterInfo(static_cast<std::size_t>(index));
   if (conversion == Conversion::none && by && by->mName) root = own_root(root, by->mName);
-  return Gatherer(*scene, name, std::move(written)).gathered(root);
+  return Gatherer(*scene, name).gathered(root);
 }
 
 /// A scene as bytes, from the process that reads it to this one.
@@ -222,15 +199,6 @@ SceneGraph unpacked(std::string bytes) {
   return scene;
 }
 
-void require_triangles(const SceneGraph& scene, std::size_t promised, const std::string& name) {
-  std::size_t held = 0;
-  for (const SceneNode& node : scene.nodes)
-    for (const unsigned mesh : node.meshes) held += scene.meshes[mesh].triangles.size();
-  if (held < promised)
-    throw Unusable(name, std::to_string(promised - held) + " of " + std::to_string(promised) +
-                             " triangles have vertices that do not exist");
-}
-
 /// What `read` makes of a file of so many bytes. assimp's readers of some formats crash or do not
 /// end where a file is damaged.
 template <class Read>
@@ -256,15 +224,11 @@ SceneGraph read_guarded(const std::string& name, std::size_t size, const Read& r
 
 /// No post-processing: all of assimp's steps may merge, drop or reorder.
 template <class Import>
-SceneGraph imported(const std::string& name, std::string_view bytes, Conversion conversion,
+SceneGraph imported(const std::string& name, std::size_t size, Conversion conversion,
                     const Import& import) {
-  require_what_assimp_reads(bytes, name);
-  return read_guarded(name, bytes.size(), [&] {
+  return read_guarded(name, size, [&] {
     Assimp::Importer importer;
-    SceneGraph scene =
-        gathered(importer, import(importer), name, conversion, transformations_of_gltf(bytes));
-    if (const auto promised = triangles_of_gltf(bytes)) require_triangles(scene, *promised, name);
-    return scene;
+    return gathered(importer, import(importer), name, conversion);
   });
 }
 
@@ -295,7 +259,7 @@ TriangleMesh SceneGraph::joined(const std::string& name) const {
 }
 
 SceneGraph read_with_assimp(const std::filesystem::path& path, std::string_view bytes) {
-  return imported(path.string(), bytes, Conversion::none,
+  return imported(path.string(), bytes.size(), Conversion::none,
                   [&](Assimp::Importer& importer) { return importer.ReadFile(path.string(), 0); });
 }
 
@@ -305,7 +269,7 @@ SceneGraph parse_with_assimp(std::string_view bytes, const std::string& name,
   if (has_mark(bytes)) bytes = as_utf8(bytes, room, name);
   const std::string extension = std::filesystem::path(name).extension().string();
   const char* hint = extension.empty() ? "" : extension.c_str() + 1;
-  return imported(name, bytes, conversion, [&](Assimp::Importer& importer) {
+  return imported(name, bytes.size(), conversion, [&](Assimp::Importer& importer) {
     return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, hint);
   });
 }

@@ -321,6 +321,11 @@ TEST(ReadFaults, PlyStrips) {
                      std::to_string(strip.size());
   for (const int entry : strip) text += " " + std::to_string(entry);
   EXPECT_EQ(read(text + "\n", "a.ply").mesh.triangles, expected);
+  // Each strip ends with -1: two sides of the cube.
+  const std::vector<std::vector<int>> sides = {{0, 1, 3, 2, -1, 4, 5, 7, 6, -1}};
+  EXPECT_EQ(
+      read(binary_ply("int int", false, sides, "tristrips"), "a.ply").mesh.triangles,
+      (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 3}, {3, 1, 2}, {4, 5, 7}, {7, 5, 6}}));
   // Joined by repeated vertices: what joins them is no part of the surface.
   const std::vector<std::vector<int>> joined = {{0, 1, 2, 3, 3, 4, 4, 5, 6, 7}};
   EXPECT_EQ(
@@ -470,6 +475,23 @@ TEST(ReadFaults, Obj) {
   expect_cube("# C:\\cube\\\n" + obj(), "a.obj", "a comment that ends with a backslash");
   EXPECT_EQ(refusal("v 0 0 0\nf 1 \\\n1 \\\n1\nv 1 x 0\n", "a.obj"),
             "a.obj: line 5: 'x' is not a number");
+  // Numbers of vertices and faces that some write first are compared with what follows.
+  for (const std::string counts : {"8 12\n", "# cube\n\n8 12\r\n"})
+    expect_cube(counts + obj(), "a.obj", counts);
+  EXPECT_EQ(refusal("# cube\n8 13\n" + obj(), "a.obj"),
+            "a.obj: line 2: promises 8 vertices and 13 faces, where there are 8 and 12");
+  for (const std::string counts : {"8 12 0\n", "8\n", "8 x\n", "-8 12\n", "8.0 12\n"})
+    EXPECT_TRUE(refusal(counts + obj(), "a.obj").starts_with("a.obj: line 1: unknown word"))
+        << counts;
+  EXPECT_EQ(refusal("o cube\n8 12\n" + obj(), "a.obj"), "a.obj: line 2: unknown word '8'");
+  // A vertex or a face that the end of another line has taken.
+  for (const std::string first : {"usemtl C:\\a\\\n", "g C:\\a\\\r\n", "vn 0 0 1\\\n  \\\n\t"})
+    EXPECT_EQ(refusal(first + obj() + "v 9 9 9\n", "a.obj"),
+              "a.obj: line 1: the backslash at its end makes the next line a part of it");
+  expect_cube("g a \\\n b\n" + obj(), "a.obj", "a name continued");
+  EXPECT_EQ(refusal(replaced(obj(), "v 1 1 1\nv", "v 1 1 1 v"), "a.obj"),
+            "a.obj: line 7: 'v' is not a number");
+  expect_cube(vertices("v ", " nan nan 1.#IND") + faces("f ", 1), "a.obj", "colours that are none");
   // What may have been meant as a vertex or a face is not passed over.
   for (const std::string word : {"V", "F", "vv", "1", "-1", "\xc2\xa0v"})
     EXPECT_TRUE(

@@ -325,32 +325,38 @@ TEST_F(Files, MissingOrDirectoryIsSaid) {
 }
 
 TEST_F(Files, OtherFormatsThroughAssimp) {
-  const auto glb = write("a.gltf", "not a scene");
-  EXPECT_TRUE(refusal_of(glb).starts_with(glb.string() + ": not a mesh that assimp reads: "))
-      << refusal_of(glb);
-  EXPECT_EQ(refusal_of(glb).find('\n'), std::string::npos);
-  // Two nodes, one inside the other, show the same triangle.
-  const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-  write("a.bin", std::string(reinterpret_cast<const char*>(corners), sizeof corners));
-  const auto scene = write("scene.gltf", R"({"asset": {"version": "2.0"}, "scene": 0,
-    "scenes": [{"nodes": [0]}],
-    "nodes": [{"mesh": 0, "scale": [2, 2, 2], "children": [1]},
-              {"mesh": 0, "translation": [10, 0, 0]}],
-    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
-    "bufferViews": [{"buffer": 0, "byteLength": 36}],
-    "buffers": [{"uri": "a.bin", "byteLength": 36}]})");
-  const TriangleMesh mesh = read_mesh(scene);
-  EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {3, 4, 5}}));
-  EXPECT_EQ(mesh.vertices[1], Vec3<double>(2, 0, 0));
-  EXPECT_EQ(mesh.vertices[3], Vec3<double>(20, 0, 0));
-  EXPECT_EQ(mesh.vertices[5], Vec3<double>(20, 2, 0));
   // assimp's reader of raw triangles leaves a hole among the nodes.
   EXPECT_EQ(read_mesh(write("a.raw", "part\n0 0 0 1 0 0 0 1 0\n")).triangles.size(), 1u);
   const auto unknown = write("a.nothing", "xyz");
   EXPECT_TRUE(
       refusal_of(unknown).starts_with(unknown.string() + ": not a mesh that assimp reads: "))
       << refusal_of(unknown);
+}
+
+TEST_F(Files, GltfReadsWhatIsBesideIt) {
+  // Two nodes, one inside the other, show the same triangle.
+  const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  write("a.bin", std::string(reinterpret_cast<const char*>(corners), sizeof corners));
+  const std::string text = R"({"asset": {"version": "2.0"}, "scene": 0,
+    "scenes": [{"nodes": [0]}],
+    "nodes": [{"mesh": 0, "scale": [2, 2, 2], "children": [1]},
+              {"mesh": 0, "translation": [10, 0, 0]}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"uri": "a.bin", "byteLength": 36}]})";
+  const auto scene = write("scene.gltf", text);
+  const TriangleMesh mesh = read_mesh(scene);
+  EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_EQ(mesh.vertices[1], Vec3<double>(2, 0, 0));
+  EXPECT_EQ(mesh.vertices[3], Vec3<double>(20, 0, 0));
+  EXPECT_EQ(mesh.vertices[5], Vec3<double>(20, 2, 0));
+  std::filesystem::rename(directory / "a.bin", directory / "a b.bin");
+  EXPECT_EQ(refusal_of(scene), scene.string() + ": buffers[0].uri: " +
+                                   (directory / "a.bin").string() + ": No such file or directory");
+  std::string coded = text;
+  coded.replace(coded.find("a.bin"), 5, "a%20b.bin");
+  EXPECT_EQ(read_mesh(write("scene.gltf", coded)).triangles, mesh.triangles);
 }
 
 }  // namespace

@@ -165,6 +165,13 @@ TEST(ReadScenes, DaeSources) {
             " times 3 from 0 on are not in the 12 numbers");
   EXPECT_EQ(refusal(replaced(dae(), "<scene>", "<!--<scene>"), "a.dae"),
             "a.dae: line 10: truncated: a comment does not end");
+  // An id is one of its kind: a node and a geometry may have the same, two geometries may not.
+  EXPECT_EQ(parse_mesh(dae("<node id=\"g\">" + instance + "</node>"), "a.dae").triangles.size(),
+            4u);
+  EXPECT_EQ(
+      refusal(replaced(dae(), "</library_geometries>", "<geometry id=\"g\"/></library_geometries>"),
+              "a.dae"),
+      "a.dae: line 9: <instance_geometry>: there are two geometry '#g'");
   EXPECT_EQ(refusal(replaced(dae(), "#s", "#none"), "a.dae"),
             "a.dae: line 10: <instance_visual_scene>: there is no visual_scene '#none'");
 }
@@ -329,23 +336,194 @@ TEST(ReadScenes, WhatAGltfMoves) {
        {"", ", \"weights\": [0]", ", \"rotation\": [0, 0, 0.7071068, 0.7071068]"})
     EXPECT_EQ(refusal(gltf(rest), "a.gltf"), "") << rest;
   EXPECT_EQ(refusal(gltf("", ", \"weights\": [0.0]"), "a.gltf"), "");
-  const std::string morphs = "a.gltf: node 0: morph targets are not applied, so not read";
-  EXPECT_EQ(refusal(gltf(", \"weights\": [0.5]"), "a.gltf"), morphs);
-  EXPECT_EQ(refusal(gltf("", ", \"weights\": [1]"), "a.gltf"), morphs);
+  const std::string morphs = ".weights[0]: morph targets are not applied, so not read";
+  EXPECT_EQ(refusal(gltf(", \"weights\": [0.5]"), "a.gltf"), "a.gltf: nodes[0]" + morphs);
+  EXPECT_EQ(refusal(gltf("", ", \"weights\": [1]"), "a.gltf"), "a.gltf: meshes[0]" + morphs);
   EXPECT_EQ(refusal(gltf(", \"weights\": [0]", ", \"weights\": [1]"), "a.gltf"), "");
   EXPECT_EQ(refusal(gltf(", \"skin\": 0"), "a.gltf"),
-            "a.gltf: node 0: skins are not applied, so not read");
+            "a.gltf: nodes[0].skin: skins are not applied, so not read");
   for (const std::string rotation : {"[0, 0, 0, 0]", "[0, 0, 1, 1]", "[0, 0, 0, 1.01]"})
     EXPECT_EQ(refusal(gltf(", \"rotation\": " + rotation), "a.gltf"),
-              "a.gltf: node 0: its rotation is no quaternion of length 1");
-  for (const std::string matrix : {"[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2]", "[1, 0]"})
-    EXPECT_EQ(refusal(gltf(", \"matrix\": " + matrix), "a.gltf"),
-              "a.gltf: node 0: its matrix is no 4 by 4 whose last row is 0 0 0 1");
+              "a.gltf: nodes[0].rotation: is no quaternion of length 1");
+  for (const auto& [rest, line] :
+       {std::pair("\"matrix\": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2]",
+                  "matrix: its last row is not 0 0 0 1"),
+        {"\"matrix\": [1, 0]", "matrix: holds 2 numbers, not 16"},
+        {"\"translation\": [\"1\", 2, 3]", "translation[0]: is not a number"},
+        {"\"scale\": 2", "scale: is not a list"}})
+    EXPECT_EQ(refusal(gltf(std::string(", ") + rest), "a.gltf"),
+              std::string("a.gltf: nodes[0].") + line);
   EXPECT_EQ(refusal(replaced(gltf(""), "VEC3", "VEC2"), "a.gltf"),
-            "a.gltf: accessor 0: only positions of three float32 are read");
+            "a.gltf: accessors[0].type: of positions is not VEC3");
   EXPECT_EQ(refusal(std::string("glTF\2\0\0\0\xff\0\0\0", 12), "a.glb"),
             "a.glb: truncated: holds 12 of 255 bytes");
   EXPECT_EQ(parse_parts(gltf(""), "a.gltf").at(0).name, "");
+}
+
+// --- What glTF has in its buffers ---
+
+std::string base64(const std::string& bytes) {
+  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  std::uint32_t held = 0;
+  int bits = 0;
+  for (const char c : bytes) {
+    held = held << 8 | static_cast<unsigned char>(c);
+    for (bits += 8; bits >= 6;) text += digits[held >> (bits -= 6) & 63];
+  }
+  if (bits > 0) text += digits[held << (6 - bits) & 63];
+  return text.append((4 - text.size() % 4) % 4, '=');
+}
+
+template <class T>
+std::string bytes_of(std::initializer_list<T> values) {
+  return {reinterpret_cast<const char*>(values.begin()), values.size() * sizeof(T)};
+}
+
+const std::string square =
+    bytes_of<float>({0, 0, 0, 1, 0, 0, 1, 2, 0, 0, 2, 0}) + bytes_of<std::uint16_t>({0, 1, 2, 3});
+
+/// A square as the 48 bytes of its corners and the 8 of their indices, and what else there is.
+std::string buffered(const std::string& primitive, const std::string& position,
+                     const std::string& index, const std::string& buffer = square,
+                     const std::string& views = "") {
+  return R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0})" +
+         primitive + R"(}]}], "accessors": [{"type": "VEC3", )" + position +
+         R"(}, {"type": "SCALAR", )" + index +
+         R"(}], "bufferViews": [{"buffer": 0, "byteLength": 48},
+    {"buffer": 0, "byteOffset": 48, "byteLength": 8})" +
+         views + R"(], "buffers": [{"byteLength": )" + std::to_string(buffer.size()) +
+         R"(, "uri": "data:application/gltf-buffer;base64,)" + base64(buffer) + "\"}]}";
+}
+const std::string corners = R"("bufferView": 0, "componentType": 5126, "count": 4)",
+                  shorts = R"("bufferView": 1, "componentType": 5123, "count": 4)";
+
+const std::vector<Vec3<double>> square_corners = {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0}};
+
+void expect_square(const std::string& text) {
+  EXPECT_EQ(refusal(text, "a.gltf"), "");
+  if (refusal(text, "a.gltf").empty()) {
+    EXPECT_EQ(parse_mesh(text, "a.gltf").vertices, square_corners);
+  }
+}
+
+TEST(ReadScenes, GltfPrimitives) {
+  const auto triangles = [](const std::string& more) {
+    return parse_mesh(buffered(more, corners, shorts), "a.gltf").triangles;
+  };
+  EXPECT_EQ(triangles(R"(, "indices": 1, "mode": 5)"), (Triangles{{0, 1, 2}, {2, 1, 3}}));
+  EXPECT_EQ(triangles(R"(, "indices": 1, "mode": 6)"), (Triangles{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(triangles(R"(, "mode": 5)"), (Triangles{{0, 1, 2}, {2, 1, 3}}));
+  for (const auto& [more, line] :
+       {std::pair(R"(, "mode": 1)", "has no triangles"),
+        {R"(, "mode": 7)", "meshes[0].primitives[0].mode: 7 does not exist"},
+        {"", "meshes[0].primitives[0]: has 4 corners, no multiple of 3"},
+        {R"(, "indices": 1)", "meshes[0].primitives[0]: has 4 corners, no multiple of 3"},
+        {R"(, "indices": 0)", "accessors[0].type: of indices is not SCALAR"},
+        {R"(, "indices": 2)", "accessors: there is no number 2: it has 2"},
+        {R"(, "indices": 0.5)", "meshes[0].primitives[0].indices: is not a whole number"},
+        {R"(, "indices": -1)", "meshes[0].primitives[0].indices: is not a whole number"}})
+    EXPECT_EQ(refusal(buffered(more, corners, shorts), "a.gltf"), std::string("a.gltf: ") + line);
+  // Primitives of one list of positions share its vertices.
+  const std::string two = replaced(buffered(R"(, "mode": 6)", corners, shorts), "\"mode\": 6}",
+                                   R"("mode": 6}, {"attributes": {"POSITION": 0}, "mode": 5})");
+  EXPECT_EQ(parse_mesh(two, "a.gltf").vertices.size(), 4u);
+  EXPECT_EQ(parse_mesh(two, "a.gltf").triangles.size(), 4u);
+}
+
+TEST(ReadScenes, GltfNumbers) {
+  const std::string fan = R"(, "mode": 6)";
+  expect_square(buffered(fan, corners, shorts));
+  // Rows of five floats, the last three of which are read.
+  std::string wide;
+  for (const auto& v : square_corners)
+    wide += bytes_of<float>({9, 9, static_cast<float>(v[0]), static_cast<float>(v[1]), 0});
+  const std::string strided = R"(, {"buffer": 0, "byteLength": 80, "byteStride": 20})",
+                    in_rows =
+                        R"("bufferView": 2, "byteOffset": 8, "componentType": 5126, "count": 4)";
+  expect_square(buffered(fan, in_rows, shorts, wide, strided));
+  // A row replaced, in rows with a stride and without; rows that are not there are 0.
+  std::string wrong = wide;
+  wrong.replace(48, 4, bytes_of<float>({7}));
+  const std::string sparse =
+      R"(, "sparse": {"count": 1, "indices": {"bufferView": 3, "componentType": 5121},
+          "values": {"bufferView": 4}})";
+  const std::string more = R"(, {"buffer": 0, "byteOffset": 80, "byteLength": 1},
+          {"buffer": 0, "byteOffset": 81, "byteLength": 12})";
+  const std::string replacement = "\2" + bytes_of<float>({1, 2, 0});
+  expect_square(buffered(fan, in_rows + sparse, shorts, wrong + replacement, strided + more));
+  const std::string zeros = R"("componentType": 5126, "count": 4)" +
+                            replaced(replaced(sparse, "\"bufferView\": 3", "\"bufferView\": 2"),
+                                     "\"bufferView\": 4", "\"bufferView\": 0");
+  const std::string all = replaced(zeros, "\"sparse\": {\"count\": 1", "\"sparse\": {\"count\": 4"),
+                    four = R"(, {"buffer": 0, "byteOffset": 56, "byteLength": 4})";
+  expect_square(buffered(fan, all, shorts, square + std::string("\0\1\2\3", 4), four));
+  EXPECT_EQ(refusal(buffered(fan, all, shorts, square + "\7\1\2\3", four), "a.gltf"),
+            "a.gltf: accessors[0].sparse.indices: there is no row 7");
+  // Whole numbers, as they stand and as parts of the largest.
+  const std::string bytes = std::string("\0\0\0\1\0\0\1\2\0\0\2\0", 12),
+                    small = R"(, {"buffer": 0, "byteLength": 12})",
+                    typed = R"("bufferView": 2, "count": 4, "componentType": )";
+  for (const std::string type : {"5120", "5121"})
+    expect_square(buffered(fan, typed + type, shorts, bytes + square, small));
+  const TriangleMesh parts = parse_mesh(buffered(fan, typed + R"(5120, "normalized": true)", shorts,
+                                                 "\x7f\x80" + bytes + square, small),
+                                        "a.gltf");
+  EXPECT_EQ(parts.vertices.at(0), Vec3<double>(1, -1, 0));
+  for (const auto& [position, line] :
+       {std::pair(R"("bufferView": 0, "componentType": 5126, "count": 5)",
+                  ": 5 rows of 12 bytes from 0 on are not in its view of 48 bytes"),
+        {R"("bufferView": 0, "byteOffset": 4, "componentType": 5126, "count": 4)",
+         ": 4 rows of 12 bytes from 4 on are not in its view of 48 bytes"},
+        {R"("bufferView": 0, "componentType": 5124, "count": 4)", ".componentType: does not exist"},
+        {R"("bufferView": 0, "count": 4)", ": has no componentType"},
+        {R"("componentType": 5126, "count": 4)", ": holds no numbers"}})
+    EXPECT_EQ(refusal(buffered(fan, position, shorts), "a.gltf"),
+              std::string("a.gltf: accessors[0]") + line);
+}
+
+TEST(ReadScenes, GltfBuffers) {
+  const std::string whole = buffered(R"(, "mode": 6)", corners, shorts);
+  for (const auto& [from, to, line] :
+       {std::tuple("base64,AAAA", "base64,AA!A", "buffers[0].uri: is not in base 64"),
+        {"data:application/gltf-buffer;base64,", "data:,", "buffers[0].uri: is not in base 64"},
+        {"\"byteLength\": 56", "\"byteLength\": 57", "buffers[0]: truncated: holds 56 of 57 bytes"},
+        {"\"byteLength\": 48", "\"byteLength\": 58",
+         "bufferViews[0]: 58 bytes from 0 on are not in its buffer of 56"},
+        {"\"buffer\": 0", "\"buffer\": 1", "buffers: there is no number 1: it has 1"},
+        {"\"asset\"", "\"aset\"", "has no asset"},
+        {"\"scenes\"", "\"scene\": 1, \"scenes\"", "scenes: there is no number 1: it has 1"},
+        {"\"mesh\": 0", "\"mesh\": 0,, ", "line 1: is no JSON"},
+        {"\"mesh\": 0", "\"mesh\": 1e999", "is JSON with a number that is not finite"},
+        {"data:application/gltf-buffer;base64,", "a.bin?",
+         "buffers[0].uri: refers to 'a.bin?AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAA...': other files are "
+         "not read here"}})
+    EXPECT_EQ(refusal(replaced(whole, from, to), "a.gltf"), std::string("a.gltf: ") + line);
+  EXPECT_EQ(refusal(whole.substr(0, whole.size() - 3), "a.gltf"),
+            "a.gltf: line 3: truncated: JSON does not end");
+  // The binary chunk of a GLB, padded, and bytes beyond it.
+  std::string json = whole;
+  const std::size_t uri = json.find(", \"uri\"");
+  json.erase(uri, json.find("}]}", uri) - uri);
+  const auto glb = [&](std::uint32_t size) {
+    const std::string binary = square + std::string(4, '\0');
+    const auto chunk = [](std::uint32_t length, const char* kind) {
+      return bytes_of<std::uint32_t>({length}) + std::string(kind, 4);
+    };
+    const std::string chunks = chunk(static_cast<std::uint32_t>(json.size()), "JSON") + json +
+                               chunk(size, "BIN\0") + binary;
+    return "glTF" + bytes_of<std::uint32_t>({2, 12 + static_cast<std::uint32_t>(chunks.size())}) +
+           chunks;
+  };
+  EXPECT_EQ(parse_mesh(glb(60), "a.glb").vertices, square_corners);
+  EXPECT_EQ(refusal(glb(61), "a.glb"), "a.glb: truncated: ends within a chunk");
+  EXPECT_EQ(refusal(json, "a.gltf"), "a.gltf: buffers[0]: has no uri");
+  std::string said;
+  ReadOptions options;
+  options.say = [&](const std::string& line) { said = line; };
+  parse_mesh(glb(60) + "x", "a.glb", options);
+  EXPECT_EQ(said, "a.glb: 1 bytes beyond the end are passed over");
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ void trace(std::string_view bytes);       ///< poses, and posing by them
 void boxes(std::string_view bytes);       ///< box traces, float32 or float64
 void definition(std::string_view bytes);  ///< experiments, and their cells
 void mesh(std::string_view bytes);        ///< the first byte chooses among off, obj, ply and stl
-void scene(std::string_view bytes);       ///< by assimp: the first byte chooses dae or gltf
+void scene(std::string_view bytes);       ///< the first byte chooses dae, gltf or 3mf
 
 struct Named {
   std::string_view name;  ///< of the folder in the corpus, too
