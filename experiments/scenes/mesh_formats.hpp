@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "experiments/scenes/read_mesh.hpp"
@@ -36,6 +37,17 @@ class Note {
   std::string said_, first_left_out_;
   std::size_t left_out_ = 0;
 };
+
+/// What is wrong with a reference to a vertex, by its number or its digits.
+template <class Number>
+std::string no_vertex(const Number& number, std::size_t vertices) {
+  std::string shown;
+  if constexpr (std::is_arithmetic_v<Number>)
+    shown = std::to_string(number);
+  else
+    shown = number;
+  return "vertex " + shown + " does not exist: there are " + std::to_string(vertices) + ", from 0";
+}
 
 /// What a file holds.
 struct ParsedMesh {

@@ -110,8 +110,7 @@ class Model {
       for (std::size_t k = 0; k < 3; ++k) {
         corners[k] = triangle.index(names[k]);
         if (corners[k] >= mesh.vertices.size())
-          triangle.fault("vertex " + std::to_string(corners[k]) + " does not exist: there are " +
-                         std::to_string(mesh.vertices.size()) + ", from 0");
+          triangle.fault(no_vertex(corners[k], mesh.vertices.size()));
       }
     });
     return known->second;

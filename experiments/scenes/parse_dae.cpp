@@ -182,9 +182,7 @@ class Collada {
         element.fault("holds " + std::to_string(list.size()) + " indices, no multiple of " +
                       std::to_string(all.stride));
       for (std::size_t i = all.offset; i < list.size(); i += all.stride) {
-        if (list[i] >= from.count)
-          element.fault("vertex " + std::to_string(list[i]) + " does not exist: there are " +
-                        std::to_string(from.count) + ", from 0");
+        if (list[i] >= from.count) element.fault(no_vertex(list[i], from.count));
         corners.push_back(from.first + list[i]);
       }
       ends.push_back(corners.size());

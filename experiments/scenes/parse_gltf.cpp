@@ -15,6 +15,7 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
 #include "experiments/scenes/mesh_formats.hpp"
+#include "experiments/scenes/number_type.hpp"
 #include "experiments/scenes/polygon.hpp"
 #include "experiments/scenes/text_encoding.hpp"
 #include "experiments/scenes/text_scanner.hpp"
@@ -307,8 +308,7 @@ class Gltf {
       if (accessor["type"].text() != "SCALAR") accessor["type"].fault("of indices is not SCALAR");
       for (const double index : rows(accessor, 1)) {
         if (!(index >= 0 && index < from.count) || index != std::floor(index))
-          accessor.fault("vertex " + std::to_string(static_cast<std::int64_t>(index)) +
-                         " does not exist: there are " + std::to_string(from.count) + ", from 0");
+          accessor.fault(no_vertex(static_cast<std::int64_t>(index), from.count));
         corners.push_back(from.first + static_cast<std::uint32_t>(index));
       }
     } else {
@@ -325,36 +325,21 @@ class Gltf {
 
   // --- Numbers ---
 
-  struct Type {
-    std::size_t size;
-    double (*read)(const char* at);
-    double largest;  ///< what 1 is as an integer
-  };
-
-  template <class T>
-  static constexpr Type type{sizeof(T),
-                             [](const char* at) {
-                               T value;
-                               std::memcpy(&value, at, sizeof value);
-                               return static_cast<double>(value);
-                             },
-                             static_cast<double>(std::numeric_limits<T>::max())};
-
-  static const Type& type_of(const Value& holder) {
+  static const NumberType& type_of(const Value& holder) {
     const Value written = holder["componentType"];
     switch (written.whole()) {
       case 5120:
-        return type<std::int8_t>;
+        return number_type<std::int8_t>;
       case 5121:
-        return type<std::uint8_t>;
+        return number_type<std::uint8_t>;
       case 5122:
-        return type<std::int16_t>;
+        return number_type<std::int16_t>;
       case 5123:
-        return type<std::uint16_t>;
+        return number_type<std::uint16_t>;
       case 5125:
-        return type<std::uint32_t>;
+        return number_type<std::uint32_t>;
       case 5126:
-        return type<float>;
+        return number_type<float>;
       default:
         written.fault("does not exist");
     }
@@ -362,7 +347,7 @@ class Gltf {
 
   /// The numbers of an accessor, row after row.
   std::vector<double> rows(const Value& accessor, std::size_t columns) {
-    const Type& type = type_of(accessor);
+    const NumberType& type = type_of(accessor);
     const std::size_t count = accessor["count"].whole();
     std::vector<double> numbers;
     if (accessor.has("bufferView")) {
@@ -373,12 +358,12 @@ class Gltf {
       numbers.resize(count * columns);
     }
     if (accessor.has("sparse")) replace(numbers, accessor["sparse"], type, columns);
-    if (accessor.is_true("normalized") && type.size < sizeof(float))
+    if (accessor.is_true("normalized") && type.is_whole)
       for (double& each : numbers) each = std::max(each / type.largest, -1.0);
     return numbers;
   }
 
-  void replace(std::vector<double>& numbers, const Value& sparse, const Type& type,
+  void replace(std::vector<double>& numbers, const Value& sparse, const NumberType& type,
                std::size_t columns) {
     const std::size_t count = sparse["count"].whole();
     const Value where = sparse["indices"];
@@ -395,7 +380,7 @@ class Gltf {
   }
 
   /// What stands in a view, from an offset on.
-  std::vector<double> values(const Value& holder, const Type& type, std::size_t count,
+  std::vector<double> values(const Value& holder, const NumberType& type, std::size_t count,
                              std::size_t columns) {
     const Value view = root_["bufferViews"][holder["bufferView"].whole()];
     const std::string_view bytes = bytes_of_view(view);

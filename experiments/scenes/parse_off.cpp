@@ -98,8 +98,7 @@ ParsedMesh parse_off(std::string_view bytes, const std::string& name) {
     for (std::size_t k = 0; k < size; ++k) {
       const std::int64_t vertex = scanner.integer("the number of a vertex");
       if (vertex < 0 || static_cast<std::size_t>(vertex) >= vertices)
-        scanner.fault("vertex " + std::to_string(vertex) + " does not exist: there are " +
-                      std::to_string(vertices) + ", from 0");
+        scanner.fault(no_vertex(vertex, vertices));
       corners.push_back(static_cast<std::uint32_t>(vertex));
     }
     if (size < 3) parsed.note.leave_out(scanner.place());

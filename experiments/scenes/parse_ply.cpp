@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdio>
 #include <cstring>
 #include <optional>
 #include <vector>
 
 #include "experiments/scenes/mesh_formats.hpp"
+#include "experiments/scenes/number_type.hpp"
 #include "experiments/scenes/polygon.hpp"
 #include "experiments/scenes/text_encoding.hpp"
 #include "experiments/scenes/text_scanner.hpp"
@@ -15,33 +15,29 @@
 namespace bvlab {
 namespace {
 
-enum class Type { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
-
-std::size_t size_of(Type type) {
-  constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
-  return sizes[static_cast<int>(type)];
-}
-
-std::optional<Type> type_of(std::string_view word) {
-  constexpr std::pair<std::string_view, Type> names[] = {
-      {"char", Type::int8},       {"int8", Type::int8},      {"uchar", Type::uint8},
-      {"uint8", Type::uint8},     {"short", Type::int16},    {"int16", Type::int16},
-      {"ushort", Type::uint16},   {"uint16", Type::uint16},  {"int", Type::int32},
-      {"int32", Type::int32},     {"uint", Type::uint32},    {"uint32", Type::uint32},
-      {"int64", Type::int64},     {"uint64", Type::uint64},  {"float", Type::float32},
-      {"float32", Type::float32}, {"double", Type::float64}, {"float64", Type::float64}};
+const NumberType* type_of(std::string_view word) {
+  static constexpr std::pair<std::string_view, const NumberType*> names[] = {
+      {"char", &number_type<std::int8_t>},     {"int8", &number_type<std::int8_t>},
+      {"uchar", &number_type<std::uint8_t>},   {"uint8", &number_type<std::uint8_t>},
+      {"short", &number_type<std::int16_t>},   {"int16", &number_type<std::int16_t>},
+      {"ushort", &number_type<std::uint16_t>}, {"uint16", &number_type<std::uint16_t>},
+      {"int", &number_type<std::int32_t>},     {"int32", &number_type<std::int32_t>},
+      {"uint", &number_type<std::uint32_t>},   {"uint32", &number_type<std::uint32_t>},
+      {"int64", &number_type<std::int64_t>},   {"uint64", &number_type<std::uint64_t>},
+      {"float", &number_type<float>},          {"float32", &number_type<float>},
+      {"double", &number_type<double>},        {"float64", &number_type<double>}};
   for (const auto& [name, type] : names)
     if (name == word) return type;
-  return std::nullopt;
+  return nullptr;
 }
 
 struct Property {
   std::string name;
-  Type type;
-  std::optional<Type> count;  ///< of a list: the type of its length
+  NumberType type;
+  std::optional<NumberType> count;  ///< of a list: the type of its length
 
   /// In a binary file, at least; lists may be empty.
-  std::size_t bytes() const { return size_of(count.value_or(type)); }
+  std::size_t bytes() const { return count.value_or(type).size; }
   /// 0, 1, 2 of x, y, z; 3 of others.
   int axis() const {
     return !count && name.size() == 1 && 'x' <= name[0] && name[0] <= 'z' ? name[0] - 'x' : 3;
@@ -117,10 +113,10 @@ Header parse_header(TextScanner& scanner, const std::string& name) {
       header.elements.push_back(std::move(element));
     } else if (keyword == "property") {
       if (header.elements.empty()) scanner.fault("a property of no element");
-      Property property{{}, Type::int8, std::nullopt};
+      Property property{{}, number_type<char>, std::nullopt};
       std::string_view word = scanner.word();
       const auto type = [&](std::string_view text) {
-        const auto found = type_of(text);
+        const NumberType* found = type_of(text);
         if (!found) scanner.fault("unknown type " + TextScanner::shown(text));
         return *found;
       };
@@ -150,7 +146,7 @@ class Values {
 
   bool is_text() const { return format_ == Format::text; }
   /// Nothing at the end of the file.
-  std::optional<double> next(Type type) {
+  std::optional<double> next(const NumberType& type) {
     if (!is_text()) return next_binary(type);
     if (!go_to_word()) return std::nullopt;
     const std::string_view word = text_.word();
@@ -160,17 +156,17 @@ class Values {
     return value;
   }
   /// The same of a coordinate; that of a text is finite.
-  std::optional<double> next_coordinate(Type type) {
+  std::optional<double> next_coordinate(const NumberType& type) {
     if (!is_text()) return next_binary(type);
     if (!go_to_word()) return std::nullopt;
     // The file declares how many digits count.
-    return text_.coordinate(type == Type::float32 ? Digits::float32 : Digits::float64);
+    return text_.coordinate(type == number_type<float> ? Digits::float32 : Digits::float64);
   }
   /// Passes over so many values, whatever they are. False at the end of the file.
-  bool pass(Type type, std::uint64_t count) {
+  bool pass(const NumberType& type, std::uint64_t count) {
     if (!is_text()) {
-      const bool is_there = count <= binary_.size() / size_of(type);
-      if (is_there) binary_.remove_prefix(count * size_of(type));
+      const bool is_there = count <= binary_.size() / type.size;
+      if (is_there) binary_.remove_prefix(count * type.size);
       return is_there;
     }
     for (; count > 0 && go_to_word(); --count) text_.word();
@@ -184,44 +180,15 @@ class Values {
   /// An element may take several lines of a text.
   bool go_to_word() { return !text_.at_line_end() || text_.next_line(); }
 
-  std::optional<double> next_binary(Type type) {
-    const std::size_t size = size_of(type);
+  std::optional<double> next_binary(const NumberType& type) {
+    const std::size_t size = type.size;
     if (binary_.size() < size) return std::nullopt;
     std::array<char, 8> bytes{};
     std::copy_n(binary_.begin(), size, bytes.begin());
     binary_.remove_prefix(size);
     if (format_ == Format::big)
       std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-    switch (type) {
-      case Type::int8:
-        return as<std::int8_t>(bytes);
-      case Type::uint8:
-        return as<std::uint8_t>(bytes);
-      case Type::int16:
-        return as<std::int16_t>(bytes);
-      case Type::uint16:
-        return as<std::uint16_t>(bytes);
-      case Type::int32:
-        return as<std::int32_t>(bytes);
-      case Type::uint32:
-        return as<std::uint32_t>(bytes);
-      case Type::int64:
-        return as<std::int64_t>(bytes);
-      case Type::uint64:
-        return as<std::uint64_t>(bytes);
-      case Type::float32:
-        return as<float>(bytes);
-      case Type::float64:
-        return as<double>(bytes);
-    }
-    return std::nullopt;
-  }
-  template <class T>
-  static double as(const std::array<char, 8>& bytes) {
-    static_assert(std::endian::native == std::endian::little);
-    T value;
-    std::memcpy(&value, bytes.data(), sizeof value);
-    return static_cast<double>(value);
+    return type.read(bytes.data());
   }
 
   TextScanner text_;
@@ -370,19 +337,16 @@ class Reader {
       if (!is_vertex && !(element.name == "tristrips" && ends_strip(*entry, property.type))) {
         char digits[32];
         std::snprintf(digits, sizeof digits, "%.17g", *entry);
-        fault(element, number,
-              "vertex " + std::string(digits) + " does not exist: there are " +
-                  std::to_string(vertices_) + ", from 0");
+        fault(element, number, no_vertex(digits, vertices_));
       }
       entries_.push_back(is_vertex ? static_cast<std::uint32_t>(*entry) : restart);
     }
   }
 
   /// -1, also where it was written as a type without sign.
-  static bool ends_strip(double entry, Type type) {
-    return entry == -1 || (type == Type::uint8 && entry == 0xff) ||
-           (type == Type::uint16 && entry == 0xffff) ||
-           (type == Type::uint32 && entry == 0xffffffff);
+  static bool ends_strip(double entry, const NumberType& type) {
+    const bool has_no_sign = type.is_whole && !type.is_signed;
+    return entry == -1 || (has_no_sign && entry == type.largest);
   }
 
   void append_face(const PlyElement& element, std::uint64_t number) {
