@@ -2,12 +2,12 @@
 #include "experiments/python/meshes.hpp"
 
 #include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <unordered_map>
 
@@ -89,13 +89,26 @@ auto reading(double scale, const Read& read_file) {
   return result;
 }
 
-std::shared_ptr<Mesh> read(const std::filesystem::path& path, double scale) {
+/// pybind11's own way takes names with a zero byte for another type.
+std::filesystem::path path_from(const py::object& given) {
+  PyObject* bytes = nullptr;
+  if (PyUnicode_FSConverter(given.ptr(), &bytes) == 0) {
+    if (!PyErr_ExceptionMatches(PyExc_ValueError)) throw py::error_already_set();
+    PyErr_Clear();
+    throw Unusable(py::repr(given), "is no name of a file");
+  }
+  return std::string(py::reinterpret_steal<py::bytes>(bytes));
+}
+
+std::shared_ptr<Mesh> read(const py::object& given, double scale) {
+  const auto path = path_from(given);
   return shared(
       reading(scale, [&](const ReadOptions& options) { return read_mesh(path, options); }));
 }
 
 /// Name, mesh, and pose as a row of a trace; nodes alike share one mesh.
-py::list read_all_parts(const std::filesystem::path& path, double scale) {
+py::list read_all_parts(const py::object& given, double scale) {
+  const auto path = path_from(given);
   const auto parts =
       reading(scale, [&](const ReadOptions& options) { return read_parts(path, options); });
   std::unordered_map<const TriangleMesh*, std::shared_ptr<Mesh>> known;

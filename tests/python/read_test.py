@@ -58,6 +58,14 @@ class Read(unittest.TestCase):
         world.update()
         self.assertEqual(world.touching().tolist(), [[0, 1]])
 
+    def test_names_that_no_file_has(self):
+        for name in ("a\0b.obj", b"a\0b.obj", "\ud800.obj", Path("a\0b.obj")):
+            for read in (bvlab.read, bvlab.read_parts):
+                with self.assertRaisesRegex(ValueError, "^[^\n]*obj[^\n]*: is no name of a file$"):
+                    read(name)
+        with self.assertRaises(TypeError):
+            bvlab.read(1)
+
     def test_what_is_said_is_a_warning(self):
         path = self.write("a.obj", OBJ + "f 1 2\n")
         said = f"{path}: line 10: a face of fewer than three corners is left out; triangles are numbered without it"
