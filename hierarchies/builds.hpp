@@ -40,11 +40,6 @@ struct TopDownMiddle : Down<SplitAxis::longest, SplitAt::middle> {
   static constexpr std::string_view description =
       "longest axis, in the middle of the centroids' box, as octrees cut space (Hubbard 1996)";
 };
-struct TopDownSurfaceArea : Down<SplitAxis::longest, SplitAt::surface_area> {
-  static constexpr std::string_view name = "top-down-surface-area";
-  static constexpr std::string_view description =
-      "longest axis, surface-area heuristic over 32 bins";
-};
 struct TopDownPrincipal : Down<SplitAxis::principal, SplitAt::mean> {
   static constexpr std::string_view name = "top-down-principal";
   static constexpr std::string_view description =
@@ -62,19 +57,25 @@ struct BottomUpLocal {
     return BottomUp{leaf_size}(mesh, threads);
   }
 };
-/// Where a hierarchy has a function `on_demand`, that makes the tree; elsewhere it is made at once,
-/// by the same splits.
-struct OnDemand {
+struct TopDownSurfaceArea {
+  static constexpr std::string_view name = "top-down-surface-area";
+  static constexpr std::string_view description =
+      "surface-area heuristic over 32 bins, along the best axis";
+  static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size) {
+    Threads alone;
+    return topology(mesh, leaf_size, alone);
+  }
+  /// The same, on several threads.
+  static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size, Threads& threads) {
+    return RangeSplits(LocalMesh(mesh).mesh()).binary(leaf_size, threads);
+  }
+};
+/// Where a hierarchy has a function `on_demand`, that makes the tree; elsewhere it is made at once.
+struct OnDemand : TopDownSurfaceArea {
   static constexpr std::string_view name = "on-demand";
   static constexpr std::string_view description =
-      "longest axis, surface-area heuristic over 32 bins in float, built fastest; of slab-boxes "
-      "with kernel siblings a node is made when a traversal first opens it";
-  static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size) {
-    return RangeSplits(LocalMesh(mesh).mesh()).binary(leaf_size);
-  }
-  static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size, Threads&) {
-    return topology(mesh, leaf_size);
-  }
+      "the same splits; of slab-boxes with kernel siblings a node is made when a traversal first "
+      "opens it";
 };
 
 }  // namespace builds

@@ -9,21 +9,23 @@
 /// - a few moved: the tree is queried for the pairs that *change*, and the list is changed in place
 ///   (ChangedBlocks). A caller who knows which boxes moved passes them (`update`); others are read
 ///   only when this begins and when the tree is sorted anew.
-/// - moved steadily: boxes are *followed* within fat boxes (FollowedBlocks). A frame reads every
+/// - moved a little: boxes are *followed* within fat boxes (FollowedBlocks). A frame reads every
 ///   box once and compares each candidate, in under two nanoseconds in the cache. Fat boxes
 ///   last for the number of frames that costs least, including the search for the next candidates.
+///   Two steps of a sample of the boxes tell before the first such frame whether they keep their
+///   motion, and another sample how many candidates there will be.
 /// - jumped, moved far, or so many overlap that starting over costs less: from scratch.
 ///
 /// Every choice depends on counts, never on clocks, so the same frames give the same list.
 ///
-/// A frame that begins to follow takes two to four times as long as one from scratch, and up to
-/// eight times where most boxes overlap many others (record boxes-motions-packed). There are at
-/// most two of these at first, and one more per 256 frames, however boxes move: fewer than one
-/// frame in a hundred of a long run. All others are meant to cost no more than starting over.
+/// A frame that begins to follow takes two to four times as long as one from scratch. After the
+/// first two, it is begun only where followed frames have saved as much since: at most one in 17
+/// frames begins. All others are meant to cost no more than starting over.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -31,6 +33,7 @@
 #include "broadphase/methods/blocks/followed_blocks.hpp"
 #include "broadphase/methods/blocks/joined_blocks.hpp"
 #include "broadphase/structures/last_frame.hpp"
+#include "broadphase/structures/sampled_steps.hpp"
 
 namespace bvlab {
 
@@ -77,19 +80,22 @@ class Blocks {
   /// How far a sample of the boxes moved since the last frame, and how large they are.
   struct Motion {
     double extent[3] = {}, step[3] = {};  ///< sums, without those that jumped
+    double widest = 0;                    ///< the largest step of them
     std::size_t seen = 0, jumped = 0, moved = 0;
   };
 
   /// `told`: the indices of the boxes that moved, or null where that is unknown.
   std::span<const Pair> next_frame(Boxes<T> boxes, const Moved* told) {
     pairs_.begin_frame();
-    frame_credit_ = std::min(frame_credit_ + 1, 2 * frames_a_beginning);
-    if (settings_.coherence == Coherence::off || !advance(boxes, told)) from_scratch(boxes);
+    const bool coherent = settings_.coherence == Coherence::on;
+    if (!coherent || !advance(boxes, told)) from_scratch(boxes);
+    if (coherent && !followed_.active() && !changed_.active()) steps_.take(boxes);
     count_ = boxes.size();
     return pairs_.all.view();
   }
 
   void from_scratch(Boxes<T> boxes) {
+    balance_ = std::min(balance_ + saved_by_waiting, most_saved);
     stop();
     joined_.from_scratch(boxes, pairs_);
     reason_ = "from scratch: no earlier frame to use, boxes jumped, or too many pairs change";
@@ -113,9 +119,13 @@ class Blocks {
     // Here the tree holds the boxes of the last frame.
     const Motion motion = sample(boxes);
     if (many_jumped(motion)) return start_over_and_wait();
-    if (BlockCosts::few_times * motion.moved > motion.seen)
-      return boxes.size() == count_ && follow_anew(boxes, motion);
-    return begin_to_change(boxes, motion);
+    if (BlockCosts::few_times * motion.moved <= motion.seen) return begin_to_change(boxes, motion);
+    if (boxes.size() != count_) return false;
+    const std::optional<bool> steady = steps_.steady(boxes);
+    if (!steady) return false;
+    if (*steady) return follow_anew(boxes, motion);
+    followed_.expect_jitter();
+    return follow_anew(boxes, sample(boxes));
   }
   static std::size_t distance(std::size_t a, std::size_t b) { return a < b ? b - a : a - b; }
 
@@ -176,10 +186,14 @@ class Blocks {
     if (boxes.size() != count_ && followed_.overgrown()) return false;
     if (boxes.size() != count_ || followed_.candidates_valid()) {
       if (boxes.size() == count_ && followed_.time_to_prepare())
-        followed_.prepare(followed_.nearly_still()
-                              ? followed_.shortest
-                              : best_horizon(sample(boxes), followed_.time_to_find()));
+        followed_.prepare(
+            followed_.nearly_still()
+                ? followed_.shortest
+                : best_horizon(sample(boxes),
+                               {followed_.candidates(), static_cast<double>(followed_.horizon())},
+                               followed_.time_to_find()));
       if (!followed_.follow(boxes)) return false;
+      balance_ = std::min(balance_ + saved_by_following, most_saved);
       reason_ = followed_.took_over() ? "followed: candidates are compared, the next took over"
                                       : "followed: candidates are compared";
       if (followed_.few_moved() > 1) {
@@ -193,10 +207,14 @@ class Blocks {
   }
   bool follow_anew(Boxes<T> boxes, const Motion& motion) {
     if (many_jumped(motion)) return start_over_and_wait();
-    if (frame_credit_ < frames_a_beginning) return start_over_and_wait();
-    const int horizon = best_horizon(motion);
+    if (balance_ < 0) return start_over_and_wait();
+    // At least as many candidates as the pairs suggest; a sample costs time, too.
+    const Candidates fewest{static_cast<double>(pairs_.all.size()), -0.5};
+    const int horizon = best_horizon(motion, fewest) == 0
+                            ? 0
+                            : best_horizon(motion, sample_candidates(boxes, motion));
     if (horizon == 0) return start_over_and_wait();
-    frame_credit_ -= frames_a_beginning;
+    balance_ -= cost_of_beginning;
     wait_ = 0;
     if (followed_.active()) {
       if (!followed_.begin_again(boxes, horizon)) return false;
@@ -236,6 +254,7 @@ class Blocks {
           continue;
         }
         const auto widest = static_cast<double>(largest_change(now, was));
+        motion.widest = std::max(motion.widest, widest);
         for (int axis = 0; axis < 3; ++axis) {
           motion.extent[axis] += static_cast<double>(now.hi[axis] - now.lo[axis]);
           const double low = static_cast<double>(was.lo[axis] - now.lo[axis]),
@@ -246,25 +265,64 @@ class Blocks {
       }
     return motion;
   }
+  /// So many candidates for fat boxes of so many frames; -0.5: the boxes themselves.
+  struct Candidates {
+    double count, frames;
+  };
+  /// About how many candidates the shortest horizon would have, from a sample of the boxes.
+  Candidates sample_candidates(Boxes<T> boxes, const Motion& motion) const {
+    const BlockTree<T>& tree = joined_.tree();
+    constexpr int frames = FollowedBlocks<T, Contact>::shortest;
+    const auto fat_box = [&](std::uint32_t slot) {
+      return followed_.fat_box_of(row_of(boxes[tree.ids(0)[slot]]), followed_.last_row(slot),
+                                  frames);
+    };
+    const T reach = static_cast<T>(motion.widest * frames);
+    const std::uint32_t stride = std::max<std::uint32_t>(1, tree.leaves() / 4);
+    std::size_t seen = 0, found = 0;
+    for (std::uint32_t at = 0; at < tree.leaves(); at += stride)
+      for (std::uint32_t slot = at * block_width; slot < (at + 1) * block_width; ++slot) {
+        if (tree.ids(0)[slot] == no_box) continue;
+        ++seen;
+        const Row<T> fat = fat_box(slot);
+        const Box<T> around = box_of(Row<T>{fat.lo - reach, fat.hi + reach});
+        tree.find(around, [&](std::uint32_t leaf) {
+          for (LaneMask lanes = overlapping_lanes<Closed>(tree.leaf(leaf), around); lanes;
+               lanes &= lanes - 1) {
+            const std::uint32_t other = leaf * block_width + std::countr_zero(lanes);
+            found += other != slot && overlap<Closed>(fat, fat_box(other));
+          }
+        });
+      }
+    return {static_cast<double>(found * count_) /
+                static_cast<double>(std::max<std::size_t>(2 * seen, 1)),
+            frames};
+  }
+
   /// The best horizon in frames; 0 where starting over costs less. `ahead`: the number of frames in
   /// which its candidates are found; each of these frames must cost less than starting over.
-  int best_horizon(const Motion& motion, int ahead = 0) const {
+  int best_horizon(const Motion& motion, const Candidates& known, int ahead = 0) const {
     using Cost = BlockCosts;
-    const double n = static_cast<double>(count_), k = static_cast<double>(pairs_.all.size());
+    const double n = static_cast<double>(count_);
     const double join = Cost::visit * static_cast<double>(joined_.visits());
+    // How much larger fat boxes are than boxes.
+    const auto growth = [&](double frames) {
+      double product = 1;
+      for (int axis = 0; axis < 3; ++axis)
+        if (motion.extent[axis] > 0)
+          product *= 1 + (frames + 0.5) * motion.step[axis] / motion.extent[axis];
+      return product;
+    };
     double best = 0.8 * cost_of_starting_over();
     int horizon = 0;
     const double most = best;
     const int shortest = followed_.shortest;
     for (int frames = shortest; frames <= followed_.longest(); frames *= 2) {
-      double growth = 1;
-      for (int axis = 0; axis < 3; ++axis)
-        if (motion.extent[axis] > 0)
-          growth *= 1 + (frames + ahead + 0.5) * motion.step[axis] / motion.extent[axis];
-      const double candidates = growth * k;
+      const double larger = growth(frames + ahead),
+                   candidates = known.count * larger / growth(known.frames);
       const double follow = Cost::read * n + Cost::test(candidates) * candidates,
                    begin =
-                       Cost::fat_box * n + (1 + growth) / 2 * join + Cost::candidate * candidates,
+                       Cost::fat_box * n + (1 + larger) / 2 * join + Cost::candidate * candidates,
                    cost = follow + begin / frames;
       if (ahead > 0 && follow + begin / ahead > cost_of_starting_over()) continue;
       // The shortest horizon leaves no frames to prepare the next candidates in, so any longer one
@@ -286,9 +344,13 @@ class Blocks {
   std::vector<std::uint32_t> moved_;
   int wait_ = 0;     ///< length of the last pause, in frames that start over without sampling
   int waiting_ = 0;  ///< frames left of it
-  /// One beginning is allowed per so many frames.
-  static constexpr int frames_a_beginning = 256;
-  int frame_credit_ = 2 * frames_a_beginning;  ///< frames not yet used up by beginnings
+  SampledSteps<T> steps_;
+  /// What following has saved, less what its beginnings cost, in frames from scratch. A frame that
+  /// is followed counts for an eighth, a quarter of what it saves, so that beginnings are rare; and
+  /// since motion changes, waiting pays one back in 128 frames.
+  static constexpr double cost_of_beginning = 2, saved_by_following = 0.125,
+                          saved_by_waiting = 1.0 / 64, most_saved = 4;
+  double balance_ = cost_of_beginning;
 };
 
 }  // namespace bvlab

@@ -81,14 +81,18 @@ class CandidatePairs {
   /// Compares the candidates from `first` to `last` only and appends to the list; keeps no record.
   void compare_range(const std::uint32_t* ids, PairList& list, std::size_t first,
                      std::size_t last) const {
-    Pair* out = list.reserve(last - first + 1);
     const Row<T>* rows = rows_.data();
-    for (const Pair *c = candidates_.view().data() + first, *end = c + (last - first); c != end;
-         ++c) {
-      *out = {ids[c->i], ids[c->j]};
-      out += overlap<Contact>(rows[c->i], rows[c->j]);
+    // In stretches, since only the pages that pairs are written to should be brought in.
+    constexpr std::size_t stretch = 4096;
+    for (; first < last; first += stretch) {
+      const std::size_t count = std::min(stretch, last - first);
+      Pair* out = list.reserve(count + 1);
+      for (const Pair& c : candidates_.view().subspan(first, count)) {
+        *out = {ids[c.i], ids[c.j]};
+        out += overlap<Contact>(rows[c.i], rows[c.j]);
+      }
+      list.set_end(out);
     }
-    list.set_end(out);
   }
 
  private:

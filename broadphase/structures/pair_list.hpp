@@ -94,7 +94,7 @@ class PairList {
                             : nullptr;
     if (!pairs) fail(std::bad_alloc());
     pairs_ = static_cast<Pair*>(pairs), capacity_ = capacity;
-    if (capacity * sizeof(Pair) >= pages::worth_huge && huge_pages_)
+    if (capacity * sizeof(Pair) >= pages::huge && huge_pages_)
       pages::advise(pairs_, pairs_ + capacity_, true);
   }
 

@@ -15,7 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "hierarchies/build/cheapest_cut.hpp"
 #include "hierarchies/build/topology.hpp"
 #include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/local_mesh.hpp"
@@ -29,9 +28,9 @@ namespace bvlab {
 /// which they spread most (gottschalk1996obbtree).
 enum class SplitAxis { longest, principal };
 
-/// The place of a split: equal counts, the mean of the centroids, the middle of their extent, or
-/// the least cost by the surface-area heuristic in 32 bins (goldsmith1987automatic, wald2007fast).
-enum class SplitAt { median, mean, middle, surface_area };
+/// The place of a split: equal counts, the mean of the centroids, or the middle of their extent.
+/// (Splits of least cost: range_splits.hpp.)
+enum class SplitAt { median, mean, middle };
 
 struct TopDown {
   SplitAxis axis = SplitAxis::longest;
@@ -44,13 +43,27 @@ struct TopDown {
 
 namespace detail {
 
-/// Partitions the items themselves, not indices: a range is contiguous in memory at any depth.
-template <class Item>
+/// Partitions triangles' centroids, not indices: a range is contiguous in memory at any depth.
 class Splitter {
+  using Four = Eigen::Array4d;
+  /// A triangle's centroid, and in the fourth number its index in the mesh, exact in double.
+  using Item = std::array<double, 4>;
+
+  static Eigen::Map<const Four> four(const Item& item) {
+    return Eigen::Map<const Four>(item.data());
+  }
+  static Eigen::Map<const Vec3<double>> centroid(const Item& item) {
+    return Eigen::Map<const Vec3<double>>(item.data());
+  }
+
  public:
   Splitter(const TriangleMesh& mesh, const TopDown& options) : options_(options) {
     items_.reserve(mesh.triangles.size());
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) items_.emplace_back(mesh.corners(i), i);
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      const Triangle t = mesh.corners(i);
+      const Vec3<double> c = t[0] / 3 + t[1] / 3 + t[2] / 3;
+      items_.push_back({c[0], c[1], c[2], static_cast<double>(i)});
+    }
   }
 
   Topology build(Threads& threads) {
@@ -62,21 +75,18 @@ class Splitter {
       topology.nodes = subtrees({{0, count}, extent(items_)}, threads);
     topology.primitives.reserve(items_.size());
     for (const Item& item : items_)
-      topology.primitives.push_back(static_cast<std::uint32_t>(detail::index(item)));
+      topology.primitives.push_back(static_cast<std::uint32_t>(item[3]));
     return topology;
   }
 
  private:
   static constexpr double infinite = std::numeric_limits<double>::infinity();
   using Nodes = std::vector<Topology::Node>;
-  using Four = Eigen::Array4d;
   /// The bounding box of a range's centroids.
   struct Extent {
     Four lo = Four::Constant(infinite), hi = Four::Constant(-infinite);
 
-    void add(const Item& item) {
-      lo = lo.min(four(item, Item::centroid_at)), hi = hi.max(four(item, Item::centroid_at));
-    }
+    void add(const Item& item) { lo = lo.min(four(item)), hi = hi.max(four(item)); }
   };
   struct Range {
     Topology::Node node;
@@ -196,10 +206,7 @@ class Splitter {
     Extent left_extent, right_extent;
     std::size_t left = 0;
     if (low < high && options_.at != SplitAt::median) {
-      const double cut = options_.at == SplitAt::mean ? mean_of(range, key)
-                         : options_.at == SplitAt::middle
-                             ? low / 2 + high / 2
-                             : CheapestCut<Item>::of(range, key, low, high);
+      const double cut = options_.at == SplitAt::mean ? mean_of(range, key) : low / 2 + high / 2;
       left = partition(
           range, [&](const Item& item) { return key(item) < cut; }, left_extent, right_extent);
     }
@@ -207,8 +214,7 @@ class Splitter {
       left = range.size() / 2;
       std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(left),
                        range.end(), [&](const Item& a, const Item& b) {
-                         return key(a) < key(b) ||
-                                (key(a) == key(b) && detail::index(a) < detail::index(b));
+                         return key(a) < key(b) || (key(a) == key(b) && a[3] < b[3]);
                        });
       left_extent = extent(range.first(left)), right_extent = extent(range.subspan(left));
     }
@@ -267,10 +273,7 @@ class Splitter {
 }  // namespace detail
 
 inline Topology TopDown::operator()(const TriangleMesh& mesh, Threads& threads) const {
-  const LocalMesh local(mesh);
-  return at == SplitAt::surface_area
-             ? detail::Splitter<detail::BoxOf>(local.mesh(), *this).build(threads)
-             : detail::Splitter<detail::CentroidOf>(local.mesh(), *this).build(threads);
+  return detail::Splitter(LocalMesh(mesh).mesh(), *this).build(threads);
 }
 inline Topology TopDown::operator()(const TriangleMesh& mesh) const {
   Threads alone;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// A std::vector for large arrays that are written before they are read: growing does not
-/// initialise elements without a constructor, so that no page is touched twice. Very large arrays
-/// are allocated in whole huge pages. Where few parts of an array will be written, its pages can be
-/// left to be brought in when they are: those that are not cost nothing.
+/// initialise elements without a constructor, so that no page is touched twice. Arrays of two
+/// megabytes and more are allocated in whole huge pages. Where few parts of an array will be
+/// written, its pages can be left to be brought in when they are: those that are not cost nothing.
 #pragma once
 
 #include <cstddef>
@@ -37,7 +37,7 @@ class LargeAllocator : public std::allocator<T> {
     const std::size_t bytes = count * sizeof(T);
     if (bytes < worth_asking || count > static_cast<std::size_t>(-1) / 2 / sizeof(T))
       return std::allocator<T>::allocate(count);
-    if (bytes < pages::worth_huge) {
+    if (bytes < pages::huge) {
       T* const memory = std::allocator<T>::allocate(count);
       if (paging_ == Paging::at_once) pages::bring(memory, memory + count);
       return memory;
@@ -56,7 +56,7 @@ class LargeAllocator : public std::allocator<T> {
     return reinterpret_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t count) {
-    if (count * sizeof(T) < pages::worth_huge)
+    if (count * sizeof(T) < pages::huge)
       std::allocator<T>::deallocate(memory, count);
     else
       ::operator delete(memory, std::align_val_t(pages::huge));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Asks the system for memory pages before they are first written. Populating them in bulk takes
-/// two thirds of the time of page faults one by one, and huge pages take a third. Only time depends
-/// on this; on systems other than Linux nothing is done.
+/// two thirds of the time of page faults one by one, and huge pages take a third (a fortieth, on a
+/// virtual machine whose host has backed the memory). Only time depends on this; on systems other
+/// than Linux nothing is done.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +16,6 @@
 namespace bvlab::pages {
 
 inline constexpr std::size_t small = 4096, huge = std::size_t{1} << 21;
-/// From this size on, huge pages pay even if the first one turns out to be slow (see `bring`).
-inline constexpr std::size_t worth_huge = 8 * huge;
 
 /// Sets whether the memory from `begin` to `end`, which must hold nothing else, uses huge pages.
 inline void advise([[maybe_unused]] void* begin, [[maybe_unused]] void* end,

@@ -277,9 +277,8 @@ class WideHierarchy {
   /// have one triangle. Its pages cost nothing until they are written. The splits of small meshes
   /// take less time than so many pages.
   void make_room_for(std::uint32_t triangles) {
-    constexpr std::uint32_t small = 1024;
     std::size_t nodes = 1, leaves = 1;
-    if (triangles > small) {
+    if (triangles > RangeSplits::sampled) {
       nodes = 2 * std::size_t{triangles} - 1, leaves = triangles;
     } else if (triangles > unmade_->leaf_size) {
       unmade_->splits.emplace(unmade_->local.mesh());

@@ -104,7 +104,7 @@ class WorkQueue {
  public:
   static constexpr std::size_t window = 32;
 
-  WorkQueue() { grow(512); }
+  WorkQueue() { grow(64); }
 
   void clear() { size_ = 0; }
   bool empty() const { return size_ == 0; }

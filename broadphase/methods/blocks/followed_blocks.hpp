@@ -49,11 +49,16 @@ class FollowedBlocks {
   bool overgrown() const { return tree_.slots() > 2 * count_ + 1024; }
   /// The number of frames in a row, up to the last, in which fewer than one box in eight moved.
   int few_moved() const { return few_moved_; }
-  /// Whether boxes keep their motion well enough for one-sided fat boxes.
+  /// Whether boxes keep their motion well enough for one-sided fat boxes; they no longer do from
+  /// expect_jitter() on.
   bool steady() const { return steady_; }
+  void expect_jitter() { steady_ = false; }
   /// The shortest and the longest horizon, in frames.
   static constexpr int shortest = 8;
   int longest() const { return longest_; }
+  /// The present horizon, and the number of candidates when it began.
+  int horizon() const { return horizon_; }
+  double candidates() const { return static_cast<double>(candidates_at_first_); }
   /// The number of frames over which the next candidates are found.
   int time_to_find() const { return std::min(horizon_, 2 * shortest) / 2; }
 
@@ -153,6 +158,26 @@ class FollowedBlocks {
     stop();
   }
 
+  /// Encloses the box for `frames` more frames if it keeps its motion; in unsteady motion, a margin
+  /// all around. Correctness does not depend on the prediction.
+  Row<T> fat_box_of(const Row<T>& now, const Row<T>& was, int frames) const {
+    if (joined_.jumped(now, was)) return now;
+    const Four<T> zero{}, low = now.lo - was.lo, high = now.hi - was.hi;
+    const Four<T> far = most<T>(absolute<T>(low), absolute<T>(high));
+    Row<T> fat;
+    if (steady_) {
+      const T ahead = static_cast<T>(frames);
+      // A quarter of a step more covers accumulated rounding.
+      fat = {now.lo + least<T>(low * ahead, zero) - far / 4,
+             now.hi + most<T>(high * ahead, zero) + far / 4};
+    } else {
+      const T widest = std::max({far[0], far[1], far[2]}) * (static_cast<T>(frames) + T(0.25));
+      fat = {now.lo - widest, now.hi + widest};
+    }
+    constexpr T limit = std::numeric_limits<T>::max();
+    return {most<T>(fat.lo, zero - limit), least<T>(fat.hi, zero + limit)};
+  }
+
  private:
   /// The slots that a thread takes at once: whole blocks of leaves.
   static constexpr std::uint32_t slots_a_stretch = 4 * block_width * block_width;
@@ -189,8 +214,6 @@ class FollowedBlocks {
         });
     if (sorted_) visits_when_sorted_ = visits_, sorted_ = false;
     candidates_at_first_ = candidates_.size();
-    next_.reserve(tree_.leaves(), candidates_.size());
-    spare_.resize(tree_.slots());
     count_ = boxes.size();
     active_ = true;
     horizon_ = horizon, age_ = 0;
@@ -340,26 +363,6 @@ class FollowedBlocks {
         escaped_.push_back({slot, rows[slot]});
     widen_escaped();
     write_candidates();
-  }
-
-  /// Encloses the box for `frames` more frames if it keeps its motion; in unsteady motion, a margin
-  /// all around. Correctness does not depend on the prediction.
-  Row<T> fat_box_of(const Row<T>& now, const Row<T>& was, int frames) const {
-    if (joined_.jumped(now, was)) return now;
-    const Four<T> zero{}, low = now.lo - was.lo, high = now.hi - was.hi;
-    const Four<T> far = most<T>(absolute<T>(low), absolute<T>(high));
-    Row<T> fat;
-    if (steady_) {
-      const T ahead = static_cast<T>(frames);
-      // A quarter of a step more covers accumulated rounding.
-      fat = {now.lo + least<T>(low * ahead, zero) - far / 4,
-             now.hi + most<T>(high * ahead, zero) + far / 4};
-    } else {
-      const T widest = std::max({far[0], far[1], far[2]}) * (static_cast<T>(frames) + T(0.25));
-      fat = {now.lo - widest, now.hi + widest};
-    }
-    constexpr T limit = std::numeric_limits<T>::max();
-    return {most<T>(fat.lo, zero - limit), least<T>(fat.hi, zero + limit)};
   }
 
   // ---- one frame ----------------------------------------------------------------------------

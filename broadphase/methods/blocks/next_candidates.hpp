@@ -42,15 +42,6 @@ class NextCandidates {
         join(joined, static_cast<std::size_t>(stage_ - 2 - fat_parts));
   }
 
-  /// Allocates the memory needed for about this many leaves and candidates.
-  void reserve(std::uint32_t leaves, std::size_t candidates) {
-    tree_.resize_leaves(leaves);
-    fat_boxes_.resize(tree_.slots());
-    // The join reserves somewhat more than it writes.
-    candidates_.clear();
-    candidates_.reserve(candidates + candidates / 8 + 16 * 256);
-  }
-
   BlockTree<T>& tree() { return tree_; }
   LargeVector<Row<T>>& fat_boxes() { return fat_boxes_; }
   PairList& candidates() { return candidates_; }
