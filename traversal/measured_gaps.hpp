@@ -161,7 +161,7 @@ class MeasuredGapsOf {
     S squared(0x1p-120f);
     for (std::size_t k = 0; k < 3; ++k) {
       const S moved = now[k] - batch(from.of_b[k]);
-      squared = fused_as_counted<S>(moved, moved, squared);
+      squared = fused<S>(moved, moved, squared);
     }
     const S rotated =
         min(S(static_cast<float>(rotation) * (1 + 2 * e)) - batch(from.rotation), S(2.0f + 16 * e));

@@ -40,11 +40,9 @@ class CornerTransform {
 
   [[gnu::always_inline]] Four operator()(float x, float y, float z) const {
     const auto from = [](const float* p) { return Four(p, stdx::vector_aligned); };
-    return fused_as_counted<Four>(
-        from(column_[2]), Four(z),
-        fused_as_counted<Four>(
-            from(column_[1]), Four(y),
-            fused_as_counted<Four>(from(column_[0]), Four(x), from(translation_))));
+    return fused<Four>(from(column_[2]), Four(z),
+                       fused<Four>(from(column_[1]), Four(y),
+                                   fused<Four>(from(column_[0]), Four(x), from(translation_))));
   }
 
   /// The same for several points, one per lane.
@@ -52,10 +50,9 @@ class CornerTransform {
   [[gnu::always_inline]] std::array<S, 3> operator()(const S& x, const S& y, const S& z) const {
     std::array<S, 3> result;
     for (std::size_t i = 0; i < 3; ++i)
-      result[i] = fused_as_counted<S>(
+      result[i] = fused<S>(
           S(column_[2][i]), z,
-          fused_as_counted<S>(S(column_[1][i]), y,
-                              fused_as_counted<S>(S(column_[0][i]), x, S(translation_[i]))));
+          fused<S>(S(column_[1][i]), y, fused<S>(S(column_[0][i]), x, S(translation_[i]))));
     return result;
   }
 

@@ -54,7 +54,8 @@ std::unique_ptr<Run> made(std::string_view volume, std::string_view strategy,
   variant.volume = volume, variant.strategy = strategy, variant.query = query;
   variant.kernel = kernel, variant.fan_out = fan_out;
   if (kernel != "gathered")
-    variant.frame = name_of(Frame::body), variant.fan_out = native_fan_out<float>;
+    variant.frame = name_of(Frame::body),
+    variant.fan_out = kernel == MixedKernel::name ? 4 : native_fan_out<float>;
   run->options.count = Count::on;
   if (!with_volume(volume, [&]<class V>(std::type_identity<V>) {
         run->hierarchies = std::make_unique<HierarchiesOf<V>>(meshes, variant);

@@ -75,17 +75,17 @@ std::unique_ptr<detail::AnyPairs<Query>> gathered(const Trace& trace, Run& run) 
   return made;
 }
 
-template <class Query>
-std::unique_ptr<detail::AnyPairs<Query>> siblings(std::span<const TriangleMesh> meshes,
-                                                  const Trace& trace, Run& run) {
+template <class Kernel, class Query>
+std::unique_ptr<detail::AnyPairs<Query>> wide(std::span<const TriangleMesh> meshes,
+                                              const Trace& trace, Run& run) {
   std::unique_ptr<detail::AnyPairs<Query>> made;
   WideVolumes::with(run.variant.volume, [&]<class V>(std::type_identity<V>) {
-    constexpr int fan_out = native_fan_out<typename V::scalar>;
-    using Trees = detail::WideHierarchies<SiblingsKernel::Hierarchy<V, fan_out>>;
+    constexpr int fan_out = detail::fan_out_of<Kernel, typename V::scalar>;
+    using Trees = detail::WideHierarchies<typename Kernel::template Hierarchy<V, fan_out>>;
     const auto trees = std::make_shared<Trees>(meshes, run.variant, 1);
     const auto shapes = shapes_over(meshes, trees->all(), trace.objects);
     const auto with = [&]<class Memory>(const Memory& memory) {
-      using Pairs = WidePairs<V, fan_out, Memory, SiblingsKernel>;
+      using Pairs = WidePairs<V, fan_out, Memory, Kernel>;
       made = std::make_unique<detail::PairsOver<Pairs, Query, Trees>>(trees, Pairs(shapes, memory));
     };
     if (run.variant.strategy == WideMargins::name)
@@ -104,7 +104,9 @@ std::unique_ptr<detail::Player> player(std::span<const TriangleMesh> meshes, con
   std::unique_ptr<detail::AnyPairs<Query>> pairs;
   if (run.variant.kernel == "gathered") pairs = gathered<Query>(trace, run);
   if constexpr (for_wide_trees<Query>())
-    if (run.variant.kernel == SiblingsKernel::name) pairs = siblings<Query>(meshes, trace, run);
+    Kernels::with(run.variant.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+      pairs = wide<Kernel, Query>(meshes, trace, run);
+    });
   if (!pairs) return nullptr;
   return detail::player_over(std::move(pairs), meshes, trace, run.variant, run.options, run.result);
 }

@@ -20,13 +20,13 @@
 #include "traversal/strategies/raise.hpp"
 #include "traversal/strategies/recursive.hpp"
 #include "traversal/strategies/separation_list.hpp"
-#include "traversal/wide/siblings_kernel.hpp"
+#include "traversal/wide/kernels.hpp"
 
 namespace bvlab::live {
 
 using Volumes = TypeList<Sphere<float>, Obb<float>>;
 using Strategies = TypeList<Recursive, SeparationList, Deferred, Raise, Margins>;
-/// Volumes of the kernel `siblings`, which takes the strategies Recursive and Margins.
+/// Volumes of the kernels for wide trees, which take the strategies Recursive and Margins.
 using WideVolumes = TypeList<SlabBox<float>>;
 
 /// What is played, frame after frame; it must not move.

@@ -4,6 +4,7 @@
 /// registers of a step.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -18,6 +19,42 @@
 #endif
 
 namespace bvlab {
+
+namespace detail {
+
+/// Whether `fused` rounds once: for batches of four floats or more where x86 has FMA, and where
+/// BVLAB_FUSED says that this processor, which has none, is to count as one that has (as by
+/// BVLAB_REGISTER_BYTES).
+template <Scalar S>
+constexpr bool counted_as_fused =
+#if defined(BVLAB_FUSED)
+    std::is_same_v<Element<S>, float> && width<S>() >= 4;
+#else
+    false;
+#endif
+
+/// a * b + c for BVLAB_FUSED. WebAssembly's relaxed lanes round as the processor does: who runs
+/// them asks first. Without them the product is exact in double, and all but one sum in 2^29 is
+/// rounded as if once.
+template <Batched S>
+[[gnu::always_inline]] inline S once_rounded(const S& a, const S& b, const S& c) {
+#if defined(__wasm_relaxed_simd__)
+  using Four [[gnu::vector_size(16)]] = float;
+  using Fours = std::array<Four, S::size() / 4>;
+  const auto fours = [](const S& x) { return std::bit_cast<Fours>(x); };
+  const Fours x = fours(a), y = fours(b), z = fours(c);
+  Fours sum;
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    sum[i] = __builtin_wasm_relaxed_madd_f32x4(x[i], y[i], z[i]);
+  return std::bit_cast<S>(sum);
+#else
+  using Wide = Batch<double, width<S>()>;
+  const auto wide = [](const S& x) { return stdx::static_simd_cast<Wide>(x); };
+  return stdx::static_simd_cast<S>(wide(a) * wide(b) + wide(c));
+#endif
+}
+
+}  // namespace detail
 
 /// a * b + c, rounded once for batches of floats where x86 has FMA, else twice. Only for results
 /// whose error bound covers both; never for the exact position of a vertex.
@@ -35,21 +72,10 @@ template <Scalar S>
   if constexpr (std::is_same_v<S, Batch<float, 4>>)
     return S(_mm_fmadd_ps(static_cast<__m128>(a), static_cast<__m128>(b), static_cast<__m128>(c)));
 #endif
-  return a * b + c;
-}
-
-/// `fused`, for results that decide what is counted. Where BVLAB_FUSED is defined this processor
-/// has no FMA, and one that has is to be counted as (as by BVLAB_REGISTER_BYTES): the product is
-/// exact in double, so that all but one sum in 2^29 is rounded as if once.
-template <Batched S>
-[[gnu::always_inline]] inline S fused_as_counted(const S& a, const S& b, const S& c) {
-#if defined(BVLAB_FUSED)
-  using Wide = Batch<double, width<S>()>;
-  const auto wide = [](const S& x) { return stdx::static_simd_cast<Wide>(x); };
-  return stdx::static_simd_cast<S>(wide(a) * wide(b) + wide(c));
-#else
-  return fused<S>(a, b, c);
-#endif
+  if constexpr (detail::counted_as_fused<S>)
+    return detail::once_rounded<S>(a, b, c);
+  else
+    return a * b + c;
 }
 
 /// c - a * b, rounded as `fused` is.
@@ -67,7 +93,10 @@ template <Scalar S>
   if constexpr (std::is_same_v<S, Batch<float, 4>>)
     return S(_mm_fnmadd_ps(static_cast<__m128>(a), static_cast<__m128>(b), static_cast<__m128>(c)));
 #endif
-  return c - a * b;
+  if constexpr (detail::counted_as_fused<S>)
+    return detail::once_rounded<S>(-a, b, c);
+  else
+    return c - a * b;
 }
 
 /// 1 / x; in AVX-512 with a relative error up to 2^-14. Only for the order of pairs.

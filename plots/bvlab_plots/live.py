@@ -9,6 +9,7 @@ they touch turns red.
 import argparse
 import base64
 import gzip
+import hashlib
 import json
 import os
 import re
@@ -54,24 +55,38 @@ def zipped(content):
 
 
 def engine():
-    """The module for WebAssembly, made first where that is to be done."""
+    """The modules for WebAssembly by name, made first where that is to be done: of those a browser takes the first that it runs
+    as it is meant (engine.js)."""
     done = subprocess.run([ROOT / "experiments" / "live" / "build"], stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode:
         raise Refused(done.stderr.strip().splitlines()[-1] if done.stderr.strip() else "the engine was not made")
-    return zipped(bytes_of(ROOT / "build" / "live" / "engine.wasm"))
+    made = {name: ROOT / "build" / "live" / f"{name}.wasm" for name in ("relaxed", "engine")}
+    return {name: zipped(bytes_of(path)) for name, path in made.items() if name == "engine" or path.exists()}
 
 
-def written(name, data):
-    """The page of that name with its scripts, its styles and the data, which cannot end the script that they are in."""
+def written(name, data, scripts=()):
+    """The page of that name with its scripts, its styles and the data, which cannot end the script that they are in. Nothing
+    else runs there, nor in a frame but `scripts`, and nothing is fetched: what its policy says to the browser."""
     text = json.dumps(data).replace("<", "\\u003c")
+    allowed = [*map(hash_of, scripts)]
 
     def part(match):
         if match[1]:
             place = PAGES / match[1] if (PAGES / match[1]).exists() else VIEWERS / match[1]
             script = place.read_text() if place.exists() else ""
-            return "<script>\n" + script.replace("</script", "<\\/script") + "</script>"
+            script = "\n" + script.replace("</script", "<\\/script")
+            allowed.append(hash_of(script))
+            return f"<script>{script}</script>"
         return "<style>\n" + (PAGES / match[2]).read_text() + "</style>" if match[2] else text
-    return NAMED.sub(part, (PAGES / name).read_text())
+    page = NAMED.sub(part, (PAGES / name).read_text())
+    # Engines of others are unzipped in the page, and so become functions.
+    evaluated = "'unsafe-eval'" if {"others", "vrml_reader"} & data.keys() else "'wasm-unsafe-eval'"
+    policy = f"default-src 'none'; img-src data: blob:; style-src 'unsafe-inline'; script-src {evaluated} {' '.join(allowed)}"
+    return page.replace('<meta charset="utf-8">', f'<meta charset="utf-8">\n<meta http-equiv="Content-Security-Policy" content="{policy}">', 1)
+
+
+def hash_of(script):
+    return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
 
 
 def motion_of(path, bvlab):
@@ -130,11 +145,16 @@ def live_page(arguments):
     shown = max(1, min(frames, ROOM_FOR_MOTION // (56 * bodies)))
     left_out = [f"Of {frames} frames the first {shown} are in this page."] if shown < frames else []
     return written("peers.html" if arguments.peers else "live.html", {
-        "title": ", ".join(dict.fromkeys(Path(path).name for path in arguments.mesh)), "bodies": bodies, "query": arguments.query,
+        "title": title_of(dict.fromkeys(Path(path).name for path in arguments.mesh)), "bodies": bodies, "query": arguments.query,
         "runs": [run_of(text) for text in arguments.run or RUNS], "left_out": left_out,
         "meshes": [{"name": Path(path).name, "vertices": text_of(mesh.vertices, "<f8"), "triangles": text_of(mesh.faces, "<u4")}
                    for path, mesh in zip(arguments.mesh, meshes)],
         "motion": text_of(motion[:shown], "<f8"), "engine": engine(), **(others() if arguments.peers else {})})
+
+
+def title_of(names):
+    first, *rest = names
+    return f"{first} and {len(rest)} others" if len(rest) > 1 else ", ".join(names)
 
 
 def from_npm(name):
@@ -150,9 +170,10 @@ def others():
 
 def x3d_page(arguments):
     scene = bytes_of(arguments.x3d)
-    return written("x3d.html", {
-        "title": Path(arguments.x3d).name, "scene": scene.decode(errors="replace"), "engine": engine(),
-        "vrml_reader": from_npm("x_ite.min.js") if scene.startswith(b"#VRML") else ""})
+    frame = (PAGES / "vrml_frame.js").read_text()
+    vrml = {"vrml_reader": from_npm("x_ite.min.js"), "vrml_frame": frame} if scene.startswith(b"#VRML") else {}
+    return written("x3d.html", {"title": Path(arguments.x3d).name, "scene": scene.decode(errors="replace"), "engine": engine(), **vrml},
+                   [frame] if vrml else [])
 
 
 def main():
