@@ -9,35 +9,16 @@ function problem(sentence) {
   element('problem').hidden = false;
 }
 
-/** VRML 97 as X3D: X_ITE reads it, in a frame of its own without a network. */
-function fromVrml(text, viewer) {
-  function inFrame() {
-    // X_ITE looks for files beside its script, which has no address here: they are not needed.
-    window.URL = class extends URL { constructor(path, base) { super(path, base?.startsWith('about:') ? 'https://bvlab.invalid/' : base); } };
-    // Nor is there storage in such a frame, in which X_ITE would keep its settings.
-    Object.defineProperty(window, 'localStorage', { value: { getItem: () => null, setItem() {} } });
-    addEventListener('error', event => parent.postMessage({ problem: event.message }, '*'));
-    addEventListener('message', async ({ data, source }) => {
-      const answer = {};
-      try {
-        new Function(data.viewer)();
-        const browser = X3D.getBrowser(document.body.appendChild(X3D.createBrowser()));
-        browser.loadComponents = async () => {};
-        browser.setBrowserOption('LoadUrlObjects', false);
-        answer.x3d = (await browser.createX3DFromString(data.text)).toXMLString();
-      } catch (error) {
-        answer.problem = error.message;
-      }
-      source.postMessage(answer, '*');
-    });
-  }
-  const frame = document.createElement('iframe');
+/** VRML 97 as X3D: X_ITE reads it, in a frame of its own without a network (vrml_frame.js). */
+function fromVrml(text, viewer, script) {
+  const frame = document.createElement('iframe'), most = 30;
   frame.setAttribute('sandbox', 'allow-scripts');
   // Where nothing is drawn, X_ITE waits for ever for the next frame.
   frame.style = 'position: fixed; top: 0; left: 0; width: 2px; height: 2px; border: 0; opacity: 0.01';
   frame.srcdoc = `<meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'">`
-    + `<body><script>(${inFrame})()<\/script>`;
+    + `<body><script>${script}<\/script>`;
   return new Promise((done, refuse) => {
+    setTimeout(() => refuse(Error(`This VRML was not read within ${most} seconds.`)), 1000 * most);
     frame.addEventListener('load', () => frame.contentWindow.postMessage({ text, viewer }, '*'));
     addEventListener('message', ({ data, source }) => {
       if (source !== frame.contentWindow) return;
@@ -54,10 +35,12 @@ const page = { contact: null };
   const data = JSON.parse(element('data').textContent);
   document.title = element('title').textContent = `bvlab in an X3D browser · ${data.title}`;
   if (typeof x3dom === 'undefined') return problem('This page was made without x3dom, which shows X3D: experiments/setup gets it from npm.');
+  // It writes what stands in a file into its log as HTML, and a WorldInfo's words are logged.
+  x3dom.debug.doLog = () => {};
   if (!document.createElement('canvas').getContext('webgl')) return problem('This browser shows no 3D here: WebGL is off or missing.');
   if (data.scene.startsWith('#VRML V2.0')) {
     if (!data.vrml_reader) return problem('This page was made without X_ITE, which reads VRML: experiments/setup gets it from npm.');
-    data.scene = await fromVrml(data.scene, new TextDecoder().decode(await unzipped(data.vrml_reader)));
+    data.scene = await fromVrml(data.scene, new TextDecoder().decode(await unzipped(data.vrml_reader)), data.vrml_frame);
   }
   const read = new DOMParser().parseFromString(data.scene, 'text/xml'), given = read.querySelector('Scene, scene');
   if (read.querySelector('parsererror') || !given) return problem(`${data.title} is no X3D that can be read here: XML with a Scene is needed, or VRML 97 (#VRML V2.0).`);
@@ -103,9 +86,11 @@ const page = { contact: null };
   element('stage').append(x3d);
 
   const ready = () => [...x3d.querySelectorAll('shape')].every(shape => shape._x3domNode?._cf.geometry?.node?._mesh?._positions?.[0]?.length > 0);
+  const begun = performance.now(), patience = 10000;
   const names = part => part.getAttribute('DEF') ?? 'a part';
   async function attach() {
-    if (!x3d.runtime || !ready()) return void setTimeout(attach, 30);
+    // A shape may stay empty: it is not waited for.
+    if (!x3d.runtime || (!ready() && performance.now() - begun < patience)) return void setTimeout(attach, 30);
     try {
       x3d.runtime.showAll?.('negZ');
       page.contact = await bvlabX3d(x3d, await engineFrom(data.engine), {

@@ -10,12 +10,18 @@ from pathlib import Path
 
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.remote.remote_connection import RemoteConnection
 
 ROOT = Path(__file__).resolve().parents[2]
 BVLAB = os.environ.get("BVLAB", str(ROOT / "build" / "release" / "bvlab"))
 OPTIONS = ["--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
            "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage", "--force-device-scale-factor=1",
            "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--host-resolver-rules=MAP * ~NOTFOUND"]
+
+
+# Seconds that a command may take: where a browser hangs, its test fails. Selenium would wait for ever.
+PATIENCE = 240
+RemoteConnection.set_timeout(PATIENCE)
 
 
 def require_browser():
@@ -38,6 +44,8 @@ class Browser:
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         service = Service(os.environ.get("CHROMEDRIVER", "/usr/bin/chromedriver"))
         self.driver = webdriver.Chrome(service=service, options=options)
+        self.driver.set_page_load_timeout(PATIENCE / 2)
+        self.driver.set_script_timeout(PATIENCE / 2)
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                     {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600})
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [
@@ -47,7 +55,11 @@ class Browser:
         return self
 
     def __exit__(self, *_):
-        self.driver.quit()
+        try:
+            self.driver.quit()
+        except OSError:  # it hangs: its driver is ended below
+            pass
+        self.driver.service.stop()
         shutil.rmtree(self.profile, ignore_errors=True)
 
     def open(self, page):
