@@ -199,7 +199,14 @@ const live = (() => {
     const hits = new Set(runs.filter(run => run.number !== null && run.counts).map(run => run.counts.hits));
     element('agreement').textContent = hits.size > 1 ? 'They find different answers: that is a fault; please report it.'
       : runs.length > 1 ? 'All find the same.' : '';
-    for (const run of runs) run.numbers.innerHTML = run.number === null ? '' : curves.said(run, runs);
+    const alike = new Set(runs.map(({ volume, kernel }) => volume + kernel)).size === 1;
+    for (const run of runs) {
+      run.line.firstChild.textContent = run.strategy + (['deferred', 'raise'].includes(run.strategy) ? ' (a separation list)' : '')
+        + (alike ? '' : `, ${run.volume}, ${run.kernel}`);
+      const { text, part } = curves.tests(run, runs), [bar, number] = run.line.lastChild.children;
+      bar.style.width = `${80 * part}%`, number.textContent = run.number === null ? '' : text;
+      run.numbers.innerHTML = run.number === null ? '' : curves.said(run, runs);
+    }
     self.drawn = true;
   }
   function sentence() {
@@ -211,6 +218,17 @@ const live = (() => {
   }
 
   // Pair
+  /** The pair whose middles are nearest, in the mean of twenty frames, for their sizes. */
+  function nearest() {
+    const frames = Array.from({ length: 20 }, (_, k) => data.frameOf(Math.floor(k * data.motionFrames / 20))), least = { gap: Infinity, pair: [0, 1] };
+    const middles = frames.map(frame => Array.from({ length: data.objects }, (_, i) =>
+      add3(Array.from(frame.subarray(7 * i, 7 * i + 3)), rotated(boxOf(i).centre, frame.subarray(7 * i + 3, 7 * i + 7)))));
+    for (let i = 0; i < data.objects; ++i) for (let j = i + 1; j < data.objects; ++j) {
+      const gap = middles.reduce((sum, at) => sum + Math.hypot(...add3(at[i], at[j], -1)), 0) / 20 / (boxOf(i).radius + boxOf(j).radius);
+      if (gap < least.gap) Object.assign(least, { gap, pair: [i, j] });
+    }
+    return least.pair;
+  }
   function choose(pair) {
     if (pair && (pair[0] === pair[1] || pair.some(i => !(i < data.objects)))) pair = null;
     state.pair = pair && [Math.min(...pair), Math.max(...pair)];
@@ -223,6 +241,7 @@ const live = (() => {
 
   // Time
   function play(on) {
+    state.shaken = null;
     state.playing = on && data.motionFrames > 1;
     if (state.playing && (state.free || state.frame === data.motionFrames - 1)) seek(state.free ? state.frame : 0);
     element('play').textContent = state.playing ? 'Pause' : 'Play';
@@ -270,11 +289,30 @@ const live = (() => {
     });
     if (flying) playNow();
   }
+  /** Plays the motion; without one, the first body of the pair drifts past the other and turns. */
+  function slowly() {
+    if (data.motionFrames > 1) return play(true);
+    byHand();
+    const way = unit3(add3(centreOf(state.pair?.[1] ?? 0), centreOf(selected()), -1));
+    Object.assign(speeds[selected()], { way: way.map(x => 0.2 * largest * x), turn: [0.1, 0.2, 0.1] });
+  }
   /** Sends the two bodies of the pair away from each other. */
   function part() {
     byHand();
     const [i, j] = state.pair, way = unit3(add3(centreOf(j), centreOf(i), -1));
     for (const [body, sign] of [[i, -1], [j, 1]]) Object.assign(speeds[body], { way: way.map(x => 0.6 * sign * largest * x), turn: [0, 0, 0] });
+  }
+  /** For a second, the first body of the pair jumps to and fro, and turns. */
+  function shake() {
+    byHand();
+    state.shaken = { body: selected(), frames: 60, turn: Array.from(poseOf(selected())) };
+  }
+  function shaken() {
+    const { body, turn } = state.shaken, k = state.shaken.frames--;
+    poseOf(body).set(turn);
+    if (k === 0) state.shaken = null;
+    else moveBody(body, [1, 2, 3].map(i => 0.25 * largest * Math.sin(i * k * k)), [1, 2, 3].map(i => 0.6 * Math.sin((i + 3) * k * k)));
+    playNow();
   }
   const selected = () => state.pair?.[0] ?? 0;
   function key(event) {
@@ -328,12 +366,13 @@ const live = (() => {
       away.addEventListener('click', () => {
         if (run.number !== null) self.engine.endRun(run.number);
         runs.splice(runs.indexOf(run), 1);
-        run.row.remove();
+        run.row.remove(), run.line.remove();
         if (run.isDrawn) runs[0].row.querySelector('input').click();
         draw();
       });
       run.row.append(away);
     }
+    run.line.style.color = run.colour;
     run.row.append(run.said, run.numbers);
   }
   /** Another strategy, volume, kernel, fan-out or query: the motion is played again up to here, so that numbers are
@@ -348,7 +387,11 @@ const live = (() => {
     const used = runs.map(run => run.colour), colour = colours.map(name => look.colour(name)).find(each => !used.includes(each));
     if (!colour) return;
     const run = { strategy: 'margins', volume: 'sphere', kernel: 'gathered', fanOut: 2, ...what, colour, number: null, past: [], times: [],
-      row: document.createElement('p'), said: document.createElement('small'), numbers: document.createElement('span') };
+      row: document.createElement('p'), said: document.createElement('small'), numbers: document.createElement('span'),
+      line: document.createElement('span') };
+    run.line.append(...['span', 'span'].map(name => document.createElement(name)));
+    run.line.lastChild.append(document.createElement('i'), document.createElement('output'));
+    element('lines').append(run.line);
     run.row.className = 'row run';
     element('runs').append(run.row);
     runs.push(run);
@@ -366,7 +409,7 @@ const live = (() => {
         seek(state.frame + 1);
         if (state.frame === data.motionFrames - 1) play(false);
       } else {
-        fly(seconds);
+        state.shaken ? shaken() : fly(seconds);
       }
       scene.draw();
       if (self.drawn) curves.draw(runs, drawn()), self.drawn = false;
@@ -388,6 +431,7 @@ const live = (() => {
     offered = {
       gathered: { volumes: ['sphere', 'obb'], strategies: ['recursive', 'separation-list', 'deferred', 'raise', 'margins'], fanOuts: [2, 4, 8, 16] },
       siblings: { volumes: ['slab-box'], strategies: ['recursive', 'margins'], fanOuts: [self.engine.lanes] },
+      mixed: { volumes: ['slab-box'], strategies: ['recursive', 'margins'], fanOuts: [4] },
     };
     for (const query of ['touching', 'contacts', 'distance']) element('query').append(new Option(query));
     element('query').value = data.query;
@@ -397,7 +441,7 @@ const live = (() => {
     for (const id of ['play', 'back', 'step', 'frame']) element(id).disabled = data.motionFrames < 2;
     state.free = true;  // until the motion has been taken from its beginning
     seek(0);
-    if (data.objects > 1) choose(touching.size > 0 ? data.pairOf([...touching][0]) : [0, 1]);
+    if (data.objects > 1) choose(nearest());
     scene.lookAt(null);
     connect();
     self.ready = true;
@@ -412,6 +456,9 @@ const live = (() => {
     element('query').addEventListener('change', changed);
     element('add-run').addEventListener('click', () => self.addRun());
     element('part').addEventListener('click', () => { if (state.pair) part(); });
+    element('shake').addEventListener('click', shake);
+    element('slowly').addEventListener('click', slowly);
+    if (data.motionFrames > 1) element('slowly').textContent = 'Play the motion';
     element('look').addEventListener('click', () => scene.lookAt(state.pair));
     for (const id of ['first', 'second'])
       element(id).addEventListener('change', () => choose([Number(element('first').value), Number(element('second').value)]));

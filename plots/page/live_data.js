@@ -10,9 +10,13 @@ const data = (() => {
       children: new Uint32Array(1), depths: new Uint16Array(1), deepest: 0, volumes: new Float32Array(0), numbers: 0 };
   });
   const objects = read.bodies, motion = doublesOf(read.motion), frames = motion.length / (7 * objects) || 0;
+  // Of the motion, what the camera is to see at first: as it is drawn, from where the first body begins.
+  const seen = 8, viewed = new Float32Array(7 * objects * seen);
+  for (let k = 0; k < viewed.length; ++k)
+    viewed[k] = motion[7 * objects * Math.round(Math.floor(k / (7 * objects)) * (frames - 1) / (seen - 1)) + k % (7 * objects)] - (k % 7 < 3 ? motion[k % 7] : 0);
   return {
     ...read, ...pairsOf(objects), meshes, objects, motion,
-    motionFrames: frames, frames: 1, poses: new Float32Array(7 * objects), drawn_as: '',
+    motionFrames: frames, frames: 1, poses: new Float32Array(7 * objects), viewed: { poses: viewed, frames: seen }, drawn_as: '',
     meshOf: i => meshes[i % meshes.length], meshIndexOf: i => i % meshes.length,
     frameOf: f => motion.subarray(7 * objects * f, 7 * objects * (f + 1)),
   };

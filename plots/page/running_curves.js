@@ -5,16 +5,16 @@
 const curves = (() => {
   const kept = 600, count = new Intl.NumberFormat('en', { maximumSignificantDigits: 6 });
   const kinds = [['N<sub>u</sub>', 'volumes posed'], ['N<sub>v</sub>', 'volume tests'], ['N<sub>p</sub>', 'triangle tests'],
-                 ['front', 'pairs kept'], ['hits', ''], ['N<sub>b</sub>', 'body tests'], ['time', 'ms']];
+                 ['front', 'pairs kept'], ['hits', ''], ['N<sub>b</sub>', 'body tests'], ['ms', 'time']];
   const boxes = kinds.map(([symbol, meaning]) => {
     const box = document.createElement('div');
     box.className = 'curve';
-    box.innerHTML = `<h3><span>${symbol}</span><output></output></h3><p>${meaning}<span></span></p><canvas></canvas>`;
+    box.innerHTML = `<h3><span>${meaning}</span></h3><p>${symbol} <output></output><span></span></p><canvas></canvas>`;
     document.getElementById('curves').append(box);
     return { box, canvas: box.querySelector('canvas'), output: box.querySelector('output'), most: box.querySelector('p span') };
   });
   const rough = new Intl.NumberFormat('en', { maximumSignificantDigits: 3 });
-  const format = (value, k) => (kinds[k][1] === 'ms' ? rough : count).format(value);
+  const format = (value, k) => (kinds[k][0] === 'ms' ? rough : count).format(value);
   const lastOf = (run, k) => run?.past.at(-1)?.[k] ?? NaN;
 
   function drawOne({ box, canvas, output, most }, k, runs, shown) {
@@ -25,7 +25,7 @@ const curves = (() => {
     canvas.width = Math.max(1, Math.round(width * scale)), canvas.height = Math.max(1, Math.round(height * scale));
     const pen = canvas.getContext('2d');
     // The first times are those of a browser that still compiles.
-    const from = kinds[k][1] === 'ms' ? Math.min(20, runs[0].past.length >> 1) : 0;
+    const from = kinds[k][0] === 'ms' ? Math.min(20, runs[0].past.length >> 1) : 0;
     const top = Math.max(...runs.map(run => run.past.slice(from).reduce((a, values) => Math.max(a, values[k]), 0))) || 1;
     most.textContent = `, to ${format(top, k)}`;
     pen.lineWidth = 1.25 * scale;
@@ -56,9 +56,14 @@ const curves = (() => {
       if (Number.isNaN(lastOf(run, 1))) return '';
       const base = runs.find(({ strategy, number }) => strategy === 'recursive' && number !== null);
       const sum = ({ past }, k) => past.reduce((all, values) => all + values[k], 0);
-      return [1, 2, 3, 6].map(k => `${kinds[k][0]} ${format(lastOf(run, k), k)}`).join(' · ') + ' ms'
-        + (!base || run === base ? '' : `<br><b>${rough.format(sum(run, 1) / sum(base, 1))}</b> of the volume tests of recursive so far, <b>${
-          rough.format(lastOf(run, 6) / lastOf(base, 6))}</b> of its time`);
+      return (!base || run === base ? '' : `<b>${rough.format(sum(run, 1) / sum(base, 1))}</b> of the volume tests of recursive so far, <b>${
+        rough.format(lastOf(run, 6) / lastOf(base, 6))}</b> of its time<br>`)
+        + [2, 3].map(k => `${kinds[k][0]} ${format(lastOf(run, k), k)} · `).join('') + `${format(lastOf(run, 6), 6)} ms`;
+    },
+    /** A run's volume tests in its last frame, and as a part of the most that a run has made. */
+    tests(run, runs) {
+      const most = Math.max(...runs.map(each => lastOf(each, 1) || 0));
+      return { text: Number.isNaN(lastOf(run, 1)) ? '' : format(lastOf(run, 1), 1), part: most > 0 ? (lastOf(run, 1) || 0) / most : 0 };
     },
   };
 })();

@@ -160,23 +160,23 @@ const scene = (() => {
   /** A ball around bodies where they stand, or over the whole trace where none are named. */
   function ballAround(some) {
     const low = new THREE.Vector3(Infinity, Infinity, Infinity), high = low.clone().negate(), at = new THREE.Vector3();
-    const step = some ? 1 : Math.max(1, Math.floor(data.frames / 64));
-    for (let f = some ? frame : 0; f < (some ? frame + 1 : data.frames); f += step)
+    const { poses: v, frames } = some ? data : data.viewed ?? data, step = some ? 1 : Math.max(1, Math.floor(frames / 64));
+    for (let f = some ? frame : 0; f < (some ? frame + 1 : frames); f += step)
       for (const i of some ?? bodies.keys()) {
-        const { center, radius } = bodies[i].geometry.boundingSphere, k = f * stride + i * 7, v = data.poses;
+        const { center, radius } = bodies[i].geometry.boundingSphere, k = f * stride + i * 7;
         at.copy(center).applyQuaternion(new THREE.Quaternion(v[k + 4], v[k + 5], v[k + 6], v[k + 3]).normalize());
         at.x += v[k], at.y += v[k + 1], at.z += v[k + 2];
         low.min(at.clone().addScalar(-radius)), high.max(at.clone().addScalar(radius));
       }
-    if (!(low.x <= high.x)) return { centre: new THREE.Vector3(), radius: 1 };
-    const all = high.clone().sub(low).length() / 2;
-    return { centre: low.add(high).multiplyScalar(0.5), radius: all || 1 };
+    if (!(low.x <= high.x)) return { centre: new THREE.Vector3(), radius: 1, tall: 0 };
+    const all = high.clone().sub(low).length() / 2, tall = (high.z - low.z) / 2;
+    return { centre: low.add(high).multiplyScalar(0.5), radius: all || 1, tall };
   }
   function lookAt(some) {
-    const { centre, radius } = ballAround(some);
+    const { centre, radius, tall } = ballAround(some);
     const narrow = Math.min(1, camera.aspect), way = some ? camera.position.clone().sub(controls.target).normalize() : new THREE.Vector3(0.55, -0.75, 0.4).normalize();
     controls.target.copy(centre);
-    const distance = (some ? 0.92 : 0.75) * radius / Math.sin(camera.fov * Math.PI / 360) / narrow;
+    const distance = (some ? 0.92 * radius : Math.max(0.75 * radius, 1.05 * tall)) / Math.sin(camera.fov * Math.PI / 360) / narrow;
     camera.position.copy(centre).addScaledVector(way, distance);
     camera.near = distance / 500, camera.far = distance * 50;
     camera.updateProjectionMatrix();
