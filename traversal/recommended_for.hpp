@@ -180,13 +180,16 @@ decltype(auto) with_candidate(std::size_t k, Visit&& visit) {
 }
 
 /// The frames of a motion that are replayed for the choice: up to ten runs of `run` consecutive
-/// frames, evenly spread, at most a twentieth of the motion. None where it has fewer than 200.
+/// frames, evenly spread, at most a twentieth of the motion. None where it has fewer than 200
+/// frames or, in all of them together, 2000 pairs of bodies: such a run may end before samples
+/// have.
 struct SampledFrames {
-  static constexpr std::size_t run = 10, uncounted = 6, most_runs = 10, share = 20;
+  static constexpr std::size_t run = 10, uncounted = 6, most_runs = 10, share = 20, few = 2000;
   std::vector<std::size_t> frames;
 
-  explicit SampledFrames(std::size_t length) {
-    const std::size_t runs = std::min(most_runs, length / (share * run));
+  /// Of a motion of so many frames, of so many pairs of bodies.
+  SampledFrames(std::size_t length, std::size_t pairs) {
+    const std::size_t runs = length * pairs < few ? 0 : std::min(most_runs, length / (share * run));
     for (std::size_t i = 0; i < runs; ++i)
       for (std::size_t k = 0; k < run; ++k)
         frames.push_back((2 * i + 1) * length / (2 * runs) - run / 2 + k);
@@ -255,10 +258,11 @@ decltype(auto) with_recommended(std::span<const TriangleMesh> meshes,
                                 Visit&& visit) {
   using Query = std::remove_cvref_t<decltype(make_query(std::size_t{0}))>;
   std::vector<std::vector<Pose>> samples;
-  const SampledFrames sampled(frames.size());
+  const std::size_t bodies = frames.empty() ? 0 : frames[0].size(),
+                    pairs = bodies * (bodies - 1) / 2;
+  const SampledFrames sampled(frames.size(), pairs);
   for (const std::size_t frame : sampled.frames) samples.push_back(frames[frame]);
   if (samples.empty()) return visit(std::type_identity<Recommended>());
-  const std::size_t bodies = samples[0].size(), pairs = bodies * (bodies - 1) / 2;
   RunCosts costs(triangles_of(meshes), pairs * frames.size());
   std::size_t number = 0, best = 0;
   std::any built;  // of the last candidate

@@ -145,7 +145,7 @@ Chosen recommended(Variant variant, std::span<const TriangleMesh> meshes, const 
                    BroadPhase broad_phase, KeptTrees& trees) {
   if (variant.query == "distance" && trace.pairs() > 0)
     return recommended_distances(std::move(variant), meshes, trace);
-  const SampledFrames samples(trace.frames);
+  const SampledFrames samples(trace.frames, trace.pairs());
   const std::vector<Option> all = options_for(variant);
   if (all.empty() || trace.pairs() == 0) return recommended(variant);
   RunCosts costs(triangles_of(meshes), trace.frames * trace.pairs());

@@ -17,7 +17,8 @@ namespace {
 
 TEST(SampledFrames, LieInTheMotionAndAreAtMostATwentiethOfIt) {
   for (std::size_t length = 0; length < 3000; length += 1 + length / 7) {
-    const SampledFrames samples(length);
+    EXPECT_EQ(SampledFrames(length, 1).frames.empty(), length < 2000) << length;
+    const SampledFrames samples(length, 10);
     EXPECT_EQ(samples.frames.empty(), length < 200) << length;
     EXPECT_LE(20 * samples.frames.size(), length);
     std::size_t counted = 0;
