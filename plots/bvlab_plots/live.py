@@ -23,8 +23,9 @@ from bvlab_plots.refused import Refused
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES, VIEWERS = ROOT / "plots" / "page", ROOT / "build" / "viewers"
-# What keeps a page below four megabytes: viewer and engine take half of it.
-MOST_TRIANGLES, MOST_BODIES, ROOM_FOR_MOTION = 50_000, 300, 900_000
+# A page has at most so many bytes, of which its own scripts are some: a motion has what viewer, engine and meshes leave.
+MOST_BYTES, OWN_SCRIPTS = 4_000_000, 100_000
+MOST_TRIANGLES, MOST_BODIES = 50_000, 300
 RUNS = ["deferred", "margins", "recursive"]
 NAMED = re.compile(r'<script src="([^"]+)"></script>|<link rel="stylesheet" href="([^"]+)">|<!--data-->')
 
@@ -142,14 +143,16 @@ def live_page(arguments):
     frames, bodies = motion.shape[:2]
     if bodies > MOST_BODIES:
         raise Refused(f"{arguments.trace or '--bodies'}: {bodies} bodies; a page moves at most {MOST_BODIES}")
-    shown = max(1, min(frames, ROOM_FOR_MOTION // (56 * bodies)))
+    modules, viewer = engine(), VIEWERS / "three.min.js"
+    texts = [{"name": Path(path).name, "vertices": text_of(mesh.vertices, "<f8"), "triangles": text_of(mesh.faces, "<u4")}
+             for path, mesh in zip(arguments.mesh, meshes)]
+    taken = OWN_SCRIPTS + (viewer.stat().st_size if viewer.exists() else 0) + sum(map(len, modules.values())) + len(json.dumps(texts))
+    shown = max(1, min(frames, (MOST_BYTES - taken) * 3 // 4 // (56 * bodies)))
     left_out = [f"Of {frames} frames the first {shown} are in this page."] if shown < frames else []
     return written("peers.html" if arguments.peers else "live.html", {
         "title": title_of(dict.fromkeys(Path(path).name for path in arguments.mesh)), "bodies": bodies, "query": arguments.query,
         "runs": [run_of(text) for text in arguments.run or RUNS], "left_out": left_out,
-        "meshes": [{"name": Path(path).name, "vertices": text_of(mesh.vertices, "<f8"), "triangles": text_of(mesh.faces, "<u4")}
-                   for path, mesh in zip(arguments.mesh, meshes)],
-        "motion": text_of(motion[:shown], "<f8"), "engine": engine(), **(others() if arguments.peers else {})})
+        "meshes": texts, "motion": text_of(motion[:shown], "<f8"), "engine": modules, **(others() if arguments.peers else {})})
 
 
 def title_of(names):
