@@ -183,7 +183,7 @@ class Gltf {
  public:
   Gltf(const Chunks& chunks, const Json& json, const std::string& name,
        const std::filesystem::path& file)
-      : chunks_(chunks), root_(json, "", name), name_(name), file_(file) {}
+      : chunks_(chunks), root_(json, "", name), file_(file) {}
 
   SceneGraph scene() {
     require_extensions();
@@ -306,6 +306,7 @@ class Gltf {
     if (primitive.has("indices")) {
       const Value accessor = root_["accessors"][primitive["indices"].whole()];
       if (accessor["type"].text() != "SCALAR") accessor["type"].fault("of indices is not SCALAR");
+      require_whole(accessor);
       for (const double index : rows(accessor, 1)) {
         if (!(index >= 0 && index < from.count) || index != std::floor(index))
           accessor.fault(no_vertex(static_cast<std::int64_t>(index), from.count));
@@ -345,6 +346,10 @@ class Gltf {
     }
   }
 
+  static void require_whole(const Value& indices) {
+    if (!type_of(indices).is_whole) indices["componentType"].fault("of indices is not whole");
+  }
+
   /// The numbers of an accessor, row after row.
   std::vector<double> rows(const Value& accessor, std::size_t columns) {
     const NumberType& type = type_of(accessor);
@@ -367,6 +372,7 @@ class Gltf {
                std::size_t columns) {
     const std::size_t count = sparse["count"].whole();
     const Value where = sparse["indices"];
+    require_whole(where);
     const auto indices = values(where, type_of(where), count, 1),
                replaced = values(sparse["values"], type, count, columns);
     for (std::size_t i = 0; i < count; ++i) {
@@ -448,7 +454,6 @@ class Gltf {
 
   const Chunks& chunks_;
   Value root_;
-  const std::string& name_;
   const std::filesystem::path& file_;
   std::map<std::size_t, std::string_view> buffers_;
   std::deque<std::string> kept_;

@@ -425,6 +425,9 @@ TEST(ReadScenes, GltfPrimitives) {
         {R"(, "indices": 0.5)", "meshes[0].primitives[0].indices: is not a whole number"},
         {R"(, "indices": -1)", "meshes[0].primitives[0].indices: is not a whole number"}})
     EXPECT_EQ(refusal(buffered(more, corners, shorts), "a.gltf"), std::string("a.gltf: ") + line);
+  EXPECT_EQ(
+      refusal(buffered(R"(, "indices": 1)", corners, replaced(shorts, "5123", "5126")), "a.gltf"),
+      "a.gltf: accessors[1].componentType: of indices is not whole");
   // Primitives of one list of positions share its vertices.
   const std::string two = replaced(buffered(R"(, "mode": 6)", corners, shorts), "\"mode\": 6}",
                                    R"("mode": 6}, {"attributes": {"POSITION": 0}, "mode": 5})");
@@ -461,6 +464,9 @@ TEST(ReadScenes, GltfNumbers) {
   expect_square(buffered(fan, all, shorts, square + std::string("\0\1\2\3", 4), four));
   EXPECT_EQ(refusal(buffered(fan, all, shorts, square + "\7\1\2\3", four), "a.gltf"),
             "a.gltf: accessors[0].sparse.indices: there is no row 7");
+  EXPECT_EQ(refusal(replaced(buffered(fan, all, shorts, square + "0123", four), "5121", "5126"),
+                    "a.gltf"),
+            "a.gltf: accessors[0].sparse.indices.componentType: of indices is not whole");
   // Whole numbers, as they stand and as parts of the largest.
   const std::string bytes = std::string("\0\0\0\1\0\0\1\2\0\0\2\0", 12),
                     small = R"(, {"buffer": 0, "byteLength": 12})",
