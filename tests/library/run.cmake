@@ -1,6 +1,7 @@
 # The library as somebody else uses it: installed with Eigen alone, found by find_package, and README's
 # example compiled against it and run.
-#   cmake -DSOURCE=... -DWORK=... -DGENERATOR=... -P run.cmake
+#   cmake -DSOURCE=... -DWORK=... -DGENERATOR=... [-DREADERS=ON] -P run.cmake
+# With READERS, the example that reads a file's parts instead.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE fault OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT fault EQUAL 0)
@@ -15,6 +16,14 @@ run(${CMAKE_COMMAND} -G "${GENERATOR}" -S ${SOURCE} -B ${WORK}/library -DBVLAB_B
 run(${CMAKE_COMMAND} --install ${WORK}/library --prefix ${WORK}/installed)
 run(${CMAKE_COMMAND} -G "${GENERATOR}" -S ${SOURCE}/tests/library -B ${WORK}/example -DCMAKE_PREFIX_PATH=${WORK}/installed
     -DCMAKE_BUILD_TYPE=Release)
+if(READERS)
+  run(${CMAKE_COMMAND} --build ${WORK}/example --target parts)
+  run(${WORK}/example/parts)
+  if(NOT output MATCHES "plate and washer touch at x = 10\nplate and washer touch at x = 0\\.01\n")
+    message(FATAL_ERROR "the parts of a file are not as they should be:\n${output}")
+  endif()
+  return()
+endif()
 run(${CMAKE_COMMAND} --build ${WORK}/example)
 run(${WORK}/example/example)
 foreach(line "apart by 1\\.[0-9]+" "[1-9][0-9]* pairs touch" "boxes 0 and 1 overlap")
