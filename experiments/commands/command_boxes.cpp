@@ -3,8 +3,8 @@
 #include <unistd.h>
 
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/number.hpp"
 #include "experiments/commands/require_threads.hpp"
-#include "experiments/commands/whole_number.hpp"
 #include "experiments/files/npy.hpp"
 #include "experiments/files/totals.hpp"
 #include "experiments/files/unusable.hpp"

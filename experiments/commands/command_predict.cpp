@@ -8,7 +8,6 @@
 
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/variant_options.hpp"
-#include "experiments/commands/whole_number.hpp"
 #include "experiments/files/totals.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"

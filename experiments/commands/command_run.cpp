@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/whole_number.hpp"
+#include "experiments/commands/number.hpp"
 #include "experiments/files/totals.hpp"
 #include "experiments/files/whole_file.hpp"
 #include "experiments/studies/clocks.hpp"

@@ -10,7 +10,6 @@
 
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/variant_options.hpp"
-#include "experiments/commands/whole_number.hpp"
 #include "experiments/files/npy.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/touches_any.hpp"

@@ -2,23 +2,17 @@
 #include "experiments/definitions/definition.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <set>
 #include <sstream>
 
 #include "experiments/definitions/toml.hpp"
+#include "experiments/files/numbers.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
 #include "experiments/scenes/scenes.hpp"
 
 namespace bvlab {
 namespace {
-
-std::string shortest(double value) {
-  char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  return {text, end};
-}
 
 /// Adds a scene's options, those that another scene has not named before.
 struct AddingParameter {
@@ -27,7 +21,7 @@ struct AddingParameter {
     add(name, value, what);
   }
   void operator()(std::string_view name, double value, std::string_view what) const {
-    add(name, shortest(value), what);
+    add(name, text_of(value), what);
   }
   void operator()(std::string_view name, std::uint64_t value, std::string_view what) const {
     add(name, std::to_string(value), what);
@@ -227,7 +221,7 @@ class Reader {
   std::string scalar(const toml::node& node, const std::string& key) const {
     if (const auto value = node.value_exact<std::string>()) return *value;
     if (const auto value = node.value_exact<std::int64_t>()) return std::to_string(*value);
-    if (const auto value = node.value_exact<double>()) return shortest(*value);
+    if (const auto value = node.value_exact<double>()) return text_of(*value);
     fail(node.source(), "'" + key + "' must be a number or a string");
   }
 
@@ -392,7 +386,8 @@ const std::vector<Parameter>& parameters() {
     std::vector<Parameter> all{
         {"scene", std::string(Scenes::at<0>::name), "how bodies move; see `bvlab list scenes`"},
         {"mesh", "bunny",
-         "meshes: NAME[:POLYGONS[:SCALE]] or FILE[:SCALE], a list or separated by commas; object i has "
+         "meshes: NAME[:POLYGONS[:SCALE]] or FILE[:SCALE], a list or separated by commas; object i "
+         "has "
          "mesh i mod their number"},
         {"polygons", "500", "triangles of each mesh given by name; of a file's, what it has"}};
     Scenes::for_each(

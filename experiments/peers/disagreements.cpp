@@ -2,10 +2,10 @@
 #include "experiments/peers/disagreements.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
+#include "experiments/files/numbers.hpp"
 #include "experiments/peers/triangle_oracle.hpp"
 #include "experiments/replay/triangle_test.hpp"
 #include "experiments/scenes/posed_triangles.hpp"
@@ -61,12 +61,6 @@ class Judge {
   std::vector<Pose> poses_;
 };
 
-std::string text(double value) {
-  char digits[32];
-  const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
-  return {digits, end};
-}
-
 bool same(double theirs, double ours, double slack) {
   return std::abs(theirs - ours) <= 1e-12 * ours + slack;
 }
@@ -121,8 +115,8 @@ std::vector<Disagreement> disagreements(std::span<const TriangleMesh> meshes, co
   for (std::size_t cell = 0; cell < ours.distances.size() && list.size() < most; ++cell) {
     if (same(theirs.distances[cell], ours.distances[cell], slack)) continue;
     Disagreement d = place(cell);
-    d.theirs = text(theirs.distances[cell]), d.ours = text(ours.distances[cell]);
-    d.exact = text(Judge(meshes, trace, d.frame).distance(d.i, d.j));
+    d.theirs = text_of(theirs.distances[cell]), d.ours = text_of(ours.distances[cell]);
+    d.exact = text_of(Judge(meshes, trace, d.frame).distance(d.i, d.j));
     list.push_back(std::move(d));
   }
   for (const Row& row : odd_contacts(theirs, ours)) {

@@ -17,10 +17,4 @@ std::span<const TriangleTestPeer> triangle_test_peers() {
   return all;
 }
 
-const TriangleTestPeer* triangle_test_peer(std::string_view name) {
-  for (const auto& each : triangle_test_peers())
-    if (each.name == name) return &each;
-  return nullptr;
-}
-
 }  // namespace bvlab

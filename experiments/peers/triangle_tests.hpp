@@ -25,7 +25,4 @@ struct TriangleTestPeer {
 
 std::span<const TriangleTestPeer> triangle_test_peers();
 
-/// Null where there is none of that name.
-const TriangleTestPeer* triangle_test_peer(std::string_view name);
-
 }  // namespace bvlab

@@ -164,8 +164,8 @@ nlohmann::ordered_json machine() {
 constexpr const char* of_program[] = {"compiler", "flags",  "libraries", "bvlab",
                                       "clock",    "commit", "changes",   "outside"};
 
-/// Of what went on with a record, all that differs from what was there; changes anywhere are
-/// changes.
+/// The machine.json of a record that this program goes on with: an entry under `later` holds every
+/// fact of the program that changed. Changes of any of the programs are changes of the record.
 std::string continued(const std::string& held, const std::string& command) {
   auto json = nlohmann::ordered_json::parse(held, nullptr, false);
   if (!json.is_object()) return held;

@@ -2,10 +2,10 @@
 #include "experiments/studies/cells.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <set>
 
+#include "experiments/files/numbers.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/peers.hpp"
 #include "experiments/replay/configurations.hpp"
@@ -21,11 +21,8 @@ namespace {
 
 template <class T>
 T number(const std::string& name, const std::string& text) {
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size())
-    throw Unusable(name + " = " + text + ": not a number of its kind");
-  return value;
+  if (const auto value = number_in<T>(text)) return *value;
+  throw Unusable(name + " = " + text + ": not a number of its kind");
 }
 
 struct SettingOption {

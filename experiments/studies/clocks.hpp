@@ -5,8 +5,10 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <ctime>
+#include <string>
 #include <utility>
 
 namespace bvlab {
@@ -19,6 +21,11 @@ inline double processor_seconds() {
 }
 inline double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// As a record has times.
+inline std::string nanoseconds(double seconds) {
+  return std::to_string(std::llround(seconds * 1e9));
 }
 
 /// How many runs of this process were made again: said where a run says how far it is.

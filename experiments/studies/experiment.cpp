@@ -2,7 +2,6 @@
 #include "experiments/studies/experiment.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <future>
@@ -12,6 +11,7 @@
 #include <random>
 #include <set>
 
+#include "experiments/files/numbers.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/disagreements.hpp"
 #include "experiments/peers/peers.hpp"
@@ -29,8 +29,6 @@
 
 namespace bvlab {
 namespace {
-
-std::string nanoseconds(double seconds) { return std::to_string(std::llround(seconds * 1e9)); }
 
 std::string three_digits(double value) {
   char text[32];
@@ -235,14 +233,12 @@ class Experiment {
         continue;
       }
       auto& [work, cell] = place->second;
-      std::size_t repetition = 0;
-      const std::string& text = row[keys_];
-      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), repetition);
-      if (error != std::errc{} || end != text.data() + text.size() || repetition >= repetitions())
-        fail(i, "is of repetition '" + text + "', and the definition has " +
+      const auto repetition = number_in<std::size_t>(row[keys_]);
+      if (!repetition || *repetition >= repetitions())
+        fail(i, "is of repetition '" + row[keys_] + "', and the definition has " +
                     std::to_string(repetitions()));
-      if (work->has_row[cell][repetition]) fail(i, "is a second one of its cell and repetition");
-      work->has_row[cell][repetition] = true;
+      if (work->has_row[cell][*repetition]) fail(i, "is a second one of its cell and repetition");
+      work->has_row[cell][*repetition] = true;
       const auto counts = row.begin() + static_cast<std::ptrdiff_t>(keys_ + 4);
       take_counts(*work, cell, Row(counts, counts + std::ssize(counted_columns)));
     }
@@ -621,47 +617,32 @@ bool sets(const Settings& settings, std::string_view name) {
   return std::any_of(settings.begin(), settings.end(),
                      [&](const Setting& each) { return each.first == name; });
 }
-bool has_configuration(const Settings& settings, bool otherwise) {
-  for (const auto& [name, value] : settings)
-    if (name == "configuration") return !value.empty();
-  return otherwise;
+/// Where a cell has a parameter from: the label of an axis' value, or "" for the definition's
+/// table.
+std::optional<std::string> set_in(const Definition& definition, const Cell& cell,
+                                  std::string_view name) {
+  for (const auto& axis : definition.axes)
+    for (const auto& value : axis.values)
+      if (sets(value.settings, name) && cell[axis.name] == value.label)
+        return "axis " + value.label;
+  if (sets(definition.parameters, name)) return "";
+  return {};
 }
 
-/// Throws Unusable for a parameter that a configuration sets, too, in every cell in which it is
-/// set: it would be ignored. (At most one axis sets a parameter.)
-void check_configurations(const Definition& definition) {
-  using Value = Definition::Value;
-  const bool by_default = has_configuration(definition.parameters, false);
-  const auto in_value = [&](const Value& value) {
-    return has_configuration(value.settings, by_default);
-  };
-  const auto axis_of = [&](std::string_view name) -> const Definition::Axis* {
-    for (const auto& axis : definition.axes)
-      for (const auto& value : axis.values)
-        if (sets(value.settings, name)) return &axis;
-    return nullptr;
-  };
-  const auto* const choosing = axis_of("configuration");
-  const bool in_all = choosing
-                          ? std::all_of(choosing->values.begin(), choosing->values.end(), in_value)
-                          : by_default;
+/// Throws Unusable for a parameter that is set in one place for cells of which each has a
+/// configuration, too: it would be ignored. (At most one axis sets a parameter.)
+void check_configurations(const Definition& definition, const std::vector<Cell>& cells) {
+  const auto is_configured = [](const Cell& cell) { return !cell["configuration"].empty(); };
+  if (std::none_of(cells.begin(), cells.end(), is_configured)) return;
   for (const std::string_view name : set_by_configuration) {
-    const auto refuse_if = [&](bool is_ignored) {
-      if (is_ignored) refuse_beside_configuration(name);
-    };
-    const auto* const axis = axis_of(name);
-    bool default_counts = !axis, default_is_ignored = in_all;
-    if (axis)
-      for (const Value& value : axis->values) {
-        const bool is_ignored = axis == choosing ? in_value(value) : in_all;
-        if (sets(value.settings, name)) {
-          refuse_if(is_ignored);
-        } else {
-          default_is_ignored = (!default_counts || default_is_ignored) && is_ignored;
-          default_counts = true;
-        }
+    std::map<std::string, bool> is_ignored;
+    for (const Cell& cell : cells)
+      if (const auto place = set_in(definition, cell, name)) {
+        bool& all = is_ignored.emplace(*place, true).first->second;
+        all = all && is_configured(cell);
       }
-    refuse_if(sets(definition.parameters, name) && default_counts && default_is_ignored);
+    for (const auto& [place, all] : is_ignored)
+      if (all) refuse_beside_configuration(name);
   }
 }
 
@@ -669,7 +650,8 @@ void check_configurations(const Definition& definition) {
 
 void check(const Definition& definition) {
   try {
-    check_configurations(definition);
+    const auto cells = cells_of(definition);
+    check_configurations(definition, cells);
     for (const auto& axis : definition.axes) {
       check_axis_name(axis);
       if (definition.has_series && axis.name == frame_columns[0])
@@ -677,7 +659,6 @@ void check(const Definition& definition) {
     }
     std::map<std::string, bool> peers_asked;
     bool any_asked = false;
-    const auto cells = cells_of(definition);
     for (const auto& cell : cells) {
       check(cell);
       any_asked |= has_answer(cell);

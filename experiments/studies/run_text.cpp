@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/studies/run_text.hpp"
 
-#include <charconv>
+#include <algorithm>
 #include <optional>
 
+#include "experiments/files/numbers.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/recorder/record.hpp"
 #include "experiments/studies/figures_checked.hpp"
@@ -15,14 +16,10 @@ namespace {
 /// "3/8"; the whole where nothing was said.
 Part part_from(const std::string& text, std::size_t traces) {
   if (text.empty()) return {};
-  Part part;
-  const char* const last = text.data() + text.size();
-  const auto [slash, error] = std::from_chars(text.data(), last, part.number);
-  if (error == std::errc{} && slash != last && *slash == '/')
-    if (const auto [end, fault] = std::from_chars(slash + 1, last, part.of);
-        fault == std::errc{} && end == last && part.number >= 1 && part.number <= part.of &&
-        part.of <= traces)
-      return part;
+  const std::size_t slash = std::min(text.find('/'), text.size());
+  const auto number = number_in<std::size_t>(text.substr(0, slash));
+  const auto of = number_in<std::size_t>(text.substr(std::min(slash + 1, text.size())));
+  if (number && of && *number >= 1 && *number <= *of && *of <= traces) return {*number, *of};
   throw Unusable("--part " + text + ": K/N is needed, K from 1 to N, and N at most " +
                  std::to_string(traces) + ", as many as there are traces");
 }
@@ -69,9 +66,8 @@ Definition checked_definition(const RunRequest& request) {
   Definition definition = parse_definition(request.text, request.file);
   check(definition);
   if (definition.has_figures)
-    check_figures(request.text, request.file, [&](const std::filesystem::path& folder) {
-      write_cells(definition, folder);
-    });
+    check_figures(request.text, request.file,
+                  [&](const std::filesystem::path& folder) { write_cells(definition, folder); });
   return definition;
 }
 

@@ -7,6 +7,7 @@
 #include "experiments/definitions/definition.hpp"
 #include "experiments/definitions/toml.hpp"
 #include "experiments/files/unusable.hpp"
+#include "experiments/scenes/named_mesh.hpp"
 #include "experiments/studies/figures_checked.hpp"
 
 namespace bvlab {
@@ -75,6 +76,12 @@ std::vector<std::size_t> StudyDefinition::wholes(const std::string& key) const {
   std::vector<std::size_t> values;
   for (const double value : numbers(key)) values.push_back(static_cast<std::size_t>(value));
   return values;
+}
+
+TriangleMesh mesh_of(const StudyDefinition& definition, const std::string& name) {
+  auto meshes = named_meshes(name, definition.whole("polygons"));
+  if (meshes.size() != 1) throw Unusable(definition.file, name + ": must be one mesh");
+  return std::move(meshes[0].mesh);
 }
 
 std::optional<StudyDefinition> study_from(const std::string& text, const std::string& file) {
@@ -146,25 +153,19 @@ void check_extends(const StudyDefinition& held, const StudyDefinition& definitio
 
 void run_study(const StudyDefinition& definition, const std::filesystem::path& folder,
                const Progress& progress) {
-  kind_of(definition).run(definition, folder, progress);
+  const StudyKind& kind = kind_of(definition);
+  StudyRecord record(definition, folder, kind.columns, progress);
+  kind.run(definition, record);
 }
 
 StudyRecord::StudyRecord(const StudyDefinition& definition, const std::filesystem::path& folder,
-                         Row columns, std::size_t keys, const Progress& progress)
+                         Row columns, const Progress& progress)
     : table_(folder / (definition.name + ".csv"), std::move(columns)),
       folder_(folder),
-      keys_(keys),
       progress_(progress) {
   if (!definition.has_figures) return;
   check_figures(definition.text, definition.file, [&](const std::filesystem::path& to) {
     Table(to / (definition.name + ".csv"), table_.columns()).save();
-  });
-}
-
-bool StudyRecord::has(const Row& key) const {
-  const auto count = static_cast<std::ptrdiff_t>(std::min(keys_, key.size()));
-  return std::any_of(table_.rows().begin(), table_.rows().end(), [&](const Row& row) {
-    return std::equal(key.begin(), key.begin() + count, row.begin());
   });
 }
 

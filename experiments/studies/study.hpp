@@ -23,6 +23,7 @@
 #include "experiments/recorder/record.hpp"
 #include "experiments/studies/experiment.hpp"
 #include "experiments/studies/study_parameter.hpp"
+#include "hierarchies/geometry/triangle_mesh.hpp"
 
 namespace bvlab {
 
@@ -49,20 +50,33 @@ class StudyDefinition {
 class StudyRecord {
  public:
   StudyRecord(const StudyDefinition& definition, const std::filesystem::path& folder, Row columns,
-              std::size_t keys, const Progress& progress);
+              const Progress& progress);
 
-  /// Whether rows that begin so are there already.
-  bool has(const Row& key) const;
+  /// Calls measure(part), which adds rows that begin with key(part), for each part that has none
+  /// yet.
+  template <class Parts, class Key, class Measure>
+  void each(const Parts& parts, const Key& key, const Measure& measure) {
+    std::size_t done = 0;
+    for (const auto& part : parts) {
+      if (!table_.has(key(part))) measure(part);
+      save(++done, std::size(parts));
+    }
+  }
   void add(Row row) { table_.add(std::move(row)); }
-  /// After `done` of `all` parts.
-  void save(std::size_t done, std::size_t all);
 
  private:
+  void save(std::size_t done, std::size_t all);
+
   Table table_;
   std::filesystem::path folder_;
-  std::size_t keys_;
   Progress progress_;
 };
+
+/// The mesh of that name, NAME or NAME:POLYGONS, with as many triangles as `polygons` says. Throws
+/// Unusable where the name is of several.
+TriangleMesh mesh_of(const StudyDefinition& definition, const std::string& name);
+/// What rows of a part begin with that has a name alone.
+inline Row row_of(const std::string& name) { return {name}; }
 
 /// The definition in the text if it has a kind (nothing if not: an experiment). Throws Unusable.
 std::optional<StudyDefinition> study_from(const std::string& text, const std::string& file);
@@ -80,7 +94,8 @@ struct StudyKind {
   std::string_view name, description;
   StudyParameters (*parameters)();
   void (*check)(const StudyDefinition&);
-  void (*run)(const StudyDefinition&, const std::filesystem::path& folder, const Progress&);
+  Row columns;
+  void (*run)(const StudyDefinition&, StudyRecord&);
 };
 
 /// THE list of them.

@@ -14,6 +14,7 @@
 /// holds after its last frame.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <random>
 #include <set>
@@ -246,23 +247,11 @@ void sum_up(Outcome& outcome, const Settings& settings) {
 
 class BoxStudy {
  public:
-  BoxStudy(const StudyDefinition& definition, const std::filesystem::path& folder,
-           const Progress& progress)
-      : settings_(settings_of(definition)),
-        repetitions_(definition.repetitions),
-        record_(definition, folder,
-                {"set",       "count",    "motion",   "displacement", "seed",     "boxes",
-                 "method",    "coherent", "changes",  "sort",         "threads",  "repetition",
-                 "frames",    "overlaps", "events",   "differing",    "first_ns", "frame_ns",
-                 "middle_ns", "p99_ns",   "worst_ns", "wall_ns",      "bytes"},
-                5, progress) {}
+  BoxStudy(const StudyDefinition& definition, StudyRecord& record)
+      : settings_(settings_of(definition)), repetitions_(definition.repetitions), record_(record) {}
 
   void run() {
-    std::size_t done = 0;
-    for (const Case& c : settings_.cases) {
-      if (!record_.has(c.key())) run_case(c);
-      record_.save(++done, settings_.cases.size());
-    }
+    record_.each(settings_.cases, std::mem_fn(&Case::key), [&](const Case& c) { run_case(c); });
   }
 
  private:
@@ -357,20 +346,26 @@ class BoxStudy {
 
   Settings settings_;
   unsigned repetitions_;
-  StudyRecord record_;
+  StudyRecord& record_;
   std::set<std::string> slow_;
   std::mt19937 random_{20260101};
 };
 
-void run(const StudyDefinition& definition, const std::filesystem::path& folder,
-         const Progress& progress) {
-  BoxStudy(definition, folder, progress).run();
+void run(const StudyDefinition& definition, StudyRecord& record) {
+  BoxStudy(definition, record).run();
 }
 
 }  // namespace
 
-const StudyKind studies::boxes = {"boxes",
-                                  "broad-phase methods and peers on sets of boxes, frame by frame",
-                                  parameters, check_settings, run};
+const StudyKind studies::boxes = {
+    "boxes",
+    "broad-phase methods and peers on sets of boxes, frame by frame",
+    parameters,
+    check_settings,
+    {"set",       "count",    "motion",   "displacement", "seed",     "boxes",
+     "method",    "coherent", "changes",  "sort",         "threads",  "repetition",
+     "frames",    "overlaps", "events",   "differing",    "first_ns", "frame_ns",
+     "middle_ns", "p99_ns",   "worst_ns", "wall_ns",      "bytes"},
+    run};
 
 }  // namespace bvlab

@@ -5,19 +5,28 @@
 #include <cmath>
 #include <random>
 
-#include "experiments/files/unusable.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/replay.hpp"
+#include "experiments/scenes/formula_mesh.hpp"
+#include "experiments/scenes/scenes.hpp"
+#include "experiments/studies/clocks.hpp"
 #include "experiments/studies/study.hpp"
-#include "experiments/studies/wandering.hpp"
 
 namespace bvlab {
 namespace {
 
 StudyParameters parameters() {
-  return with_wandering_and_side(
-      {numbers_parameter("relative_errors", {0, 0.01, 0.1, 0.5}, {0}, "that are promised"),
-       words_parameter("strategies", {"recursive"}, "see `bvlab list strategies`")});
+  const NumberBounds lengths{0, 1e6};
+  return {numbers_parameter("relative_errors", {0, 0.01, 0.1, 0.5}, {0}, "that are promised"),
+          words_parameter("strategies", {"recursive"}, "see `bvlab list strategies`"),
+          number_parameter("side", 4, {1e-6, 1e6}, "of the cube, in radii of the body"),
+          words_parameter("mesh", {"bunny"}, "meshes, NAME or NAME:POLYGONS: a scene for each"),
+          whole_parameter("polygons", 5000, {1, most_polygons}, "triangles of each mesh"),
+          whole_parameter("objects", 9, {1, 1000}, "bodies"),
+          whole_parameter("frames", 50, {1, 1e6}, "frames, the start included"),
+          whole_parameter("seed", 1, seeds, "of the random numbers"),
+          number_parameter("step", 0.1, lengths, "length of a step, in radii of the body"),
+          number_parameter("degrees", 20, {0, 180}, "angle of a step")};
 }
 
 struct Settings {
@@ -40,13 +49,28 @@ Settings settings_of(const StudyDefinition& definition) {
 
 void check_settings(const StudyDefinition& definition) { settings_of(definition); }
 
+/// Bodies of one mesh wandering about.
+std::pair<std::vector<TriangleMesh>, Trace> scene_of(const StudyDefinition& definition,
+                                                     const std::string& name) {
+  std::vector<TriangleMesh> meshes{mesh_of(definition, name)};
+  const Extent extents[] = {extent_of(meshes[0])};
+  RandomWalk walk;
+  walk.objects = definition.whole("objects"), walk.frames = definition.whole("frames");
+  walk.seed = definition.whole("seed"), walk.degrees = definition.number("degrees");
+  walk.side = {definition.number("side"), Length::Unit::body};
+  walk.step = {definition.number("step"), Length::Unit::body};
+  walk.check();
+  auto array = walk.generate(extents, {});
+  return {std::move(meshes), {array.shape[0], array.shape[1], std::move(array.data)}};
+}
+
 struct Observed {
   double largest = 0, sum = 0;
   std::size_t below = 0, above = 0;  ///< answers outside of what is promised
 };
 
-/// A distance itself is right to 1e-14 of it (triangle_distance.hpp), and what is nearer by less
-/// than 2^-45 is not looked for (distance.hpp), in the truth and in the answer.
+/// A distance is right to 1e-14 of itself (triangle_distance.hpp). The search stops once no pair can
+/// be nearer by more than a factor of 2^-45 (distance.hpp), in the truth and in the answer.
 Observed compared(const std::vector<double>& answers, const std::vector<double>& truth,
                   double promised) {
   constexpr double grain = 1e-13;
@@ -61,23 +85,11 @@ Observed compared(const std::vector<double>& answers, const std::vector<double>&
   return observed;
 }
 
-void run(const StudyDefinition& definition, const std::filesystem::path& folder,
-         const Progress& progress) {
+void run(const StudyDefinition& definition, StudyRecord& record) {
   const Settings settings = settings_of(definition);
-  const Wandering wandering(definition, definition.number("side"));
-  StudyRecord record(
-      definition, folder,
-      {"mesh", "volume", "strategy", "relative_error", "repetition", "answers", "touching",
-       "largest_error", "mean_error", "outside", "n_u", "n_v", "n_p", "time_ns"},
-      1, progress);
   std::mt19937_64 random(20260101);
-  std::size_t done = 0;
-  for (const auto& name : wandering.names) {
-    if (record.has({name})) {
-      record.save(++done, wandering.names.size());
-      continue;
-    }
-    const auto [meshes, trace, radius] = wandering.scene(name);
+  const auto measure = [&](const std::string& name) {
+    const auto [meshes, trace] = scene_of(definition, name);
     Variant variant;
     variant.query = "distance";
     const auto truth = replay(meshes, trace, variant, {}).distances;
@@ -96,23 +108,27 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
       for (const auto& [cell, counted] : cells) {
         const auto timed = replay(meshes, trace, cell, {});
         const Observed observed = compared(timed.distances, truth, cell.relative_error);
-        record.add({name, cell.volume, cell.strategy, text_of(cell.relative_error),
-                    std::to_string(repetition), std::to_string(truth.size()),
-                    std::to_string(touching), text_of(observed.largest),
-                    text_of(observed.sum / static_cast<double>(truth.size())),
-                    std::to_string(observed.below + observed.above), std::to_string(counted.n_u),
-                    std::to_string(counted.n_v), std::to_string(counted.n_p),
-                    text_of(std::round(timed.seconds * 1e9))});
+        record.add(
+            {name, cell.volume, cell.strategy, text_of(cell.relative_error),
+             std::to_string(repetition), std::to_string(truth.size()), std::to_string(touching),
+             text_of(observed.largest), text_of(observed.sum / static_cast<double>(truth.size())),
+             std::to_string(observed.below + observed.above), std::to_string(counted.n_u),
+             std::to_string(counted.n_v), std::to_string(counted.n_p), nanoseconds(timed.seconds)});
       }
     }
-    record.save(++done, wandering.names.size());
-  }
+  };
+  record.each(definition.words("mesh"), row_of, measure);
 }
 
 }  // namespace
 
 const StudyKind studies::distance = {
-    "distance", "the relative error of distances, promised and seen, against time", parameters,
-    check_settings, run};
+    "distance",
+    "the relative error of distances, promised and seen, against time",
+    parameters,
+    check_settings,
+    {"mesh", "volume", "strategy", "relative_error", "repetition", "answers", "touching",
+     "largest_error", "mean_error", "outside", "n_u", "n_v", "n_p", "time_ns"},
+    run};
 
 }  // namespace bvlab

@@ -2,7 +2,6 @@
 #include "experiments/studies/study_parameter.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "experiments/files/unusable.hpp"
@@ -39,18 +38,9 @@ std::vector<std::string> texts_of(const std::vector<double>& values) {
 
 }  // namespace
 
-std::string text_of(double value) {
-  char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  return {text, end};
-}
-
 double number_of(const std::string& text, const std::string& name, const std::string& file) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size())
-    throw Unusable(file, name + " = " + text + ": not a number");
-  return value;
+  if (const auto value = number_in<double>(text)) return *value;
+  throw Unusable(file, name + " = " + text + ": not a number");
 }
 
 std::string StudyParameter::description() const {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "experiments/files/numbers.hpp"
+
 namespace bvlab {
 
 struct StudyParameter {
@@ -54,9 +56,6 @@ StudyParameter wholes_parameter(std::string name, const std::vector<double>& fal
                                 NumberBounds bounds, std::string what);
 
 inline constexpr NumberBounds seeds{1, 1e9};
-
-/// Digits enough to read the same number again.
-std::string text_of(double value);
 
 /// The number that the text is. Throws Unusable, with the file and the name, where it is none.
 double number_of(const std::string& text, const std::string& name, const std::string& file);

@@ -77,29 +77,23 @@ std::optional<Answers> in_a_child(std::size_t count, int seconds, const Work& wo
 
 class Map {
  public:
-  Map(const StudyDefinition& definition, const std::filesystem::path& folder,
-      const Progress& progress)
-      : settings_(settings_of(definition)),
-        record_(definition, folder,
-                {"stressor", "level", "source", "volume", "strategy", "precision", "fan_out",
-                 "frame", "kernel", "configuration", "answers", "touching", "false_positives",
-                 "false_negatives"},
-                2, progress) {}
+  Map(const StudyDefinition& definition, StudyRecord& record)
+      : settings_(settings_of(definition)), record_(record) {}
 
   void run() {
-    std::size_t all = 0, done = 0;
-    for (const auto& stressor : stressors()) all += stressor.levels.size();
+    std::vector<std::pair<const Stressor*, double>> cases;
     for (const auto& stressor : stressors())
-      for (const double level : stressor.levels) {
-        key_ = {std::string(stressor.name), text_of(level)};
-        if (!record_.has(key_)) {
-          const StressCase stress = stressor.make(level, settings_.frames, settings_.seed);
-          truth_ = truth_of(stress);
-          ours(stress);
-          theirs(stress);
-        }
-        record_.save(++done, all);
-      }
+      for (const double level : stressor.levels) cases.emplace_back(&stressor, level);
+    const auto key_of = [](const auto& each) {
+      return Row{std::string(each.first->name), text_of(each.second)};
+    };
+    record_.each(cases, key_of, [&](const auto& each) {
+      key_ = key_of(each);
+      const StressCase stress = each.first->make(each.second, settings_.frames, settings_.seed);
+      truth_ = truth_of(stress);
+      ours(stress);
+      theirs(stress);
+    });
   }
 
  private:
@@ -143,20 +137,22 @@ class Map {
   }
 
   Settings settings_;
-  StudyRecord record_;
+  StudyRecord& record_;
   Row key_;
   Answers truth_;
 };
 
-void run(const StudyDefinition& definition, const std::filesystem::path& folder,
-         const Progress& progress) {
-  Map(definition, folder, progress).run();
-}
+void run(const StudyDefinition& definition, StudyRecord& record) { Map(definition, record).run(); }
 
 }  // namespace
 
 const StudyKind studies::stability = {
-    "stability", "false answers of every variant and peer under every stressor", parameters,
-    nullptr, run};
+    "stability",
+    "false answers of every variant and peer under every stressor",
+    parameters,
+    nullptr,
+    {"stressor", "level", "source", "volume", "strategy", "precision", "fan_out", "frame", "kernel",
+     "configuration", "answers", "touching", "false_positives", "false_negatives"},
+    run};
 
 }  // namespace bvlab

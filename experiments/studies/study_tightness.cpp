@@ -21,11 +21,9 @@
 #include <cmath>
 #include <random>
 
-#include "experiments/files/unusable.hpp"
 #include "experiments/replay/hierarchies_of.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/triangle_test.hpp"
-#include "experiments/scenes/named_mesh.hpp"
 #include "experiments/studies/study.hpp"
 #include "hierarchies/geometry/enclosing_sphere.hpp"
 
@@ -48,14 +46,13 @@ StudyParameters parameters() {
 
 struct Settings {
   std::vector<std::string> meshes, volumes, builds, fits;
-  std::size_t polygons, leaf_size, nodes, probes, seed;
+  std::size_t leaf_size, nodes, probes, seed;
 
   explicit Settings(const StudyDefinition& definition)
       : meshes(definition.words("mesh")),
         volumes(definition.words("volumes")),
         builds(definition.words("builds")),
         fits(definition.words("fits")),
-        polygons(definition.whole("polygons")),
         leaf_size(definition.whole("leaf_size")),
         nodes(definition.whole("nodes")),
         probes(definition.whole("probes")),
@@ -237,13 +234,6 @@ void add_rows(StudyRecord& record, const Row& key, const std::vector<std::vector
   }
 }
 
-TriangleMesh mesh_of(const StudyDefinition& definition, const Settings& settings,
-                     const std::string& name) {
-  auto meshes = named_meshes(name, settings.polygons);
-  if (meshes.size() != 1) throw Unusable(definition.file, name + ": must be one mesh");
-  return std::move(meshes[0].mesh);
-}
-
 void measure(StudyRecord& record, const TriangleMesh& mesh, const std::string& name,
              const Settings& settings) {
   for (const auto& build : settings.builds) {
@@ -263,25 +253,22 @@ void measure(StudyRecord& record, const TriangleMesh& mesh, const std::string& n
 
 void check_settings(const StudyDefinition& definition) { Settings{definition}; }
 
-void run(const StudyDefinition& definition, const std::filesystem::path& folder,
-         const Progress& progress) {
+void run(const StudyDefinition& definition, StudyRecord& record) {
   const Settings settings(definition);
-  StudyRecord record(
-      definition, folder,
-      {"mesh", "volume", "build", "fit", "level", "nodes", "probed", "probes", "diameter", "mean",
-       "least", "lower_quartile", "median", "upper_quartile", "largest"},
-      1, progress);
-  std::size_t done = 0;
-  for (const auto& name : settings.meshes) {
-    if (!record.has({name})) measure(record, mesh_of(definition, settings, name), name, settings);
-    record.save(++done, settings.meshes.size());
-  }
+  record.each(settings.meshes, row_of, [&](const std::string& name) {
+    measure(record, mesh_of(definition, name), name, settings);
+  });
 }
 
 }  // namespace
 
 const StudyKind studies::tightness = {
-    "tightness", "what volumes leave out of distances, level by level of the tree", parameters,
-    check_settings, run};
+    "tightness",
+    "what volumes leave out of distances, level by level of the tree",
+    parameters,
+    check_settings,
+    {"mesh", "volume", "build", "fit", "level", "nodes", "probed", "probes", "diameter", "mean",
+     "least", "lower_quartile", "median", "upper_quartile", "largest"},
+    run};
 
 }  // namespace bvlab

@@ -103,21 +103,11 @@ double nanoseconds(const std::function<void()>& work) {
   return now() - start;
 }
 
-void run(const StudyDefinition& definition, const std::filesystem::path& folder,
-         const Progress& progress) {
+void run(const StudyDefinition& definition, StudyRecord& record) {
   const Settings settings = settings_of(definition);
-  StudyRecord record(definition, folder,
-                     {"set", "test", "source", "repetition", "pairs", "touching", "false_positives",
-                      "false_negatives", "ns_per_call"},
-                     1, progress);
   std::mt19937_64 random(20260101);
-  std::size_t done = 0;
-  for (const TriangleSet* set : settings.sets) {
+  const auto measure = [&](const TriangleSet* set) {
     const std::string set_name(set->name);
-    if (record.has({set_name})) {
-      record.save(++done, settings.sets.size());
-      continue;
-    }
     const bool zero_area = set_name.starts_with("without area");
     const auto pairs = pairs_of(*set, settings, zero_area);
     std::vector<std::uint8_t> truth, verdicts(pairs.size());
@@ -145,14 +135,20 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
                     text_of(time / static_cast<double>(pairs.size()))});
       }
     }
-    record.save(++done, settings.sets.size());
-  }
+  };
+  record.each(
+      settings.sets, [](const TriangleSet* set) { return Row{std::string(set->name)}; }, measure);
 }
 
 }  // namespace
 
 const StudyKind studies::triangles = {
-    "triangles", "misclassified pairs and time of every triangle test on every set", parameters,
-    nullptr, run};
+    "triangles",
+    "misclassified pairs and time of every triangle test on every set",
+    parameters,
+    nullptr,
+    {"set", "test", "source", "repetition", "pairs", "touching", "false_positives",
+     "false_negatives", "ns_per_call"},
+    run};
 
 }  // namespace bvlab

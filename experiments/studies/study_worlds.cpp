@@ -13,6 +13,7 @@
 #include "experiments/scenes/extent.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/random_walk.hpp"
+#include "experiments/studies/clocks.hpp"
 #include "experiments/studies/side_by_side.hpp"
 #include "experiments/studies/study.hpp"
 #include "hierarchies/geometry/threads.hpp"
@@ -151,42 +152,30 @@ WorldRun run_of(const Contestant& who, const TriangleMesh& mesh, const Trace& tr
   return run;
 }
 
-std::string nanoseconds(double seconds) { return std::to_string(std::llround(seconds * 1e9)); }
-
-void run(const StudyDefinition& definition, const std::filesystem::path& folder,
-         const Progress& progress) {
+void run(const StudyDefinition& definition, StudyRecord& record) {
   Settings settings = settings_of(definition);
   for (const auto& who : settings.contestants)
     if (static_cast<std::size_t>(who.threads) > cores_allowed())
       throw Unusable(definition.file, "threads: " + std::to_string(who.threads) +
                                           " need as many processors; " +
                                           std::to_string(cores_allowed()) + " may be used");
-  StudyRecord record(definition, folder,
-                     {"objects",       "room",   "moving",  "step",       "degrees",  "mesh",
-                      "polygons",      "frames", "seed",    "volume",     "strategy", "kernel",
-                      "configuration", "peer",   "threads", "repetition", "time_ns",  "first_ns",
-                      "build_ns",      "moved",  "near",    "asked",      "touching", "differing"},
-                     9, progress);
   const TriangleMesh mesh = named_mesh(settings.mesh, settings.polygons).mesh;
   for (auto& who : settings.contestants)
     if (!who.configuration.empty())
       who.variant = configured({}, who.configuration, std::span(&mesh, 1)).variant;
   std::mt19937_64 random(20260101);
-  std::size_t done = 0;
-  for (const Scene& scene : settings.scenes) {
-    const Row key{std::to_string(scene.objects),
-                  text_of(scene.room),
-                  text_of(scene.moving),
-                  text_of(scene.step),
-                  text_of(scene.degrees),
-                  settings.mesh,
-                  std::to_string(settings.polygons),
-                  std::to_string(settings.frames),
-                  std::to_string(settings.seed)};
-    if (record.has(key)) {
-      record.save(++done, settings.scenes.size());
-      continue;
-    }
+  const auto key_of = [&](const Scene& scene) {
+    return Row{std::to_string(scene.objects),
+               text_of(scene.room),
+               text_of(scene.moving),
+               text_of(scene.step),
+               text_of(scene.degrees),
+               settings.mesh,
+               std::to_string(settings.polygons),
+               std::to_string(settings.frames),
+               std::to_string(settings.seed)};
+  };
+  record.each(settings.scenes, key_of, [&](const Scene& scene) {
     const Trace trace = trace_of(scene, settings, mesh);
     const WorldRun reference = run_of({}, mesh, trace, Answers::kept);
     std::vector<std::size_t> order, differences;
@@ -200,7 +189,7 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
         const auto& who = settings.contestants[k];
         const WorldRun timed = run_of(who, mesh, trace, Answers::counted);
         const bool ours = who.peer.empty();
-        Row row = key;
+        Row row = key_of(scene);
         for (const auto& field :
              {ours ? who.variant.volume : "", ours ? who.variant.strategy : "",
               ours ? who.variant.kernel : "", who.configuration, who.peer,
@@ -213,14 +202,20 @@ void run(const StudyDefinition& definition, const std::filesystem::path& folder,
         record.add(std::move(row));
       }
     }
-    record.save(++done, settings.scenes.size());
-  }
+  });
 }
 
 }  // namespace
 
 const StudyKind studies::worlds = {
-    "worlds", "whole scenes of many bodies, beside other libraries' complete pipelines", parameters,
-    check_settings, run};
+    "worlds",
+    "whole scenes of many bodies, beside other libraries' complete pipelines",
+    parameters,
+    check_settings,
+    {"objects",       "room",   "moving",  "step",       "degrees",  "mesh",
+     "polygons",      "frames", "seed",    "volume",     "strategy", "kernel",
+     "configuration", "peer",   "threads", "repetition", "time_ns",  "first_ns",
+     "build_ns",      "moved",  "near",    "asked",      "touching", "differing"},
+    run};
 
 }  // namespace bvlab

@@ -3,8 +3,10 @@
 
 The one place where tables are put together: every table that parts have, whatever it is called."""
 
+import csv
 import json
 import os
+import shutil
 import tempfile
 
 PROGRAM = ["bvlab", "commit", "changes", "compiler", "flags", "libraries"]  # what the counts may depend on
@@ -28,44 +30,15 @@ def header_of(file, path):
     return header
 
 
-def rows_in(data, quoted):
-    """The line breaks that end a row; whether the data end inside quotes."""
-    rows = 0
-    for i, piece in enumerate(data.split(b'"')):
-        rows += piece.count(b"\n") if bool(i % 2) == quoted else 0
-    return rows, quoted ^ bool(data.count(b'"') % 2)
-
-
-def field_text(field):
-    """As bvlab writes it: in quotes where it holds a comma, quotes or a line break of any kind."""
-    text = str(field)
-    return '"' + text.replace('"', '""') + '"' if any(c in text for c in ',"\n\r') else text
-
-
-def lines_of(rows):
-    return "".join(",".join(map(field_text, row)) + "\n" for row in rows)
-
-
 def tables_of(parts, name):
     """The files of tables in the parts; the one that says that all is there is the last."""
     found = {path.name for part in parts for path in part.glob("*.csv")}
     return sorted(found - {f"{name}.csv"}) + [f"{name}.csv"]
 
 
-def append(path, header, out):
-    """The rows of one file, behind those of others, and how many they are."""
-    with open(path, "rb") as file:
-        own = header_of(file, path)
-        if header not in (None, own):
-            raise Unmergeable(f"{path}: has other columns than the parts before it")
-        if header is None:
-            out.write(own)
-        rows, quoted = 0, False
-        while data := file.read(1 << 20):
-            more, quoted = rows_in(data, quoted)
-            rows += more
-            out.write(data)
-    return own, rows
+def rows_of(path):
+    with open(path, newline="", encoding="utf-8", errors="surrogateescape") as file:
+        return sum(1 for _ in csv.reader(file)) - 1
 
 
 def written_whole(path, write):
@@ -83,18 +56,24 @@ def written_whole(path, write):
 
 
 def merge_table(record, name, parts, rows):
+    """Where `rows` is a number, that of a table that has to be there."""
     paths = [path for part in parts if (path := part / name).is_file()]
+    found = sum(map(rows_of, paths)) if rows is not None else None
+    if found != rows:
+        raise Unmergeable(f"{name}: the parts hold {found} rows, not {rows}")
 
     def write(file):
-        header, found = None, 0
+        header = None
         for path in paths:
-            header, more = append(path, header, file)
-            found += more
-        if rows is not None and found != rows:
-            raise Unmergeable(f"{name}: the parts hold {found} rows, not {rows}")
-
-    if paths or rows is not None:
-        written_whole(record / name, write)
+            with open(path, "rb") as part:
+                own = header_of(part, path)
+                if header not in (None, own):
+                    raise Unmergeable(f"{path}: has other columns than the parts before it")
+                if header is None:
+                    file.write(own)
+                shutil.copyfileobj(part, file)
+            header = own
+    written_whole(record / name, write)
 
 
 def merged_machine(parts):

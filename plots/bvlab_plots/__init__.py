@@ -7,5 +7,5 @@
 
 records     a record as a frame of pandas              figures    the [[figure]] tables of a definition
 points      what is drawn of a frame: numbers          kinds      the kinds of figures, and what draws each
-style       one look for a name, for good              draw, compare, report, board    the commands
+style       one look for a name, for good              draw, compare, report    the commands
 """

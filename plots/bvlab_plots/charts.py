@@ -66,10 +66,6 @@ def declared_grid(figure, names):
     return drawing, found
 
 
-def panels_of(points):
-    return list(zip(points.panel_row, points.panel))
-
-
 def logs(figure, points):
     """Which axes are logarithmic, by the figure or by the data."""
     asked = figure.log.replace("none", "")

@@ -59,11 +59,6 @@ STYLES = {
     "slab-box": dict(color="#a50f15", marker="h", linestyle="-", hatch="||"),
     # Where they are compared.
     "world": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "relative": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    # How K-DOPs are posed.
-    "realigned": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "corners": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "hull": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
     # Precisions, and tests of two triangles.
     "exact": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
     "float64": dict(color="#2b7bba", marker="s", linestyle="--", hatch="///"),
@@ -73,10 +68,7 @@ STYLES = {
     "bullet": dict(color="#b0413e", marker="<", linestyle="-.", hatch="--"),
     "ode": dict(color="#6f9a37", marker=">", linestyle=":", hatch="||"),
     "fcl": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
-    # Boxes: numbers, methods and peers.
-    "double": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "float, nearest": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "float, outward": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
+    # Boxes: methods and peers.
     "blocks": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
     "hybrid": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
     "hash": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),

@@ -13,7 +13,7 @@ from urllib.parse import quote
 import markdown  # type: ignore[import]
 import pandas as pd
 
-from bvlab_plots import board, findings, provenance, records, words
+from bvlab_plots import findings, provenance, records, words
 
 PLOTS = Path(__file__).resolve().parents[1]
 MOST_ROWS = 1000  # of a table; the record has them all
@@ -212,8 +212,7 @@ def write(sections, scenes, out, notebooks=()):
                     for section, anchor in zip(sections, anchors))
     parts = {"links": links, "count": str(len(sections)),
              "scenes": list_of("scenes", "Scenes in 3D", scenes) + list_of("notebooks", "Notebooks", notebooks),
-             "sections": board.html_of([section.rows for section in sections]) +
-                         "\n".join(html_of(section, anchor) for section, anchor in zip(sections, anchors))}
+             "sections": "\n".join(html_of(section, anchor) for section, anchor in zip(sections, anchors))}
     folder = PLOTS / "page"
     page = (folder / "report.html").read_text()
     page = re.sub(r'<link rel="stylesheet" href="(.*?)">', lambda m: f"<style>\n{(folder / m[1]).read_text()}</style>", page)

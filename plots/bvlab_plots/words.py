@@ -8,9 +8,7 @@ CALLED = {
     "time_ns": "time", "first_ns": "time of the first frame", "later_ns": "time",
     "build_ns": "time to build", "frame_ns": "time per frame", "ns_per_frame": "time per frame",
     "ns_per_call": "time per call",
-    "pose_ns": "time to pose a volume", "test_ns": "time to test two volumes", "fan_out": "children per node",
-    "begin_ns": "time before a pair's first volume", "shared_bytes": "memory that bodies share",
-    "wall_ns": "wall time per frame", "middle_ns": "median time of a frame",
+    "fan_out": "children per node", "wall_ns": "wall time per frame", "middle_ns": "median time of a frame",
     "survival": "share of the front that survives a frame", "p99_ns": "99th percentile of a frame's time",
     "worst_ns": "worst frame's time",
     "n_u": "volumes posed", "n_v": "volume tests", "n_p": "triangle tests", "front": "entries of the front",
@@ -18,7 +16,7 @@ CALLED = {
     "displacement": "displacement per frame, of a box's size", "offset": "distance from the origin",
     "events": "pairs that began or ended per frame", "overlaps": "overlapping pairs", "bytes": "memory held",
     "relative_error": "relative error allowed", "largest_error": "largest error seen", "mean_error": "mean error seen",
-    "budget": "volume tests allowed", "level": "level (the root is 0)", "k": "K", "leaf_size": "triangles of a leaf",
+    "level": "level (the root is 0)", "leaf_size": "triangles of a leaf",
     "best_tests": "those of a list with the best rebuilds", "count": "boxes asked for",
     "moving": "bodies that move (0: all)",
 }
@@ -26,7 +24,6 @@ CALLED = {
 CALLED_IN = {
     "worlds": {"moving": "share of the bodies that move", "time_ns": "time of all frames but the first"},
     "tightness": {"mean": "distance left out, over the node's diameter"},
-    "budget": {"mean_deepest_per_radius": "mean bound on undecided patches, over the radius"},
 }
 # Of which one is counted: "time / pairs" is time per pair.
 ONE_OF = {"pairs": "pair", "later_pairs": "pair after the first frame", "frames": "frame", "answers": "answer",
@@ -36,7 +33,7 @@ UNITS = {"ns": "ns", "us": "us", "ms": "ms", "seconds": "s", "bytes": "B"}  # by
 UNIT_OF = {"degrees": "°", "bytes": "B", "ns_per_frame": "ns", "ns_per_call": "ns"}
 LENGTHS = {"body": "radii", "leaf": "leaf sizes"}  # what is written behind a length of a definition
 VALUES = {"polygons": "{} polygons", "objects": "{} bodies", "count": "{} boxes", "boxes": "{} boxes",
-          "degrees": "{}°", "step": "{} radii", "threads": "{} threads", "k": "K = {}", "leaf_size": "leaves of {}",
+          "degrees": "{}°", "step": "{} radii", "threads": "{} threads", "leaf_size": "leaves of {}",
           "fan_out": "{} children"}
 SWITCHES = {("coherent", "on"): "coherent", ("coherent", "off"): "from scratch", ("changes", "on"): "changes reported",
             ("changes", "off"): "changes not reported"}

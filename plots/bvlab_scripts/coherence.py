@@ -1,16 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How coherence relates to speedup: a record of a definition that measures coherence, as tables
-(printed) and as figures.
+"""How coherence relates to speedup, by a record of a definition that measures coherence: two figures.
 
-usage: plots/script coherence RECORD [--out FOLDER] [--table-only]
+usage: plots/script coherence RECORD [--out FOLDER]
 
 Figures: coherence-speedup (tests saved by each strategy against survival), coherence-law (predicted
-against measured, with residuals, fitted and left out apart), coherence-margins (what margins leave to do
-against the motion in leaf sizes).
+against measured, with residuals, fitted and left out apart).
 
 The law is that of law.py.
 """
-
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -20,32 +17,6 @@ from bvlab_scripts import law
 from bvlab_plots import style
 from bvlab_plots.arguments import record_arguments
 from bvlab_plots.ticks import log_ticks, name_log_ticks
-
-
-def print_tables(rows, kappa):
-    print(f"{len(rows)} cells, of {len(rows.groupby(['mesh', 'volume']))} pairs of mesh and volume.\n")
-    print("Rank correlation with what is saved (tests; for others than the talk's lists, tests of volumes "
-          "and triangles):")
-    print(law.rank_correlations(rows).round(2).to_string(), "\n")
-    print(f"The law's kappa = {kappa:.2f}; error of the predicted speedup, median and 95 %:")
-    for label, (middle, most, count) in law.errors(rows, kappa).items():
-        print(f"  {label:9} {100 * middle:5.1f} %  {100 * most:5.1f} %   of {count} cells")
-    for query, part in rows.groupby("query", sort=False):
-        for label, (middle, most, count) in law.errors(part, kappa).items():
-            print(f"  {query}, {label}: {100 * middle:.1f} %  {100 * most:.1f} %   of {count} cells")
-    middle, most = law.constant_errors(rows)
-    print(f"  talk's constants 4/3, 3/2: {100 * middle:.1f} %  {100 * most:.1f} %\n")
-    print("Survival below which a strategy loses, cells on the wrong side, share of cells won:")
-    for query, strategy, what, label in ((q, s, w, t) for q in dict.fromkeys(rows["query"])
-                                         for s in law.strategies_of(rows)
-                                         for w, t in (("tests_saved", "tests"), ("time_saved", "time"))):
-        at, wrong, won = law.crossing(rows[rows["query"] == query], strategy, what)
-        print(f"  {query:9} {strategy:16} {label:5}  {at:.3f}  {100 * wrong:4.1f} %  {100 * won:5.1f} %")
-    margins = law.fit_margins(rows)
-    if margins:
-        print(f"\nMargins leave {margins[0]:.2f} leaves^{margins[1]:.2f} of the recursion's tests to do; "
-              "off by a factor of",
-              ", ".join(f"{v:.2f} ({k})" for k, v in law.margins_errors(rows, margins).items()))
 
 
 def share_axis(axis, ticks, texts):
@@ -138,42 +109,12 @@ def draw_curve(axis, kappa):
     axis.legend(frameon=False, fontsize=7)
 
 
-def draw_margins(rows, out):
-    margins = law.fit_margins(rows)
-    group = rows[(rows.strategy == "margins") & (rows.leaves > 0)]
-    figure, axes = plt.subplots(1, 2, figsize=(7.2, 3.1), sharex=True)
-    looks = style.looks(rows.volume)
-    for axis, what in zip(axes, ("all_saved", "time_saved")):
-        for volume, part in group.groupby("volume", sort=False):
-            look = looks[volume]
-            seen = law.fitted(part)
-            for where, fill in ((seen, look["color"]), (~seen, "none")):
-                axis.plot(part.leaves[where], 1 / part[what][where], linestyle="none", marker=look["marker"],
-                          markersize=3.5, markeredgecolor=look["color"], markerfacecolor=fill,
-                          markeredgewidth=0.7, label=volume if fill != "none" else None)
-        axis.axhline(1, color="black", linewidth=0.8)
-        axis.set(xscale="log", yscale="log", xlabel="motion per frame, in leaf sizes")
-    leaves = np.geomspace(group.leaves.min(), group.leaves.max(), 50)
-    if margins:
-        axes[0].plot(leaves, np.minimum(1, margins[0] * leaves ** margins[1]), color="black", linewidth=1.4,
-                     label=f"{margins[0]:.2f} leaves$^{{{margins[1]:.2f}}}$")
-    axes[0].set_ylabel("tests, margins / recursive")
-    axes[1].set_ylabel("time, margins / recursive")
-    axes[0].legend(frameon=False, fontsize=7)
-    figure.tight_layout()
-    return style.save(figure, out, "coherence-margins")
-
-
 def main():
-    arguments = record_arguments(__doc__, table_only=True)
+    arguments = record_arguments(__doc__)
     rows = law.read(arguments.record)
     kappa = law.fit_kappa(rows)
-    print_tables(rows, kappa)
-    if arguments.table_only:
-        return
-    out = arguments.out
-    print(draw_speedup(rows, out))
-    print(draw_law(rows, kappa, out))
-    if (rows.strategy == "margins").any():
-        print(draw_margins(rows, out))
-
+    print(f"The law's kappa = {kappa:.2f}; error of the predicted speedup, median and 95 %:")
+    for label, (middle, most, count) in law.errors(rows, kappa).items():
+        print(f"  {label:9} {100 * middle:5.1f} %  {100 * most:5.1f} %   of {count} cells")
+    print(draw_speedup(rows, arguments.out))
+    print(draw_law(rows, kappa, arguments.out))

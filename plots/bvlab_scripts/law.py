@@ -144,16 +144,6 @@ def constant_errors(rows):
     return off.median(), off.quantile(0.95)
 
 
-def rank_correlations(rows):
-    """Spearman's rank correlation of each measure with the tests saved, by strategy."""
-    table = {}
-    for strategy, group in rows[rows.strategy != "recursive"].groupby("strategy", sort=False):
-        what = "tests_saved" if strategy in LISTS else "all_saved"
-        ranks = group[[what, "survival", "stillness", "growth", "leaves", "gaps"]].rank()
-        table[strategy] = ranks.corr()[what].drop(what)
-    return pd.DataFrame(table).T
-
-
 def crossing(rows, strategy, what):
     """The survival below which most cells lose: the threshold that misjudges the fewest."""
     group = rows[rows.strategy == strategy].sort_values("survival")

@@ -4,10 +4,8 @@
 usage: plots/script nine-bunnies RECORD [--out FOLDER] [--table-only]
 
 Figures: nine-bunnies-table (speedup of both lists by reading and density beside the published one),
-nine-bunnies-runs (the talk's ten runs), nine-bunnies-tests (N_v per frame), nine-bunnies-front
-(length of the front).
+nine-bunnies-runs (the talk's ten runs).
 """
-
 
 import numpy as np
 import pandas as pd

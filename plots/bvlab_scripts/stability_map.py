@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A stability record as totals (printed) and a picture: false answers of each volume (the worst of
+"""A stability record as a picture: false answers of each volume (the worst of
 its strategies) at each precision, and of each peer, under each stressor and level.
 
 usage: plots/script stability-map RECORD [--out FOLDER]
@@ -22,17 +22,6 @@ def read(record):
     rows = records.read(record, needs=["stressor", "false_positives", "false_negatives"])
     rows["wrong"] = rows.false_positives + rows.false_negatives
     return rows
-
-
-def print_totals(rows):
-    print("Ours: answers, false positives, false negatives, over all volumes and strategies")
-    for precision, group in rows[rows.peer == ""].groupby("precision", sort=False):
-        print(f"  {precision:8s} {group.answers.sum():8d} {group.false_positives.sum():8.0f} "
-              f"{group.false_negatives.sum():8.0f}")
-    print("Peers: answers, false positives, false negatives, cases without an answer")
-    for peer, group in rows[rows.peer != ""].groupby("peer", sort=False):
-        print(f"  {peer:12s} {group.answers.sum():8d} {group.false_positives.sum():8.0f} "
-              f"{group.false_negatives.sum():8.0f} {(group.answers == 0).sum():4d}")
 
 
 def lines_of(rows, columns):
@@ -93,6 +82,5 @@ def draw(rows, out):
 def main():
     arguments = record_arguments(__doc__)
     rows = read(arguments.record)
-    print_totals(rows)
     print(draw(rows, arguments.out))
 

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A triangles record as a table (printed) and a figure: misclassified pairs per million against time
-per call, one panel for each set, the Pareto front drawn.
+"""A triangles record as a figure: misclassified pairs per million against time per call, one panel for each set, the
+Pareto front drawn.
 
 usage: plots/script triangles-error RECORD [--out FOLDER]
 """
 
-
 import numpy as np
-import pandas as pd
 import matplotlib.pyplot as plt
 
 from bvlab_plots import records, style
@@ -31,9 +29,7 @@ def middle_of(rows):
     keys = ["set", "test", "source"]
     assert (rows.groupby(keys).wrong.nunique() == 1).all()
     return rows.groupby(keys, sort=False).agg(
-        ns=("ns_per_call", "median"), wrong=("wrong", "first"),
-        positives=("false_positives", "first"), negatives=("false_negatives", "first"),
-        pairs=("pairs", "first")).reset_index()
+        ns=("ns_per_call", "median"), wrong=("wrong", "first")).reset_index()
 
 
 def front_of(points):
@@ -44,17 +40,6 @@ def front_of(points):
             front.append((ns, wrong))
             least = wrong
     return front
-
-
-def print_table(middle):
-    middle = middle.assign(
-        variant=[name_of(t, s) for t, s in zip(middle.test, middle.source)],
-        cell=[f"{ns:.0f} ns {p:.0f}/{n:.0f}" for ns, p, n in
-              zip(middle.ns, middle.positives, middle.negatives)])
-    print("Median ns a call, false positives / false negatives among",
-          middle.pairs.min(), "to", middle.pairs.max(), "pairs of each set:")
-    with pd.option_context("display.width", 250, "display.max_columns", 20):
-        print(middle.pivot(index="variant", columns="set", values="cell").to_string())
 
 
 def draw(middle, out, name):
@@ -105,6 +90,5 @@ def main():
     arguments = record_arguments(__doc__)
     rows, name = read(arguments.record)
     middle = middle_of(rows)
-    print_table(middle)
     print(draw(middle, arguments.out, name))
 

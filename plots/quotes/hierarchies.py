@@ -3,10 +3,12 @@
 
 from functools import cache
 
-from bvlab_scripts import hierarchies
+import pandas as pd
+
 from bvlab_plots import records
 from quoting import Interval, claim, quotes
 
+PLACES = ["query", "polygons", "density", "motion"]  # what tells one trace from another
 DENSITIES = ["interlocked", "dense", "sparse"]
 TIE = 1.05  # times this near to each other are the same
 MOTIONS = {"5 degrees": "5 degrees", "a tenth of a degree": "a tenth of a degree"}
@@ -14,9 +16,20 @@ MOTIONS = {"5 degrees": "5 degrees", "a tenth of a degree": "a tenth of a degree
 
 @cache
 def measured(record):
-    """The median time of each variant in each cell, and the best of ours and theirs."""
-    rows, middle, places = hierarchies.read(record)
-    return rows, middle, hierarchies.best(middle, places).reset_index()
+    """The rows whose answers are right; the median time of a pair of each variant in each cell; and a row a cell: the best
+    of ours, of ours without coherence, and of the peers, and how many times as fast."""
+    rows = records.read(record)
+    rows = rows[~records.wrong_answers(rows)]
+    rows = rows.assign(us=rows.later_ns / rows.later_pairs / 1e3)
+    middle = rows.groupby([*PLACES, "peer", "strategy", "variant"], sort=False, as_index=False).us.median()
+
+    def best(part, name):
+        return part.loc[part.groupby(PLACES, sort=False).us.idxmin()].set_index(PLACES)[["variant", "us"]].add_prefix(name + " ")
+    ours = middle[middle.peer == ""]
+    table = pd.concat([best(ours[ours.strategy == "recursive"], "recursive"), best(ours, "best"), best(middle[middle.peer != ""], "peer")], axis=1)
+    for name in ("recursive", "best"):
+        table[f"{name}: times faster"] = table["peer us"] / table[f"{name} us"]
+    return rows, middle, table.reset_index()
 
 
 @quotes("hierarchies")
@@ -49,10 +62,10 @@ def best_of_ours(record):
     claim(name[best["query"] == "distance"].str.startswith("rss").mean() > 0.7, "rectangle swept spheres for distances")
     claim(name[(best["query"] == "touching") & (best.density == "sparse") & (best.motion == "5 degrees")].str.startswith("sphere").all(),
           "spheres where most pairs are far apart and much moves")
-    with_first = (rows.time_ns / rows.pairs).groupby([rows[place] for place in hierarchies.PLACES] + [rows.peer, rows.variant]).median()
-    ours_first, theirs_first = (with_first[(with_first.index.get_level_values("peer") == "") == mine].groupby(level=hierarchies.PLACES).min()
+    with_first = (rows.time_ns / rows.pairs).groupby([rows[place] for place in PLACES] + [rows.peer, rows.variant]).median()
+    ours_first, theirs_first = (with_first[(with_first.index.get_level_values("peer") == "") == mine].groupby(level=PLACES).min()
                                 for mine in (True, False))
-    leads = best.set_index(hierarchies.PLACES)["best: times faster"]
+    leads = best.set_index(PLACES)["best: times faster"]
     leads = leads[leads >= 30].sort_values(ascending=False)
     leads_first = (theirs_first / ours_first)[leads.index]
     claim((leads_first < leads).all(), "the largest leads shrink with the first frames")

@@ -28,7 +28,6 @@ def reuse(record):
                 found[f"{short}_{WORDS[fan_out]}{measure}"] = Interval(values.xs(fan_out, level="fan_out"))
     lists = [savings(cells, "n_v", name, motion) for name in ("separation-list", "deferred") for motion in fan_outs.FAST]
     raised = [savings(cells, "n_v", "raise", motion) for motion in fan_outs.FAST]
-    margins = [savings(cells, "n_v", "margins", motion) for motion in fan_outs.FAST]
     claim(all((values < 1).all() for values in lists), "in tests lists lose everywhere from 5 degrees per frame on")
     time = cells.time_ns.unstack("strategy")
     fastest = time.idxmin(axis=1)
@@ -65,19 +64,16 @@ def reuse(record):
     gain = fan_outs.savings(cells, "time_ns", "deferred").xs(fan_outs.SLOW, level="motion")
     claim((gain.xs(2, level="fan_out") > 1).all(), "deferring pays in time on binary trees")
     recursion = cells.xs("recursive", level="strategy")
-    best = recursion.time_ns.unstack("fan_out").idxmin(axis=1)
     return {**found, "fast_lists": Interval([v for values in lists for v in values]), "fast_raise": Interval([v for values in raised for v in values]),
-            "fast_margins": Interval([v for values in margins for v in values]),
             "middle_margins": Interval(savings(cells, "n_v", "margins", "0.003 / 0.3")),
             "middle_margins_time": Interval(savings(cells, "time_ns", "margins", "0.003 / 0.3")),
             "recursive_fast": (fast == "recursive").sum(), "fast_cells": len(fast),
-            "deferred_loses_sixteen": (gain.xs(16, level="fan_out") < 1).sum(), "cells_sixteen": len(gain.xs(16, level="fan_out")),
             "alike": int(alike.sum()), "unlike": int((change > 4 / 3).sum()), "alike_cells": len(alike), "change": Interval(change), "holding": 7 - len(failing), "seeds": rows.seed.nunique(),
             "list_wins_fast": len(besides), "list_best_fast": max(part.max() for part in faster.values()),
             "middle_lists": int((middle != "margins").sum()), "middle_margins_best": int((middle == "margins").sum()), "middle_cells": len(middle),
             "middle_lose": int((middle_time.margins > middle_time.recursive).sum()),
             "survival_spheres": 100 * fan_outs.survival(record, ["sphere"])[3], "survival_others": Interval(survival_of),
-            "repetitions": rows.repetition.nunique(), "binary_best": 100 * (best == 2).mean(), "cells": len(cells.groupby(fan_outs.CELL)),
+            "repetitions": rows.repetition.nunique(),
             **{f"recursion_{WORDS[fan_out]}": Interval(relative) for fan_out, relative in recursion_beside_binary(recursion).items()},
             **{f"survival_{i}": 100 * share for i, share in enumerate(fan_outs.survival(record))}}
 

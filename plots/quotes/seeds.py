@@ -19,7 +19,6 @@ def talk(record):
     rows = records.read(record)
     records.wrong_answers(rows)
     tests, low, high = (speedups(rows, price) for price in (0, *PRICES))
-    published = nine_bunnies.PUBLISHED.mean()
 
     def of(table, readings, build="bottom-up"):
         return table.loc[build].loc[readings]
@@ -48,8 +47,6 @@ def talk(record):
             "low": PRICES[0], "high": PRICES[1], "between": BETWEEN, "cells": len(of(tests, one)),
             **{f"reached_{name}": both_reached(table) for name, table in (("tests", tests), ("low", low), ("high", high))},
             "list": both(priced, "separation-list"), "deferred": both(priced, "deferred"),
-            "published_list": published["recursive"] / published["separation-list"],
-            "published_deferred": published["recursive"] / published["deferred"],
             "list_tests": Interval(of(tests, one)["separation-list"]), "deferred_tests": Interval(of(tests, one).deferred),
             "tree": at_most(100 * max((ratio - 1).abs().to_numpy().max() for ratio in trees), 1),
             "every_list": both(every, "separation-list"), "every_deferred": both(every, "deferred"),

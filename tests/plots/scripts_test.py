@@ -16,46 +16,38 @@ from small_records import STRATEGIES, names_added, own_record, small_record, str
 RECURSIVE = dict(strategy="recursive")
 # Script: the record it draws, how much of it, and the strangers added, each like a name that is there.
 SPECS = {
-    "boxes_fast": ("boxes-fast", dict(set=2), dict(method=("blocks", [stranger("method"), "grid", "brute-force"]),
-                                                   set="random", motion="drift"), None),
     "coherence": ("coherence", dict(mesh=2, motion=2, motion_model=1), dict(volume="obb", strategy=("deferred", STRATEGIES)),
                   RECURSIVE),
     "cost_model": ("cost-model", dict(volume=3), dict(volume="sphere", strategy="deferred", density="dense"),
                    RECURSIVE),
-    "hierarchies": ("hierarchies", dict(work=2, motion=1), dict(volume="sphere", strategy=("recursive", STRATEGIES)),
-                    RECURSIVE),
     "nine_bunnies": ("nine-bunnies", dict(seed=2, reading=2),
                      dict(variant=("deferred", STRATEGIES), reading="one body, one freedom", density="dense"), None),
     "stability_map": ("stability-map", dict(level=4), dict(volume="sphere", precision="float32", source="fcl-obb",
                                                            stressor="offset"), None),
     "triangles_error": ("triangles-error", dict(set=2), dict(test="moller", set="random"), None),
 }
-ELSEWHERE = {"tournament"}  # has a test of its own
-BY_THEMSELVES = {"fan_outs"}  # as has this one, which says otherwise what is no record of its own
-PRINTS = {"hierarchies"}  # and draws nothing
+BY_THEMSELVES = {"fan_outs"}  # has a test of its own, which says otherwise what is no record of its own
 # Drawn together with others, without a name of their own; or on one line with all that are the same.
 POOLED = {"cost_model": ["strategy"], "stability_map": ["volume"]}
 
 
 class Scripts(unittest.TestCase):
     def test_every_script(self):
-        scripts = {path.stem for path in (PLOTS / "bvlab_scripts").glob("*.py") if "def main(" in path.read_text()} - ELSEWHERE - BY_THEMSELVES
+        scripts = {path.stem for path in (PLOTS / "bvlab_scripts").glob("*.py") if "def main(" in path.read_text()} - BY_THEMSELVES
         self.assertEqual(scripts, set(SPECS), "a script that is not tested, or is no more")
         for script, (name, keep, strangers, peer_like) in SPECS.items():
             with self.subTest(script), tempfile.TemporaryDirectory() as folder:
                 record = small_record(name, Path(folder) / "record", keep, strangers, peer_like)
-                words = [f"{script}.py", str(record)] + ([] if script in PRINTS else ["--out", folder])
-                with mock.patch.object(sys, "argv", words):
+                with mock.patch.object(sys, "argv", [f"{script}.py", str(record), "--out", folder]):
                     seen = Seen(self, importlib.import_module(f"bvlab_scripts.{script}").main)
-                self.assertEqual(bool(seen.paths), script not in PRINTS)
-                seen.said += seen.printed if script in PRINTS else ""
+                self.assertTrue(seen.paths)
                 pooled = [stranger(column) for column in POOLED.get(script, [])]
                 seen.check(self, [n for n in names_added(strangers, peer_like) if n not in pooled])
 
     def test_what_is_no_record_of_theirs(self):
         with tempfile.TemporaryDirectory() as folder:
             other = own_record(folder)
-            for script in sorted(set(SPECS) | ELSEWHERE):
+            for script in sorted(SPECS):
                 for record, mention in ((other, "has"), (Path(folder) / "none", "no record")):
                     name = script.replace("_", "-")
                     done = subprocess.run([PLOTS / "script", name, record], capture_output=True, text=True)
