@@ -13,7 +13,7 @@ def totals(record):
     """The rows, and by motion and number of frames: ms of `recommended`, and of the fastest library, and which."""
     rows = records.read(record)
     claim((rows.differing[rows.peer == ""] == 0).all(), "answers of ours agree")
-    rows = rows.assign(ms=(rows.build_ns.fillna(0) + rows.time_ns) / 1e6)
+    rows = rows.assign(ms=(rows.build_ns + rows.time_ns) / 1e6)
     median = rows.groupby(["motion", "frames", "method", "peer"]).ms.median().reset_index()
     theirs = median[median.peer != ""]
     found = median[median.peer == ""].set_index(["motion", "frames"])[["ms"]]
