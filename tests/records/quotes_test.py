@@ -48,7 +48,7 @@ class Pages(unittest.TestCase):
                     self.assertTrue(((ROOT / page.name).parent / address).exists())
 
     def test_the_readme_is_short(self):
-        self.assertLessEqual(len((ROOT / "README.md").read_text().splitlines()), 120)
+        self.assertLessEqual(len((ROOT / "README.md").read_text().splitlines()), 80)
 
 
 class Templates(unittest.TestCase):
