@@ -89,7 +89,10 @@ class Blocks {
     pairs_.begin_frame();
     const bool coherent = settings_.coherence == Coherence::on;
     if (!coherent || !advance(boxes, told)) from_scratch(boxes);
-    if (coherent && !followed_.active() && !changed_.active()) steps_.take(boxes);
+    if (changed_.active())
+      steps_.forget();  // nor are all boxes read
+    else if (coherent)
+      steps_.take(boxes);
     count_ = boxes.size();
     return pairs_.all.view();
   }
@@ -123,9 +126,8 @@ class Blocks {
     if (boxes.size() != count_) return false;
     const std::optional<bool> steady = steps_.steady(boxes);
     if (!steady) return false;
-    if (*steady) return follow_anew(boxes, motion);
-    followed_.expect_jitter();
-    return follow_anew(boxes, sample(boxes));
+    followed_.expect(*steady);
+    return follow_anew(boxes, *steady ? motion : sample(boxes));
   }
   static std::size_t distance(std::size_t a, std::size_t b) { return a < b ? b - a : a - b; }
 

@@ -3,8 +3,10 @@
 /// reads 64 boxes a frame.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 
 #include "broadphase/box.hpp"
@@ -21,8 +23,11 @@ class SampledSteps {
     last_.swap(before_last_);
     for (std::size_t k = 0; k < sampled(); ++k) last_[k] = lows(boxes, k);
   }
+  /// The frames to come do not follow those that were taken.
+  void forget() { frames_ = 0; }
   /// Whether the step to these boxes, in the mean, differs from the one before it by less than a
-  /// quarter of its length; nothing where fewer than two frames have been taken.
+  /// quarter of its length; nothing where that is not known: two frames must have been taken, and
+  /// the boxes have moved between them.
   std::optional<bool> steady(Boxes<T> boxes) const {
     if (frames_ < 2 || boxes.size() != count_) return {};
     double change = 0, step = 0;
@@ -34,6 +39,7 @@ class SampledSteps {
         change += std::abs(next - last), step += std::abs(last);
       }
     }
+    if (step == 0) return {};
     return change < step / 4;
   }
 

@@ -49,10 +49,10 @@ class FollowedBlocks {
   bool overgrown() const { return tree_.slots() > 2 * count_ + 1024; }
   /// The number of frames in a row, up to the last, in which fewer than one box in eight moved.
   int few_moved() const { return few_moved_; }
-  /// Whether boxes keep their motion well enough for one-sided fat boxes; they no longer do from
-  /// expect_jitter() on.
+  /// Whether boxes keep their motion well enough for one-sided fat boxes: as is expected before it
+  /// begins, until they once did not.
   bool steady() const { return steady_; }
-  void expect_jitter() { steady_ = false; }
+  void expect(bool steady) { steady_ = steady && was_steady_; }
   /// The shortest and the longest horizon, in frames.
   static constexpr int shortest = 8;
   int longest() const { return longest_; }
@@ -499,7 +499,7 @@ class FollowedBlocks {
   /// Too many boxes left their fat boxes: change from one-sided boxes to margins, or adapt these.
   void degrade_prediction() {
     if (steady_)
-      steady_ = age_ >= horizon_;
+      steady_ = was_steady_ = age_ >= horizon_;
     else if (horizon_ == shortest)
       margins_exceeded_ = true;
     else if (age_ < horizon_)
@@ -553,7 +553,7 @@ class FollowedBlocks {
   LargeVector<std::uint32_t> slots_;  ///< of each box
   std::size_t count_ = 0;             ///< boxes of the last frame
   std::size_t candidates_at_first_ = 0, visits_ = 0, visits_when_sorted_ = 0;
-  bool active_ = false, sorted_ = false, steady_ = true;
+  bool active_ = false, sorted_ = false, steady_ = true, was_steady_ = true;
   bool margins_exceeded_ = false;     ///< boxes left the shortest margins
   bool too_many_candidates_ = false;  ///< so many candidates that new ones are worth finding
   bool must_rebuild_ = false;         ///< too many candidates or empty slots to go on
