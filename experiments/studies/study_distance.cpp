@@ -69,8 +69,8 @@ struct Observed {
   std::size_t below = 0, above = 0;  ///< answers outside of what is promised
 };
 
-/// A distance is right to 1e-14 of itself (triangle_distance.hpp). The search stops once no pair can
-/// be nearer by more than a factor of 2^-45 (distance.hpp), in the truth and in the answer.
+/// A distance is right to 1e-14 of itself (triangle_distance.hpp). The search stops once no pair
+/// can be nearer by more than a factor of 2^-45 (distance.hpp), in the truth and in the answer.
 Observed compared(const std::vector<double>& answers, const std::vector<double>& truth,
                   double promised) {
   constexpr double grain = 1e-13;

@@ -16,7 +16,6 @@ kappa is fitted; R, c, g and lambda are measured from recursive fronts of one fr
 """
 
 import numpy as np
-import pandas as pd
 
 from bvlab_plots import records
 

@@ -78,26 +78,6 @@ def real_motions_bounds(record):
             "share": Interval(100 * fixed / single.us[few]), "spirelli": ours, "spirelli_fcl": theirs}
 
 
-@quotes("recommended-costs")
-def recommended_costs(record):
-    rows = records.read(record)
-    claim((rows.differing == 0).all(), "answers of ours agree")
-    claim((rows.alone == "yes").all(), "the rows were timed alone")
-    rows = with_us(rows)
-    us = rows.groupby(["motion", "candidate"]).us.median().unstack()
-    contacts = us.index.str.endswith(", contacts")
-    best = us.drop(columns="recommended").min(axis=1)
-    over = us["recommended"] / best
-    touching, unseen = over[~contacts], over[~contacts & us.index.str.contains(" of ")]
-    others = us[~contacts].drop(columns=["recommended", "wide oriented boxes"]).min(axis=1) / best[~contacts]
-    alone = us.drop(columns="recommended").div(best, axis=0).max().sort_values()
-    claim(alone.index[0] == "oriented boxes", "of single candidates, oriented boxes with margins lose least where they lose most")
-    claim(set(others.nlargest(2).index) == {"apartment", "escape"}, "wide oriented boxes save most on apartment and escape")
-    return {"motions": len(touching), "near": int((touching <= NEAR).sum()), "worst": touching.max(), "worst_at": touching.idxmax(),
-            "unseen": len(unseen), "unseen_near": int((unseen <= NEAR).sum()), "unseen_worst": unseen.max(),
-            "contacts": int(contacts.sum()), "contacts_worst": over[contacts].max(), "alone": alone.iloc[0], "alone_next": alone.iloc[1], "alone_most": alone.iloc[-1], "apartment": others["apartment"], "escape": others["escape"]}
-
-
 def changing(record):
     """Rows of `auto` by set, motion and how it follows; rows of the rivals; and the fastest rival's time by set and motion,
     told and not ("")."""
