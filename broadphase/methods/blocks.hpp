@@ -242,29 +242,25 @@ class Blocks {
 
   Motion sample(Boxes<T> boxes) const {
     Motion motion;
-    const BlockTree<T>& tree = joined_.tree();
-    const std::uint32_t stride = std::max<std::uint32_t>(1, tree.leaves() / 16);
-    for (std::uint32_t k = 0; k < tree.leaves(); k += stride)
-      for (std::uint32_t slot = k * block_width; slot < (k + 1) * block_width; ++slot) {
-        const std::uint32_t id = tree.ids(0)[slot];
-        if (id == no_box || id >= boxes.size()) continue;
-        const Row<T> now = row_of(boxes[id]), was = followed_.last_row(slot);
-        ++motion.seen;
-        motion.moved += !same(now, was);
-        if (joined_.jumped(now, was)) {
-          ++motion.jumped;
-          continue;
-        }
-        const auto widest = static_cast<double>(largest_change(now, was));
-        motion.widest = std::max(motion.widest, widest);
-        for (int axis = 0; axis < 3; ++axis) {
-          motion.extent[axis] += static_cast<double>(now.hi[axis] - now.lo[axis]);
-          const double low = static_cast<double>(was.lo[axis] - now.lo[axis]),
-                       high = static_cast<double>(now.hi[axis] - was.hi[axis]);
-          motion.step[axis] +=
-              followed_.steady() ? std::max(low, 0.0) + std::max(high, 0.0) : 2 * widest;
-        }
+    joined_.tree().sample(16, [&](std::uint32_t slot, std::uint32_t id) {
+      if (id >= boxes.size()) return;
+      const Row<T> now = row_of(boxes[id]), was = followed_.last_row(slot);
+      ++motion.seen;
+      motion.moved += !same(now, was);
+      if (joined_.jumped(now, was)) {
+        ++motion.jumped;
+        return;
       }
+      const auto widest = static_cast<double>(largest_change(now, was));
+      motion.widest = std::max(motion.widest, widest);
+      for (int axis = 0; axis < 3; ++axis) {
+        motion.extent[axis] += static_cast<double>(now.hi[axis] - now.lo[axis]);
+        const double low = static_cast<double>(was.lo[axis] - now.lo[axis]),
+                     high = static_cast<double>(now.hi[axis] - was.hi[axis]);
+        motion.step[axis] +=
+            followed_.steady() ? std::max(low, 0.0) + std::max(high, 0.0) : 2 * widest;
+      }
+    });
     return motion;
   }
   /// So many candidates for fat boxes of so many frames; -0.5: the boxes themselves.
@@ -280,22 +276,19 @@ class Blocks {
                                   frames);
     };
     const T reach = static_cast<T>(motion.widest * frames);
-    const std::uint32_t stride = std::max<std::uint32_t>(1, tree.leaves() / 4);
     std::size_t seen = 0, found = 0;
-    for (std::uint32_t at = 0; at < tree.leaves(); at += stride)
-      for (std::uint32_t slot = at * block_width; slot < (at + 1) * block_width; ++slot) {
-        if (tree.ids(0)[slot] == no_box) continue;
-        ++seen;
-        const Row<T> fat = fat_box(slot);
-        const Box<T> around = box_of(Row<T>{fat.lo - reach, fat.hi + reach});
-        tree.find(around, [&](std::uint32_t leaf) {
-          for (LaneMask lanes = overlapping_lanes<Closed>(tree.leaf(leaf), around); lanes;
-               lanes &= lanes - 1) {
-            const std::uint32_t other = leaf * block_width + std::countr_zero(lanes);
-            found += other != slot && overlap<Closed>(fat, fat_box(other));
-          }
-        });
-      }
+    tree.sample(4, [&](std::uint32_t slot, std::uint32_t) {
+      ++seen;
+      const Row<T> fat = fat_box(slot);
+      const Box<T> around = box_of(Row<T>{fat.lo - reach, fat.hi + reach});
+      tree.find(around, [&](std::uint32_t leaf) {
+        for (LaneMask lanes = overlapping_lanes<Closed>(tree.leaf(leaf), around); lanes;
+             lanes &= lanes - 1) {
+          const std::uint32_t other = leaf * block_width + std::countr_zero(lanes);
+          found += other != slot && overlap<Closed>(fat, fat_box(other));
+        }
+      });
+    });
     return {static_cast<double>(found * count_) /
                 static_cast<double>(std::max<std::size_t>(2 * seen, 1)),
             frames};

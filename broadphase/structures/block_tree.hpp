@@ -67,6 +67,15 @@ class BlockTree {
     levels_[1][k / block_width].put(k % block_width, box);
   }
 
+  /// Calls visit(slot, id) for the boxes of about `count` leaves, evenly spread.
+  template <class Visit>
+  void sample(std::uint32_t count, Visit&& visit) const {
+    const std::uint32_t stride = std::max<std::uint32_t>(1, leaves() / count);
+    for (std::uint32_t k = 0; k < leaves(); k += stride)
+      for (std::uint32_t slot = k * block_width; slot < (k + 1) * block_width; ++slot)
+        if (ids_[slot] != no_box) visit(slot, ids_[slot]);
+  }
+
   /// Mean extent of a leaf along an axis. Leaves as large as the range of floats do not count: they
   /// have boxes that stand for bodies outside the scene (NearPairs).
   double mean_leaf_extent() const {

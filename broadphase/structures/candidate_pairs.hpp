@@ -43,8 +43,9 @@ class CandidatePairs {
     const std::size_t count = candidates_.size();
     list.clear();
     hits_.resize(count);
-    Pair* const to = list.reserve(count + 1);
-    list.set_end(to + compare_keeping(ids, 0, count, to, began, ended));
+    write_in_stretches(list, 0, count, [&](std::size_t first, std::size_t last, Pair* out) {
+      return out + compare_keeping(ids, first, last, out, began, ended);
+    });
     hits_known_ = true;
   }
 
@@ -82,20 +83,29 @@ class CandidatePairs {
   void compare_range(const std::uint32_t* ids, PairList& list, std::size_t first,
                      std::size_t last) const {
     const Row<T>* rows = rows_.data();
-    // In stretches, since only the pages that pairs are written to should be brought in.
-    constexpr std::size_t stretch = 4096;
-    for (; first < last; first += stretch) {
-      const std::size_t count = std::min(stretch, last - first);
-      Pair* out = list.reserve(count + 1);
-      for (const Pair& c : candidates_.view().subspan(first, count)) {
+    write_in_stretches(list, first, last, [&](std::size_t begin, std::size_t end, Pair* out) {
+      for (const Pair& c : candidates_.view().subspan(begin, end - begin)) {
         *out = {ids[c.i], ids[c.j]};
         out += overlap<Contact>(rows[c.i], rows[c.j]);
       }
-      list.set_end(out);
-    }
+      return out;
+    });
   }
 
  private:
+  /// Appends what write(begin, end, out) writes for the candidates from `begin` to `end`; it
+  /// returns where it ended. In stretches, so that of the list only pages that pairs are written to
+  /// are brought in.
+  template <class Write>
+  static void write_in_stretches(PairList& list, std::size_t first, std::size_t last,
+                                 const Write& write) {
+    constexpr std::size_t stretch = 4096;
+    for (; first < last; first += stretch) {
+      const std::size_t end = std::min(first + stretch, last);
+      list.set_end(write(first, end, list.reserve(end - first + 1)));
+    }
+  }
+
   /// Compares the candidates from `first` to `last` and writes overlapping pairs to `pairs`;
   /// returns their number.
   std::size_t compare_keeping(const std::uint32_t* ids, std::size_t first, std::size_t last,

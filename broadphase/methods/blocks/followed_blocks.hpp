@@ -509,18 +509,15 @@ class FollowedBlocks {
   /// speed, about as many frames are left as have passed.
   bool half_used() const {
     const auto& rows = candidates_.rows();
-    const std::uint32_t stride = std::max<std::uint32_t>(1, tree_.leaves() / 16);
     std::size_t seen = 0, used = 0;
-    for (std::uint32_t k = 0; k < tree_.leaves(); k += stride)
-      for (std::uint32_t slot = k * block_width; slot < (k + 1) * block_width; ++slot) {
-        if (tree_.ids(0)[slot] == no_box) continue;
-        const Four<T> low = rows[slot].lo - fat_boxes_[slot].lo,
-                      high = fat_boxes_[slot].hi - rows[slot].hi;
-        bool half = false;
-        for (int axis = 0; axis < 3; ++axis)
-          half |= std::min(low[axis], high[axis]) < T(0.27) * (low[axis] + high[axis]);
-        ++seen, used += half;
-      }
+    tree_.sample(16, [&](std::uint32_t slot, std::uint32_t) {
+      const Four<T> low = rows[slot].lo - fat_boxes_[slot].lo,
+                    high = fat_boxes_[slot].hi - rows[slot].hi;
+      bool half = false;
+      for (int axis = 0; axis < 3; ++axis)
+        half |= std::min(low[axis], high[axis]) < T(0.27) * (low[axis] + high[axis]);
+      ++seen, used += half;
+    });
     return 8 * used > seen;
   }
 
