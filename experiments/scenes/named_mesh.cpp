@@ -2,11 +2,11 @@
 #include "experiments/scenes/named_mesh.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <sstream>
 
+#include "experiments/files/numbers.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/convex_hull.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
@@ -28,11 +28,8 @@ constexpr std::string_view hull_suffix = "-hull";
 
 template <class T>
 T number(std::string_view text, const std::string& whole) {
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size())
-    throw Unusable("mesh '" + whole + "': '" + std::string(text) + "' is not a number of its kind");
-  return value;
+  if (const auto value = number_in<T>(text)) return *value;
+  throw Unusable("mesh '" + whole + "': '" + std::string(text) + "' is not a number of its kind");
 }
 
 /// Cut at every `separator`.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <vector>
 
+#include "experiments/files/numbers.hpp"
 #include "experiments/scenes/mesh_formats.hpp"
 #include "experiments/scenes/polygon.hpp"
 #include "experiments/scenes/text_encoding.hpp"
@@ -73,15 +73,11 @@ struct Counts {
 };
 
 std::optional<Counts> counts_of(TextScanner scanner) {
-  const auto count = [](std::string_view word, std::size_t& value) {
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc{} && end == word.data() + word.size();
-  };
-  Counts counts{};
-  if (!scanner.next_line() || !count(scanner.word(), counts.vertices) ||
-      !count(scanner.word(), counts.faces) || !scanner.at_line_end())
-    return std::nullopt;
-  return counts;
+  if (!scanner.next_line()) return std::nullopt;
+  const auto vertices = number_in<std::size_t>(scanner.word()),
+             faces = number_in<std::size_t>(scanner.word());
+  if (!vertices || !faces || !scanner.at_line_end()) return std::nullopt;
+  return Counts{*vertices, *faces};
 }
 
 /// The names that faces bear, as the lines come: of an object, of a group, or of both.

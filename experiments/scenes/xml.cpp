@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "experiments/files/numbers.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/text_encoding.hpp"
 #include "experiments/scenes/text_scanner.hpp"
@@ -301,11 +302,8 @@ std::vector<double> XmlElement::numbers(std::string_view text, std::size_t count
 }
 
 std::uint32_t XmlElement::index_of(std::string_view word) const {
-  std::uint32_t value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc{} || end != word.data() + word.size())
-    fault(TextScanner::shown(word) + " is not an index");
-  return value;
+  if (const auto value = number_in<std::uint32_t>(word)) return *value;
+  fault(TextScanner::shown(word) + " is not an index");
 }
 
 std::vector<std::uint32_t> XmlElement::indices() const {
