@@ -1,4 +1,4 @@
-# The library as somebody else uses it: installed with Eigen alone, found by find_package, and README's
+# The library as somebody else uses it: installed with Eigen alone, found by find_package, and an
 # example compiled against it and run.
 #   cmake -DSOURCE=... -DWORK=... -DGENERATOR=... [-DREADERS=ON] -P run.cmake
 # With READERS, the example that reads a file's parts instead.
@@ -32,8 +32,8 @@ foreach(line "apart by 1\\.[0-9]+" "[1-9][0-9]* pairs touch" "boxes 0 and 1 over
   endif()
 endforeach()
 
-# README shows no code of its own: it points to this example.
-file(READ ${SOURCE}/README.md readme)
-if(NOT readme MATCHES "\\(tests/library/example\\.cpp\\)")
-  message(FATAL_ERROR "README.md does not point to tests/library/example.cpp")
+# The page about the library shows no code of its own: it points to this example.
+file(READ ${SOURCE}/experiments/using.md using)
+if(NOT using MATCHES "\\(\\.\\./tests/library/example\\.cpp\\)")
+  message(FATAL_ERROR "experiments/using.md does not point to tests/library/example.cpp")
 endif()
