@@ -18,10 +18,13 @@ namespace {
 
 class Physx final : public BoxPeer {
  public:
-  explicit Physx(physx::PxBroadPhaseType::Enum type) : type_(type) { physx_foundation(); }
+  explicit Physx(physx::PxBroadPhaseType::Enum type) : type_(type) {
+    physx_foundation();
+    begin();
+  }
 
   std::span<const Pair> overlapping(Boxes<float> boxes) override {
-    const bool enters = boxes.size() != count_ || !phase_;
+    const bool enters = boxes.size() != count_;
     if (enters) enter(boxes.size());
     changed_.clear();
     for (std::uint32_t k = 0; k < boxes.size(); ++k)
@@ -30,7 +33,7 @@ class Physx final : public BoxPeer {
   }
 
   std::span<const Pair> update(Boxes<float> boxes, std::span<const std::uint32_t> moved) override {
-    if (boxes.size() != count_ || !phase_) return overlapping(boxes);
+    if (boxes.size() != count_) return overlapping(boxes);
     changed_.clear();
     for (const std::uint32_t k : moved) change(k, boxes[k]);
     return update_with(false);
@@ -62,9 +65,11 @@ class Physx final : public BoxPeer {
     return pairs_.view();
   }
 
+  /// Makes the broad phase, before the first frame's clock starts.
+  void begin() { phase_.reset(physx::PxCreateBroadPhase(physx::PxBroadPhaseDesc(type_))); }
   /// Arrays have one entry more than there are boxes: it loads four numbers where three are.
   void enter(std::size_t count) {
-    phase_.reset(physx::PxCreateBroadPhase(physx::PxBroadPhaseDesc(type_)));
+    if (count_ > 0) begin();
     count_ = count;
     bounds_.assign(count + 1, physx::PxBounds3::empty());
     distances_.assign(count + 1, 0);
