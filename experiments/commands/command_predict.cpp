@@ -142,12 +142,9 @@ void add_predict(CLI::App& app) {
       ->add_option("trace,--trace", arguments->trace, "poses: .npy, float64, (frames, objects, 7)")
       ->required();
   add_mesh_options(*command, arguments->meshes, arguments->scale);
-  add_tree_options(*command, arguments->variant);
-  add_query_options(*command, arguments->variant);
-  add_build_options(*command, arguments->variant);
-  command->add_option("--leaf-size", arguments->variant.leaf_size, "most triangles in a leaf")
-      ->check(whole_number(1, 1u << 16))
-      ->capture_default_str();
+  add_variant_options(
+      *command, arguments->variant,
+      {"volume", "fan_out", "frame", "query", "relative_error", "build", "fit", "leaf_size"});
   command
       ->add_option("--stride", arguments->stride,
                    "frames from the start of one window to the next (default: 96; a trace of fewer "

@@ -183,36 +183,21 @@ void add_replay(CLI::App& app) {
   add_mesh_options(*command, arguments->meshes, arguments->scale);
   command->add_option("--trace", arguments->trace, "poses: .npy, float64, (frames, objects, 7)")
       ->required();
-  add_tree_options(*command, arguments->variant);
-  command->add_option("--kernel", arguments->variant.kernel, "see `bvlab list kernels`")
-      ->capture_default_str();
-  command
-      ->add_option("--strategy", arguments->variant.strategy,
-                   "see `bvlab list strategies`; name or name:parameter")
-      ->capture_default_str();
-  add_build_options(*command, arguments->variant);
-  command
-      ->add_option("--leaf-size", arguments->variant.leaf_size,
-                   "most triangles in a leaf; with --kernel siblings or mixed, at most as many as "
-                   "children of a node")
-      ->check(whole_number(1, 1u << 16))
-      ->capture_default_str();
+  add_variant_options(
+      *command, arguments->variant,
+      {"volume", "strategy", "build", "leaf_size", "fit", "fan_out", "frame", "kernel"});
   CLI::Option* configuration = command->add_option_function<std::string>(
       "--configuration", [arguments](const std::string& name) { arguments->configuration = name; },
       "sets all of the above at once; see `bvlab list configurations`");
   CLI::Option* recommended = command->add_flag_callback(
       "--recommended", [arguments] { arguments->configuration = "recommended"; },
       "the same as --configuration recommended");
-  for (const std::string_view name : set_by_configuration) {
-    std::string option = "--" + std::string(name);
-    std::replace(option.begin(), option.end(), '_', '-');
-    configuration->excludes(command->get_option(option));
-    recommended->excludes(command->get_option(option));
+  for (const std::string_view name : set_by_configuration()) {
+    configuration->excludes(command->get_option(option_of(name)));
+    recommended->excludes(command->get_option(option_of(name)));
   }
   recommended->excludes(configuration);
-  add_query_options(*command, arguments->variant);
-  command->add_option("--precision", arguments->variant.precision, "see `bvlab list precisions`")
-      ->capture_default_str();
+  add_variant_options(*command, arguments->variant, {"query", "relative_error", "precision"});
   command
       ->add_option(
           "--budget", arguments->budget,

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Options that several commands have for what is run: the trees, and the query.
+/// Options that several commands have for what is run: the meshes, and the variant.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <initializer_list>
 #include <string>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "experiments/commands/number.hpp"
 #include "experiments/replay/registry.hpp"
+#include "experiments/replay/variant_parameters.hpp"
 
 namespace bvlab {
 
@@ -31,34 +36,24 @@ inline void add_mesh_options(CLI::App& command, std::vector<std::string>& files,
   add_scale_option(command, scale);
 }
 
-/// --volume, --fan-out and --frame.
-inline void add_tree_options(CLI::App& command, Variant& variant) {
-  command.add_option("--volume", variant.volume, "see `bvlab list volumes`")->capture_default_str();
-  command.add_option("--fan-out", variant.fan_out, "most children of a node: 2, 4, 8 or 16")
-      ->capture_default_str();
-  command
-      .add_option("--frame", variant.frame,
-                  "frame in which volumes are compared: world or body; see `bvlab list frames`")
-      ->capture_default_str();
+/// The option of a parameter: "--leaf-size" of "leaf_size".
+inline std::string option_of(std::string_view parameter) {
+  std::string option = "--" + std::string(parameter);
+  std::replace(option.begin(), option.end(), '_', '-');
+  return option;
 }
 
-/// --build and --fit.
-inline void add_build_options(CLI::App& command, Variant& variant) {
-  command.add_option("--build", variant.build, "see `bvlab list builds`")->capture_default_str();
-  command.add_option("--fit", variant.fit, "how volumes are fitted: published or tight")
-      ->capture_default_str();
-}
-
-/// --query and --relative-error.
-inline void add_query_options(CLI::App& command, Variant& variant) {
-  command.add_option("--query", variant.query, "see `bvlab list queries`")->capture_default_str();
-  command
-      .add_option(
-          "--relative-error", variant.relative_error,
-          "largest relative error of a distance; it is not below the exact one by more than "
-          "rounding")
-      ->check(number())
-      ->capture_default_str();
+/// The options of a variant's parameters whose names are given.
+inline void add_variant_options(CLI::App& command, Variant& variant,
+                                std::initializer_list<std::string_view> names) {
+  visit_parameters(variant, [&](std::string_view name, auto& value, std::string_view what, SetBy) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) return;
+    CLI::Option* const option =
+        command.add_option(option_of(name), value, std::string(what))->capture_default_str();
+    using T = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_same_v<T, double>) option->check(number());
+    if constexpr (std::is_same_v<T, std::uint32_t>) option->check(whole_number(1, 1u << 16));
+  });
 }
 
 }  // namespace bvlab

@@ -2,6 +2,7 @@
 #include "experiments/definitions/definition.hpp"
 
 #include <algorithm>
+#include <concepts>
 #include <set>
 #include <sstream>
 
@@ -9,6 +10,7 @@
 #include "experiments/files/numbers.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
+#include "experiments/replay/variant_parameters.hpp"
 #include "experiments/scenes/scenes.hpp"
 
 namespace bvlab {
@@ -23,7 +25,8 @@ struct AddingParameter {
   void operator()(std::string_view name, double value, std::string_view what) const {
     add(name, text_of(value), what);
   }
-  void operator()(std::string_view name, std::uint64_t value, std::string_view what) const {
+  template <std::unsigned_integral T>
+  void operator()(std::string_view name, T value, std::string_view what) const {
     add(name, std::to_string(value), what);
   }
   void operator()(std::string_view name, const Length& value, std::string_view what) const {
@@ -398,20 +401,11 @@ const std::vector<Parameter>& parameters() {
              {"without_pairs", "", "file of pairs left out, as `asked_pairs`"},
              {"groups", "",
               "file of the group of each body: `.npy`, shape (objects,); pairs within one are left "
-              "out"},
-             {"volume", "sphere", "see `bvlab list volumes`"},
-             {"strategy", "recursive", "see `bvlab list strategies`; name or name:parameter"},
-             {"query", "touching", "see `bvlab list queries`"},
-             {"build", "top-down-principal", "how trees are built; see `bvlab list builds`"},
-             {"leaf_size", "1", "triangles in a leaf, at most"},
-             {"fit", "published",
-              "how volumes are fitted: published, or tight where they have such a fit"},
-             {"precision", "exact", "of triangle tests; see `bvlab list precisions`"},
-             {"relative_error", "0", "distances may be above the truth by this part of it"},
-             {"fan_out", "2",
-              "children per node, at most: 2, 4, 8, 16; or native, a register's lanes"},
-             {"frame", "world", "where volumes are compared; see `bvlab list frames`"},
-             {"kernel", "gathered", "how lanes are filled; see `bvlab list kernels`"},
+              "out"}})
+      all.push_back(each);
+    visit_parameters(Variant{}, [&](std::string_view name, const auto& value, std::string_view what,
+                                    SetBy) { AddingParameter{all}(name, value, what); });
+    for (const auto& each : std::initializer_list<Parameter>{
              {"configuration", "",
               "sets volume, strategy, fan_out, frame, kernel, build, leaf_size and fit, which it "
               "excludes; see `bvlab list`"},

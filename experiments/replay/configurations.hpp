@@ -18,10 +18,7 @@ namespace bvlab {
 /// THE list, each with what it is.
 std::vector<Named> configurations();
 
-/// The parameters that a configuration sets.
-inline constexpr std::string_view set_by_configuration[] = {
-    "volume", "strategy", "build", "leaf_size", "fit", "fan_out", "frame", "kernel"};
-/// Throws Unusable for one of them that is set beside a configuration.
+/// Throws Unusable for a parameter that is set beside a configuration which sets it, too.
 [[noreturn]] void refuse_beside_configuration(std::string_view parameter);
 
 /// The variant with what the configuration says of it under the variant's query; what it does not

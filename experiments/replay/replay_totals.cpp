@@ -5,6 +5,7 @@
 
 #include "experiments/files/peak_bytes.hpp"
 #include "experiments/replay/topology_of.hpp"
+#include "experiments/replay/variant_parameters.hpp"
 
 namespace bvlab {
 namespace {
@@ -58,6 +59,12 @@ Totals times_of(const Trace& trace, const Result& result) {
   return totals;
 }
 
+void set_variant(Totals& totals, const Variant& variant) {
+  visit_parameters(variant, [&](const char* name, const auto& value, std::string_view, SetBy) {
+    totals.set(name, value);
+  });
+}
+
 template <class Result>
 void set_counts(Totals& totals, Count count, const Result& result) {
   if constexpr (requires { result.n_b; }) {
@@ -81,19 +88,9 @@ Totals totals_of(const ReplayResult& result, std::span<const TriangleMesh> meshe
   Totals totals = times_of(trace, result);
   totals.set(variant.query == "contacts" ? "contacts" : "touching", result.hits);
   set_counts(totals, options.count, result);
-  totals.set("front", result.front)
-      .set("fan_out", variant.fan_out)
-      .set("frame", variant.frame)
-      .set("kernel", variant.kernel)
-      .set("volume", variant.volume)
-      .set("strategy", variant.strategy)
-      .set("query", variant.query)
-      .set("build", variant.build)
-      .set("leaf_size", variant.leaf_size)
-      .set("fit", variant.fit)
-      .set("precision", variant.precision)
-      .set("threads", options.threads)
-      .set("broad_phase", result.near ? "on" : "off");
+  totals.set("front", result.front);
+  set_variant(totals, variant);
+  totals.set("threads", options.threads).set("broad_phase", result.near ? "on" : "off");
   if (result.near)
     totals.set("near", *result.near);
   else
@@ -116,12 +113,7 @@ Totals totals_of(const BudgetedResult& result, const Trace& trace, const Variant
       .set("deepest", result.deepest)
       .set("mean_deepest", result.mean_deepest);
   set_counts(totals, count, result);
-  totals.set("volume", variant.volume)
-      .set("query", variant.query)
-      .set("build", variant.build)
-      .set("leaf_size", variant.leaf_size)
-      .set("fit", variant.fit)
-      .set("precision", variant.precision);
+  set_variant(totals, variant);
   return totals;
 }
 

@@ -11,6 +11,7 @@
 #include "experiments/replay/configurations.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/touches_any.hpp"
+#include "experiments/replay/variant_parameters.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/scenes/pair_files.hpp"
 #include "experiments/scenes/public/public_scenes.hpp"
@@ -50,9 +51,8 @@ std::string trace_key(const Cell& cell) {
   return key;
 }
 
-/// A number, or as many as the kernel over siblings has lanes.
-std::uint32_t fan_out_of(const Cell& cell) {
-  if (cell["fan_out"] != "native") return number<std::uint32_t>("fan_out", cell["fan_out"]);
+/// As many as the kernel over siblings has lanes.
+std::uint32_t native_fan_out(const Cell& cell) {
   Variant native;
   set_kernel(native, cell["kernel"] == "gathered" ? "siblings" : cell["kernel"]);
   return native.fan_out;
@@ -60,16 +60,12 @@ std::uint32_t fan_out_of(const Cell& cell) {
 
 /// A cell's row holds what its configuration says.
 void spell_out(Cell& cell, const Variant& variant) {
-  for (const auto& [key, said] : Settings{{"volume", variant.volume},
-                                          {"strategy", variant.strategy},
-                                          {"build", variant.build},
-                                          {"leaf_size", std::to_string(variant.leaf_size)},
-                                          {"fit", variant.fit},
-                                          {"fan_out", std::to_string(variant.fan_out)},
-                                          {"frame", variant.frame},
-                                          {"kernel", variant.kernel}})
-    for (auto& [name, value] : cell.parameters)
-      if (name == key) value = said;
+  visit_parameters(variant,
+                   [&](std::string_view key, const auto& said, std::string_view, SetBy by) {
+                     if (by == SetBy::configuration)
+                       for (auto& [name, value] : cell.parameters)
+                         if (name == key) value = text_of(said);
+                   });
 }
 
 std::vector<TriangleMesh> meshes_of(const Cell& cell) {
@@ -188,24 +184,19 @@ void set_polygons_of_files(std::vector<Cell>& cells) {
 }  // namespace
 
 bool is_of_variant(const std::string& name) {
-  static const std::set<std::string> names{
-      "volume",         "strategy", "query", "build",  "fit",  "leaf_size",    "precision",
-      "relative_error", "fan_out",  "frame", "kernel", "peer", "configuration"};
-  return names.contains(name);
+  bool is_one = name == "peer" || name == "configuration";
+  visit_parameters(Variant{},
+                   [&](std::string_view key, auto&&...) { is_one = is_one || name == key; });
+  return is_one;
 }
 
 Variant variant_of(const Cell& cell) {
-  return {cell["volume"],
-          cell["strategy"],
-          cell["query"],
-          cell["build"],
-          number<std::uint32_t>("leaf_size", cell["leaf_size"]),
-          cell["fit"],
-          cell["precision"],
-          number<double>("relative_error", cell["relative_error"]),
-          fan_out_of(cell),
-          cell["frame"],
-          cell["kernel"]};
+  Variant variant;
+  visit_parameters(variant, [&](std::string_view name, auto& value, std::string_view what, SetBy) {
+    if (cell[name] != "native") SettingOption{cell}(name, value, what);
+  });
+  if (cell["fan_out"] == "native") variant.fan_out = native_fan_out(cell);
+  return variant;
 }
 
 namespace {

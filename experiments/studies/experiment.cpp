@@ -22,6 +22,7 @@
 #include "experiments/replay/predict.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/replay.hpp"
+#include "experiments/replay/variant_parameters.hpp"
 #include "experiments/studies/cells.hpp"
 #include "experiments/studies/clocks.hpp"
 #include "experiments/studies/percentile.hpp"
@@ -634,7 +635,7 @@ std::optional<std::string> set_in(const Definition& definition, const Cell& cell
 void check_configurations(const Definition& definition, const std::vector<Cell>& cells) {
   const auto is_configured = [](const Cell& cell) { return !cell["configuration"].empty(); };
   if (std::none_of(cells.begin(), cells.end(), is_configured)) return;
-  for (const std::string_view name : set_by_configuration) {
+  for (const std::string_view name : set_by_configuration()) {
     std::map<std::string, bool> is_ignored;
     for (const Cell& cell : cells)
       if (const auto place = set_in(definition, cell, name)) {
