@@ -121,7 +121,7 @@ inline constexpr std::tuple recommended_candidates{
     RecommendedCandidate<RecommendedRoots>{
         "slab-boxes from the roots", on_demand, {1.87, 0, 5.21, 3.42}, {4.14, 0, 2.85, 4.35}},
     RecommendedCandidate<RecommendedSmallLeaves>{
-        "slab-boxes in small leaves", 4400, {48.8, 1.66, 8.99, 0.622}, {59.8, 0.786, 7.03, 14}},
+        "slab-boxes in small leaves", 1400, {48.8, 1.66, 8.99, 0.622}, {59.8, 0.786, 7.03, 14}},
     RecommendedCandidate<RecommendedOriented>{
         "oriented boxes", 8000, {38.3, 3.99, 8.43, 5.14}, {52.8, 2.17, 10.2, 4.68}},
     RecommendedCandidate<RecommendedOrientedRoots>{
