@@ -36,10 +36,16 @@ py::array_t<std::uint32_t> rows_of(std::vector<ObjectPair>&& pairs) {
   return taken<std::uint32_t>(std::move(pairs), {count, 2});
 }
 
+std::shared_ptr<const std::vector<ObjectPair>> chosen_rows(const py::object& rows) {
+  const auto array = array_of<std::uint32_t>(rows, "pairs", Numbers::whole, {{"k"}, {"2", 2}});
+  const auto* first = reinterpret_cast<const ObjectPair*>(array.data());
+  return std::make_shared<const std::vector<ObjectPair>>(first, first + array.shape(0));
+}
+
 py::array records_of(std::vector<NearestPair>&& nearest, std::vector<py::ssize_t> shape) {
   const auto bytes = static_cast<py::ssize_t>(nearest.size() * sizeof(NearestPair));
   py::array records = viewed(taken<std::uint8_t>(std::move(nearest), {bytes}),
-                                   "[('triangles', '<u4', (2,)), ('points', '<f8', (2, 3))]");
+                             "[('triangles', '<u4', (2,)), ('points', '<f8', (2, 3))]");
   return records.reshape(std::move(shape));
 }
 

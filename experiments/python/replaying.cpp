@@ -193,6 +193,30 @@ py::object total(const Result& result, const char* key) {
   return result.totals.contains(key) ? py::object(result.totals[key]) : py::none();
 }
 
+/// What a copy is made of. All pairs of objects are their number, chosen ones are rows.
+py::tuple state_of(const Result& result) {
+  py::object objects = py::none(), chosen = py::none();
+  if (result.asked) {
+    objects = py::int_(result.asked->objects);
+    if (result.asked->chosen) chosen = pairs_of(result);
+  }
+  return py::make_tuple(result.answers, result.totals, result.series, result.frame_seconds,
+                        result.nearest, objects, chosen);
+}
+
+std::shared_ptr<Result> result_of(const py::tuple& state) {
+  if (state.size() != 7 || !py::isinstance<py::dict>(state[1]))
+    throw Unusable("Result", "is not what another version pickled");
+  auto result = std::make_shared<Result>(state[0], state[1].cast<py::dict>());
+  result->series = state[2], result->frame_seconds = state[3], result->nearest = state[4];
+  if (state[5].is_none()) return result;
+  const std::size_t objects = PyLong_AsSize_t(state[5].ptr());
+  if (PyErr_Occurred()) throw py::error_already_set();
+  result->asked = Trace{0, objects, {}};
+  if (!state[6].is_none()) result->asked->chosen = chosen_rows(state[6]);
+  return result;
+}
+
 void add_result(py::module_& module) {
   py::class_<Result, std::shared_ptr<Result>> type(
       module, "Result", py::module_local(),
@@ -231,17 +255,7 @@ A structured array; None unless series=True. pandas.DataFrame(result.series) has
     type.def_property_readonly(
         field.name, [name = field.name](const Result& result) { return total(result, name); },
         field.what);
-  type.def(py::pickle(
-      [](const Result& result) {
-        return py::make_tuple(result.answers, result.totals, result.series, result.frame_seconds);
-      },
-      [](const py::tuple& state) {
-        if (state.size() != 4 || !py::isinstance<py::dict>(state[1]))
-          throw Unusable("Result", "is not what another version pickled");
-        auto result = std::make_shared<Result>(state[0], state[1].cast<py::dict>());
-        result->series = state[2], result->frame_seconds = state[3];
-        return result;
-      }));
+  type.def(py::pickle(&state_of, &result_of));
   type.def("__repr__", [](const Result& result) {
     std::string text = "<bvlab.Result:";
     for (const char* key : {"volume", "strategy", "query", "method"})

@@ -463,13 +463,17 @@ class Gltf {
   Note note_;
 };
 
-/// Of version 1, or packed by Draco: that is for assimp.
+/// Of version 1, or packed by Draco: that is for assimp, which takes "2>0" for 2.0.
 bool is_for_assimp(const Value& root) {
+  const Value written = root["asset"]["version"];
+  const std::string_view version = written.text(), major = version.substr(0, version.find('.'));
+  if (major != "1" && major != "2")
+    written.fault(TextScanner::shown(version) + " is not read, only 1 and 2");
   bool is_packed = false;
   root.each("extensionsUsed", [&](const Value& each) {
     is_packed = is_packed || each.text() == "KHR_draco_mesh_compression";
   });
-  return is_packed || !root["asset"]["version"].text().starts_with("2.");
+  return is_packed || major == "1";
 }
 
 }  // namespace

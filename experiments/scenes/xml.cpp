@@ -31,6 +31,9 @@ std::string_view word_of(std::string_view& text) {
   return word;
 }
 
+/// By appending: g++ 12 warns of the sum of a literal and a new text, where it is optimised by -O3.
+std::string tag(std::string_view name) { return std::string(1, '<').append(name).append(1, '>'); }
+
 std::string_view local(std::string_view name) { return name.substr(name.find(':') + 1); }
 
 }  // namespace
@@ -48,7 +51,7 @@ class XmlParser {
         characters();
     }
     if (!open_.empty())
-      fault("truncated: <" + std::string(open_.back().name) + "> of " +
+      fault("truncated: " + tag(open_.back().name) + " of " +
             place_in(text_, xml_.elements_[open_.back().number].at) + " does not end");
     if (xml_.elements_.empty()) fault("no XML");
     xml_.attributes_.shrink_to_fit();
@@ -165,9 +168,8 @@ class XmlParser {
     pass_blanks();
     if (!begins(">")) fault("a tag does not end");
     if (open_.empty() || open_.back().name != name)
-      fault(
-          "</" + std::string(name) + "> where " +
-          (open_.empty() ? "nothing is open" : "<" + std::string(open_.back().name) + "> is open"));
+      fault("</" + std::string(name) + "> where " +
+            (open_.empty() ? "nothing" : tag(open_.back().name)) + " is open");
     ++at_;
     if (std::string& joined = open_.back().joined; !joined.empty())
       xml_.elements_[open_.back().number].text = xml_.decoded_.emplace_back(std::move(joined));

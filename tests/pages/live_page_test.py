@@ -284,6 +284,14 @@ class InAnX3dBrowser(LivePages):
             with self.subTest(scene), Browser() as browser:
                 self.drag(browser, ROOT / "experiments" / "live" / "scenes" / scene)
 
+    def places(self, browser):
+        """Where ball and box are seen, once the view is at rest: at first it moves until it shows all parts."""
+        seen, now = None, [browser.run(PLACE_OF_PART, k) for k in (0, 1)]
+        while seen != now:
+            time.sleep(0.5)
+            seen, now = now, [browser.run(PLACE_OF_PART, k) for k in (0, 1)]
+        return now
+
     def drag(self, browser, scene):
         browser.open(self.page("--x3d", scene, name="x3d.html"))
         self.assertTrue(browser.wait_for(self.ATTACHED), browser.text("#problem"))
@@ -292,8 +300,7 @@ class InAnX3dBrowser(LivePages):
         self.assertNotIn("1 0 0", browser.run(colours))
         # The ball, dragged to the box.
         canvas = browser.driver.find_element("css selector", "x3d canvas")
-        ball, box = (browser.run("const [x, y, z] = page.contact.parts[arguments[0]].getAttribute('translation').split(' ').map(Number);"
-                                 "return document.querySelector('x3d').runtime.calcCanvasPos(x, y, z)", k) for k in (0, 1))
+        ball, box = self.places(browser)
         middle = canvas.rect["width"] / 2, canvas.rect["height"] / 2
         chain = ActionChains(browser.driver, duration=50)
         chain.move_to_element_with_offset(canvas, round(ball[0] - middle[0]), round(ball[1] - middle[1])).pause(0.3).click_and_hold()
@@ -433,6 +440,11 @@ return sums;
 PLACE_OF_BODY = """
 const { x, y } = scene.placeOf(0);
 return [x, y];
+"""
+# Where a part stands in the canvas.
+PLACE_OF_PART = """
+const [x, y, z] = page.contact.parts[arguments[0]].getAttribute('translation').split(' ').map(Number);
+return document.querySelector('x3d').runtime.calcCanvasPos(x, y, z);
 """
 # The engine's part of a frame: the first run, played through the motion, of which the first ten frames warm up.
 MILLISECONDS = """

@@ -187,6 +187,7 @@ class Calls(unittest.TestCase):
         named = Named(self.mesh)
         named.name = "a"
         result = bvlab.replay(self.mesh, self.long[:3, :2], query="contacts", count=True, series=True, frame_seconds=True)
+        distances = bvlab.replay(self.mesh, self.long[:3, :3], query="distance", nearest=True, pairs=[(0, 2), (1, 0)])
         boxes = bvlab.boxes(np.zeros((2, 3, 6)))
         ways = [copy.copy, copy.deepcopy, *(lambda each, p=p: pickle.loads(pickle.dumps(each, p)) for p in range(2, 6))]
         for way in ways:
@@ -196,12 +197,14 @@ class Calls(unittest.TestCase):
             np.testing.assert_array_equal(mesh.faces, self.mesh.faces)
             one, other = way([self.mesh, self.mesh]) if way is not copy.copy else (mesh, mesh)
             self.assertIs(one, other)
-            for given in (result, boxes):
+            for given in (result, distances, boxes):
                 again = way(given)
                 np.testing.assert_array_equal(again.answers, given.answers)
                 self.assertEqual(again.totals, given.totals)
                 self.assertEqual(repr(again), repr(given))
                 self.assertEqual(again.n_v, given.n_v)
+                np.testing.assert_array_equal(again.nearest, given.nearest)
+                np.testing.assert_array_equal(again.pairs, given.pairs)
             np.testing.assert_array_equal(way(result).series, result.series)
             np.testing.assert_array_equal(way(result).frame_seconds, result.frame_seconds)
             np.testing.assert_array_equal(bvlab.replay(mesh, self.long[:3, :2], query="contacts").answers, result.answers)
@@ -210,7 +213,8 @@ class Calls(unittest.TestCase):
         for nothing in (bvlab.Mesh.__new__(bvlab.Mesh), bvlab.Result.__new__(bvlab.Result)):
             for way in ways:
                 self.assertRaises(TypeError, way, nothing)
-        for bad in ((), (1, 2), (None, 3, None, None), (None,) * 5, 3, "x"):
+        for bad in ((), (1, 2), (None, 3, *(None,) * 5), (None,) * 5, 3, "x", (None, {}, *(None,) * 3, "x", None),
+                    (None, {}, *(None,) * 3, 2, [(0, 1, 2)])):
             with self.assertRaises((ValueError, TypeError)):
                 bvlab.Result.__new__(bvlab.Result).__setstate__(bad)
 

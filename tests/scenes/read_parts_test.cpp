@@ -165,6 +165,14 @@ TEST(ReadParts, WhatOfAGltfIsNotRead) {
                                  "\"extensionsRequired\": [\"KHR_mesh_quantization\"]",
                                  "\"extensionsUsed\": [\"EXT_meshopt_compression\"]"})
     EXPECT_EQ(with(list), "");
+  // Other versions, of which assimp would take some for 2.0.
+  const auto of_version = [&](const std::string& version) {
+    return refusal(replaced(one, "\"2.0\"", "\"" + version + "\""), "a.gltf");
+  };
+  for (const std::string version : {"2", "2.0", "2.1"}) EXPECT_EQ(of_version(version), "");
+  for (const std::string version : {"2>0", "20", " 2.0", "3.0", ""})
+    EXPECT_EQ(of_version(version),
+              "a.gltf: asset.version: '" + version + "' is not read, only 1 and 2");
   // The same as a GLB.
   const std::string json = replaced(one, asset, asset + R"(, "extensionsRequired": ["X"])");
   std::string glb = "glTF";
