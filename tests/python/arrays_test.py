@@ -259,6 +259,7 @@ class Poses(unittest.TestCase):
                           (-turn, "mirrored: its determinant is -1 "), (turn * [1, 1, -1], "mirrored: its determinant is -1 "),
                           (-2 * turn, "mirrored: its determinant is -8 and scaled by 2 "),
                           (turn @ shear, "sheared: two of its axes are 84.29 degrees apart"),
+                          (turn @ (np.eye(3) + (shear - np.eye(3)) / 99), "sheared: two of its axes are 89.94 degrees apart"),
                           (0 * turn, "flat: its determinant is 0 "), (turn * [1, 1, 0], "flat: its determinant is 0 ")):
             with self.subTest(said), self.assertRaises(ValueError) as caught:
                 bvlab.poses(self.matrices(np.stack([turn, turn, bad, bad])))

@@ -118,7 +118,8 @@ def _fault(matrix: NDArray[np.float64], tolerance: float) -> str:
         # Along its own axes, or those of the world, it can be scaled by several factors; all else is shear.
         angles, lengths = zip(*map(_axes_of, (matrix, matrix.T)))
         best = int(np.argmax(angles))
-        if 90 - angles[best] <= np.degrees(2 * tolerance):
+        scaled = np.abs(lengths[best] - 1).max() > tolerance  # else it is a small shear
+        if scaled and 90 - angles[best] <= np.degrees(2 * tolerance):
             faults.append(f"scaled by {', '.join(f'{each:.6g}' for each in lengths[best])} along " +
                           ["its own axes", "the world's axes"][best])
         else:
