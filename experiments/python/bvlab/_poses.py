@@ -118,8 +118,8 @@ def _fault(matrix: NDArray[np.float64], tolerance: float) -> str:
         # Along its own axes, or those of the world, it can be scaled by several factors; all else is shear.
         angles, lengths = zip(*map(_axes_of, (matrix, matrix.T)))
         best = int(np.argmax(angles))
-        scaled = np.abs(lengths[best] - 1).max() > tolerance  # else it is a small shear
-        if scaled and 90 - angles[best] <= np.degrees(2 * tolerance):
+        # Of a small shear the angles are off by as much as the lengths.
+        if np.radians(90 - angles[best]) <= min(2 * tolerance, np.abs(lengths[best] - 1).max() / 4):
             faults.append(f"scaled by {', '.join(f'{each:.6g}' for each in lengths[best])} along " +
                           ["its own axes", "the world's axes"][best])
         else:
