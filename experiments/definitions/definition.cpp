@@ -2,7 +2,6 @@
 #include "experiments/definitions/definition.hpp"
 
 #include <algorithm>
-#include <concepts>
 #include <set>
 #include <sstream>
 
@@ -19,15 +18,9 @@ namespace {
 /// Adds a scene's options, those that another scene has not named before.
 struct AddingParameter {
   std::vector<Parameter>& all;
-  void operator()(std::string_view name, const std::string& value, std::string_view what) const {
-    add(name, value, what);
-  }
-  void operator()(std::string_view name, double value, std::string_view what) const {
+  template <class T>
+  void operator()(std::string_view name, const T& value, std::string_view what) const {
     add(name, text_of(value), what);
-  }
-  template <std::unsigned_integral T>
-  void operator()(std::string_view name, T value, std::string_view what) const {
-    add(name, std::to_string(value), what);
   }
   void operator()(std::string_view name, const Length& value, std::string_view what) const {
     add(name, text_of(value), std::string(what) + " (a LENGTH)");

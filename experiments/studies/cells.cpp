@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <type_traits>
 
 #include "experiments/files/numbers.hpp"
 #include "experiments/files/unusable.hpp"
@@ -192,10 +193,14 @@ bool is_of_variant(const std::string& name) {
 
 Variant variant_of(const Cell& cell) {
   Variant variant;
-  visit_parameters(variant, [&](std::string_view name, auto& value, std::string_view what, SetBy) {
-    if (cell[name] != "native") SettingOption{cell}(name, value, what);
+  const bool is_native = cell["fan_out"] == "native";
+  visit_parameters(variant, [&]<class T>(std::string_view name, T& value, std::string_view, SetBy) {
+    if constexpr (std::is_same_v<T, std::string>)
+      value = cell[name];
+    else if (name != "fan_out" || !is_native)
+      value = number<T>(std::string(name), cell[name]);
   });
-  if (cell["fan_out"] == "native") variant.fan_out = native_fan_out(cell);
+  if (is_native) variant.fan_out = native_fan_out(cell);
   return variant;
 }
 

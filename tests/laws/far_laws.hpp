@@ -179,7 +179,7 @@ void expect_turned() {
     return scene;
   };
   const Scene near = scene(Vec3<double>::Zero());
-  for (const int exponent : {7, 22, 30, 40}) {  // up to 10^12 sizes
+  for (const int exponent : {7, 22, 30, 41}) {
     const Scene far = scene(shift(exponent));
     const auto truth = contacts_by_brute_force(far);
     const TopologyOf topology = [](const TriangleMesh& mesh) {

@@ -545,6 +545,9 @@ class Definitions(ProgramTest):
             self.refuse_definition(self.START + f"step = {value}\n", "step")
         for value in ("0", "100000"):
             self.refuse_definition(self.START + f"leaf_size = {value}\n", "leaf-size")
+        # "native" is a word for fan_out alone; an empty name is none.
+        self.refuse_definition(self.START + 'leaf_size = "native"\n', "leaf_size = native")
+        self.refuse_definition(self.START + 'volume = ""\n', "--volume")
         for value in ("-1", "nan", "inf", "'x'"):
             self.refuse_definition(self.START + f"relative_error = {value}\n", "relative")
         for value in ("-1", "200", "nan"):
