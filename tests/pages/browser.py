@@ -63,7 +63,14 @@ class Browser:
         shutil.rmtree(self.profile, ignore_errors=True)
 
     def open(self, page):
-        self.driver.get(Path(page).resolve().as_uri())
+        """Waits for the page itself: a browser that just started may still show the blank one when `get` returns."""
+        address = Path(page).resolve().as_uri()
+        shown = "return document.readyState === 'complete' && location.href === arguments[0]"
+        for _ in range(3):
+            self.driver.get(address)
+            if self.wait_for(shown, 20, address):
+                return
+        raise AssertionError(f"{address} does not open: {self.run('return location.href')} is shown")
 
     def run(self, script, *arguments):
         return self.driver.execute_script(script, *arguments)
@@ -77,10 +84,10 @@ class Browser:
     def errors(self):
         return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] == "SEVERE"]
 
-    def wait_for(self, script, seconds=60):
+    def wait_for(self, script, seconds=60, *arguments):
         """Until the script's value is true; says whether it came to be."""
         end = time.monotonic() + seconds
-        while not (value := self.run(script)) and time.monotonic() < end:
+        while not (value := self.run(script, *arguments)) and time.monotonic() < end:
             time.sleep(0.05)
         return bool(value)
 
