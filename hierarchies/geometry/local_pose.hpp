@@ -6,11 +6,12 @@
 /// origin in the world about which positions are wanted, and t' = fl64(Ro + t - A), summed with
 /// twice the digits. Then w - A = R l + t' but for
 ///
-/// - the roundings in w. Along axis i these are three of products, and of three sums. All but the
-///   last sum are at most u |R_i||v| each, in all (the products add up to one), the last at most
-///   u |w_i|: e_i = u (3 |R_i| (|o| + reach) + |(Ro + t)_i| + |R_i| reach). Where row i of R is a
-///   unit vector or its opposite, products and sums are exact: e_i = u |w_i|, and 0 where t_i = 0.
-///   So identity poses lose nothing, however far the vertices are.
+/// - the roundings in w. Along axis i these are three of products and three of sums, each at most u
+///   times its result, at the origin or within |R_i| reach of what it is there:
+///   e_i = u (|R_i0 o_0| + |R_i1 o_1| + |R_i2 o_2| + |R_i0 o_0 + R_i1 o_1| + |R_i o| + |(Ro + t)_i|
+///   + 4 |R_i| reach). Where row i of R is a unit vector or its opposite, products and sums are
+///   exact: e_i = u |w_i|, and 0 where t_i = 0. So identity poses lose nothing, however far the
+///   vertices are.
 /// - R (l - x), at most u |R| reach;
 /// - the rounding of t', which is the second half of the sum, and 2^-96 (|R||o| + |t| + |A|).
 ///
@@ -36,7 +37,7 @@ struct LocalPose {
             const Vec3<double>& about = Vec3<double>::Zero()) {
     constexpr double u = unit_roundoff<double>;
     pose.rotation = given.rotation;
-    const double farthest = origin.norm() + reach, size = given.rotation.norm();
+    const double size = given.rotation.norm();
     Vec3<double> rounding, lost;
     for (int i = 0; i < 3; ++i) {
       const Vec3<double> row = given.rotation.row(i).transpose();
@@ -45,9 +46,12 @@ struct LocalPose {
       const DoubleDouble to = at - DoubleDouble(about[i]);
       pose.translation[i] = to.high, lost[i] = to.low;
       const double length = row.norm();
+      const Vec3<double> products = row.cwiseProduct(origin);
+      const double within = products.cwiseAbs().sum() + std::abs(products[0] + products[1]) +
+                            std::abs(products.sum()) + 3 * length * reach;
       const bool exact = row.cwiseAbs().maxCoeff() == 1 && row.cwiseAbs().sum() == 1;
       const double last = u * (std::abs(static_cast<double>(at)) + length * reach);
-      rounding[i] = !exact ? 3 * u * length * farthest + last : given.translation[i] == 0 ? 0 : last;
+      rounding[i] = !exact ? u * within + last : given.translation[i] == 0 ? 0 : last;
     }
     error = (rounding.norm() + u * size * reach + lost.norm() +
              0x1p-96 * (size * origin.norm() + given.translation.norm() + about.norm())) *
