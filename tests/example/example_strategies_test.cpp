@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "experiments/replay/loops_of.hpp"
-#include "tests/example/patient.hpp"
+#include "tests/example/kinetic_list.hpp"
 #include "tests/example/periodic.hpp"
 #include "tests/laws/strategy_laws.hpp"
 
@@ -28,7 +28,7 @@ auto any_bodies_of(const Scene& scene, const Strategy& strategy) {
 
 template <class Strategy>
 class ExampleStrategies : public testing::Test {};
-using Examples = testing::Types<Periodic, Patient>;
+using Examples = testing::Types<Periodic, KineticList>;
 TYPED_TEST_SUITE(ExampleStrategies, Examples);
 
 TYPED_TEST(ExampleStrategies, GiveTheAnswersThatRecursionGives) {
@@ -41,11 +41,11 @@ TYPED_TEST(ExampleStrategies, TheirFrontsArePartitions) {
 }
 
 /// The same front, tested less often: each test that is not made is one that was.
-TEST(Patient, RestsWhereAListThatIsNotPatientTests) {
+TEST(KineticList, RestsWhereAListThatTests) {
   const Scene scene(400);
   Bodies<B, V> bodies(scene.shapes);
   Periodic periodic(1000);
-  Patient patient(1000);
+  KineticList kinetic(1000);
   std::uint64_t saved = 0;
   for (int frame = 0; frame < frames; ++frame) {
     bodies.move(poses_at(frame), Vec3<double>::Zero());
@@ -53,20 +53,20 @@ TEST(Patient, RestsWhereAListThatIsNotPatientTests) {
     Contacts query(found);
     Counting all, some;
     periodic.run(bodies.pair({0, 1}, query, all));
-    const std::size_t rested = patient.front().rested();
-    patient.run(bodies.pair({0, 1}, query, some));
-    EXPECT_EQ(patient.front().rested() - rested, all.n_v - some.n_v) << frame;
+    const std::size_t rested = kinetic.front().rested();
+    kinetic.run(bodies.pair({0, 1}, query, some));
+    EXPECT_EQ(kinetic.front().rested() - rested, all.n_v - some.n_v) << frame;
     EXPECT_EQ(some.n_p, all.n_p);
     saved += all.n_v - some.n_v;
   }
   EXPECT_GT(saved, 10000u);
 }
 
-TEST(Patient, RunsInTheProgramFromLoopsOfItsOwn) {
+TEST(KineticList, RunsInTheProgramFromLoopsOfItsOwn) {
   const Scene scene(400);
   Counting library, program;
-  const auto contacts = contacts_by(bodies_of(scene, Patient(6)), library);
-  const auto found = contacts_by(any_bodies_of<Contacts, Counting>(scene, Patient(6)), program);
+  const auto contacts = contacts_by(bodies_of(scene, KineticList(6)), library);
+  const auto found = contacts_by(any_bodies_of<Contacts, Counting>(scene, KineticList(6)), program);
   EXPECT_GT(contacts.size(), 1000u);
   EXPECT_EQ(found, contacts);
   EXPECT_EQ(program.n_p, library.n_p);

@@ -9,7 +9,7 @@ import re
 import sys
 
 SOURCE = pathlib.Path(sys.argv[1])
-EXAMPLES = [SOURCE / "tests/example" / name for name in ("periodic.hpp", "patient.hpp")]
+EXAMPLES = [SOURCE / "tests/example" / name for name in ("periodic.hpp", "kinetic_list.hpp")]
 
 
 def main():

@@ -76,12 +76,12 @@ def main():
             scratch, "capsule", "Capsule<float>", "hierarchies/volumes.hpp", "hierarchies/volumes", "Sphere<float>,"
         )
         strategy = with_example(
-            scratch, "patient", "Patient", "traversal/strategies.hpp", "traversal/strategies", "SeparationList,"
+            scratch, "kinetic_list", "KineticList", "traversal/strategies.hpp", "traversal/strategies", "SeparationList,"
         )
     volumes = sum("/unity_volume_" in o or "/volume_" in o for o in strategy[0])
     # A volume: one unit for itself, one for its loops on kernel gathered under all queries, one for kernel siblings. A
     # strategy with a front of its own: one for itself, and one for each volume's loops from that front.
-    for name, (before, after), wanted in [("capsule", volume, 3), ("patient", strategy, 1 + volumes)]:
+    for name, (before, after), wanted in [("capsule", volume, 3), ("kinetic_list", strategy, 1 + volumes)]:
         added = sorted(pathlib.Path(o).name for o in after - before)
         print("new units:", ", ".join(added))
         if before - after or len(added) != wanted or not all(name in each for each in added):

@@ -240,7 +240,7 @@ TEST(WideReplays, RefuseWhatThereIsNot) {
   };
   refused([](Variant& v) { v.volume = "cylinder"; });
   refused([](Variant& v) { v.strategy = "deferred:many"; });
-  refused([](Variant& v) { v.strategy = "patient"; });
+  refused([](Variant& v) { v.strategy = "kinetic-list"; });
   refused([](Variant& v) { v.fan_out = 2; });
   refused([](Variant& v) { v.frame = "world"; });
   refused([](Variant& v) { v.kernel = "tall"; });
