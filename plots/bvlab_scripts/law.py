@@ -20,6 +20,7 @@ import numpy as np
 from bvlab_plots import records
 
 LISTS = {"separation-list": 0, "deferred": 1}
+FRONTLESS = ["recursive", "recursive-both", "witness"]
 # The fit sees the bunny and the knot, when all bodies move or one does. Everything else is left out of it.
 FITTED_MESHES = ["bunny", "knot"]
 FITTED_MOTION_MODELS = ["all bodies, all freedoms", "one body, one freedom"]
@@ -55,8 +56,8 @@ def with_measures(rows):
 
 
 def strategies_of(rows):
-    """All but the recursion."""
-    return [strategy for strategy in dict.fromkeys(rows.strategy) if strategy != "recursive"]
+    """Those that keep a front."""
+    return [strategy for strategy in dict.fromkeys(rows.strategy) if strategy not in FRONTLESS]
 
 
 def fitted(rows):

@@ -90,7 +90,7 @@ def displacement(record):
     return {"others": 2 * (there.overlaps / there.boxes).median(), "over": Interval(over), "most": over.max(), "worst": worst[0], "at": 100 * worst[1], "sap": 100 * (1 - sap)}
 
 
-@quotes(["boxes-figure-3", "boxes-figure-4", "boxes-figure-5"])
+@quotes(["boxes-figure-3", "boxes-figures-4-5"])
 def published(*folders):
     def read(folder):
         rows = records.read(folder)
@@ -132,7 +132,7 @@ def published(*folders):
 
 
 # Those in which `blocks` plays the same frames with coherence and without; those of changing boxes are of `auto`, and told elsewhere.
-FOLLOWED = ["boxes-fast", "boxes-displacement", "boxes-motions", "boxes-figure-4", "boxes-figure-5"]
+FOLLOWED = ["boxes-fast", "boxes-displacement", "boxes-motions", "boxes-figures-4-5"]
 
 
 @quotes(FOLLOWED)
@@ -167,7 +167,7 @@ def boxes_slowest(*folders):
     return {"most": most, "set": name, "boxes": boxes, "frames": frames, "fast": fast, "fast_set": fast_name, "fast_frames": fast_frames, "record": most_record, "motion": motion, "fast_motion": fast_motion, "tail": Interval(tail), "beside": Interval(beside), "lead": Interval(lead), "peers": Interval(peers)}
 
 
-@quotes(["boxes-figure-3", "boxes-figure-4", "boxes-figure-5"])
+@quotes(["boxes-figure-3", "boxes-figures-4-5"])
 def deviations(*folders):
     """What the published figures say and these do not."""
     def read(folder):
@@ -198,7 +198,7 @@ def deviations(*folders):
             "most": int(adjacent.index.max()), "rank_four_large": Interval(large.sweep4 / large.hybrid)}
 
 
-@quotes(["boxes-figure-3", "boxes-figure-4", "boxes-figure-5"])
+@quotes(["boxes-figure-3", "boxes-figures-4-5"])
 def exponents(*folders):
     """How times grow with the number of boxes: least squares of logarithms, from the largest three sizes."""
     lines = []

@@ -37,7 +37,7 @@ def relation(record):
     still = lists.assign(growth=0.0, stillness=1.0)
     claim(rows.mesh.nunique() == 6 and rows.motion.nunique() == 9 and rows.motion_model.nunique() == 3, "six shapes, nine motions, "
           "three motion models")
-    claim(rows.strategy.nunique() == 7 and rows.volume.nunique() == 2, "seven strategies, two volumes")
+    claim(rows.strategy.nunique() == 9 and rows.volume.nunique() == 2, "nine strategies, two volumes")
     claim(lists[~half].tests_saved.median() < 1, "lists lose where less than half of the front is there again")
     crossings = {query: law.crossing(rows[rows["query"] == query], "separation-list", "tests_saved")[0]
                  for query in dict.fromkeys(rows["query"])}

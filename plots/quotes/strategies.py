@@ -2,10 +2,8 @@
 """Strategies beside the best rebuilds and beside `adaptive`, and whole scenes."""
 
 from bvlab_plots import records
-from quotes.relation import measured
 from quoting import Interval, claim, quotes
 
-TIE = 1.1  # times this near to each other are the same
 
 
 @quotes("best-rebuilds")
@@ -27,19 +25,6 @@ def best_rebuilds(record):
             "violent": Interval(adaptive[violent]), "elsewhere": Interval(adaptive[~violent])}
 
 
-@quotes("coherence")
-def strategies_adaptive(record):
-    rows, _ = measured(record)
-    cell = ["motion", "motion_model", "mesh", "volume", "query"]
-    time = rows.set_index([*cell, "strategy"]).time_ns.unstack()
-    ratio = time.adaptive / time.drop(columns="adaptive").min(axis=1)
-    one = ratio.index.get_level_values("motion_model").str.startswith("one")
-    claim(rows.frames.max() == 100, "runs of a hundred frames")
-    near = ratio[one] <= TIE
-    claim(near.mean() < 0.8, "where one body moves at a time adaptive is often not within a tenth")
-    return {"all": ratio[~one].median(), "one": ratio[one].median(), "one_near": 100 * near.mean(), "one_cells": len(near), "one_worst": ratio[one].max()}
-
-
 # What tells one cell of a record from another, beside the seed; repetitions are of one cell.
 CELLS = {"best-rebuilds": ["motion", "query"], "coherence": ["motion", "motion_model", "mesh", "volume", "query"]}
 
@@ -59,7 +44,6 @@ def adaptive_beside(*found):
             parts = [(f"{record.name}, all move", ratio[~one]), (f"{record.name}, one of nine moves", ratio[one])]
         lines += [[f"[{name}](../record/{record.name})", str(len(of)), f"{of.median():.2f}", f"{of.max():.2f}", f"{100 * (of <= 1.1).mean():.0f} %"]
                   for name, of in parts]
-    claim("recursive-both" not in set(records.read(found[1]).strategy), "coherence does not contain recursive-both")
     return {"rows": lines}
 
 

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a front is worth, by query, kernel and survival: the rule, its errors, and the hypotheses."""
+
+import pandas as pd
+
+from bvlab_plots import records
+from bvlab_scripts import fronts
+from bvlab_scripts.law import FRONTLESS
+from quoting import Interval, claim, quotes
+
+SHARES = [(0, 0.5, "below .5"), (0.5, 0.8, ".5 to .8"), (0.8, 0.95, ".8 to .95"), (0.95, 1.01, "above .95")]
+KERNELS = {"gathered, 2": "gathered, binary", "gathered, 16": "gathered, 16", "siblings": "siblings", "mixed": "mixed"}
+KEPT = [*fronts.LISTS, "margins", "adaptive"]
+HYPOTHESES = 9
+
+
+def level(table, name):
+    return table.index.get_level_values(name)
+
+
+def by_configuration(time):
+    """A row for each query and scene, a column for each strategy of each kernel."""
+    return time[fronts.STRATEGIES].unstack("engine").dropna(axis=1, how="all")
+
+
+def fastest_of(time, strategies):
+    """By query and scene, over all kernels: the least time of these strategies, and which kernel and strategy have it."""
+    table = by_configuration(time)
+    table = table[[at for at in table if at[0] in strategies]]
+    return table.min(axis=1), table.idxmin(axis=1)
+
+
+def called(places):
+    """The most frequent of these kernels and strategies, as text says it, and its share."""
+    names = places.map(lambda at: (KERNELS[at[1]], "recursion" if at[0].startswith("recursive") else at[0]))
+    most = names.value_counts(normalize=True)
+    return f"{most.index[0][1]}, {most.index[0][0]}", 100 * most.iloc[0]
+
+
+@quotes("fronts")
+def rule(record):
+    """By query and kernel the survival from which on margins are taken, and what the rule loses."""
+    time = fronts.read(record)
+    limits, rows, found = fronts.thresholds(time), [], {}
+    loss = fronts.rule_off(time)
+    for (query, engine), limit in limits.items():
+        part = time.xs((query, engine), level=("query", "engine"))
+        above = fronts.survivals(part) >= limit
+        gain, off = fronts.worth(part, ["margins"]), fronts.off(part, limit)
+        rows.append([query if not rows or query != query_before else "", KERNELS[engine],
+                     f"from {limit:.2f} on" if above.any() else "nowhere",
+                     format(Interval(gain[above]), ".1f") if above.any() else "", format(Interval(gain[~above]), ".2f") if (~above).any() else "",
+                     f"{off.median():.2f}, {off.max():.2f}"])
+        query_before = query
+    unseen = fronts.left_out_off(time, record.parent / "coherence")
+    seen = records.read(record)
+    claim((seen.alone == "yes").all(), "the times of fronts are of rows that were alone")
+    claim(len(set(seen.seed)) == 5 and len(set(seen.mesh)) == 3, "five seeds, three meshes")
+    for query in fronts.QUERIES:
+        of = [limit for (name, _), limit in limits.items() if name == query and limit <= 1]
+        found[query] = Interval(of)
+        for polygons in (500, 8000):
+            found[f"{query}_{polygons}"] = fronts.degrees_at(time, query, polygons, limits[query, fronts.BINARY])
+    return {**found, "rows": rows, "cells": len(loss), "off": loss.median(), "most": loss.max(), "wrong": 100 * (loss > fronts.MISTAKEN).mean(),
+            "unseen": unseen.median(), "unseen_most": unseen.max(), "unseen_wrong": 100 * (unseen > fronts.MISTAKEN).mean(), "unseen_cells": len(unseen)}
+
+
+@quotes("fronts")
+def overall(record):
+    """The fastest configuration of all kernels with a front, and without, by query and survival."""
+    time = fronts.read(record)
+    (with_front, kept), (without, frontless) = fastest_of(time, KEPT), fastest_of(time, FRONTLESS)
+    gain = (without / with_front).rename("gain")
+    lines, found, short = [], {}, []
+    for query in fronts.QUERIES:
+        of_query = level(gain, "query") == query
+        for low, high, name in SHARES:
+            share = level(gain, "survival")
+            here = of_query & (share >= low) & (share < high)
+            best, most = called(kept[here])
+            roots, roots_most = called(frontless[here])
+            lines.append([query if low == 0 else "", name, f"{gain[here].median():.2f} ({Interval(gain[here]):.2f})", f"{best} ({most:.0f} %)", f"{roots} ({roots_most:.0f} %)"])
+        table = gain[of_query].reset_index()
+        limit = min([0, *table.survival, 1.001], key=lambda each, table=table: (table.gain[table.survival >= each] < 1).sum() + (table.gain[table.survival < each] > 1).sum())
+        above = of_query & (level(gain, "survival") >= limit)
+        below = of_query & ~above
+        found[f"{query}_limit"], found[f"{query}_above"], found[f"{query}_below"] = limit, Interval(gain[above]), Interval(1 / gain[below])
+        short += [[f"{query}, from {limit:.2f} on", called(kept[above])[0], f"{gain[above].median():.1f} ({Interval(gain[above]):.1f}) times the fastest without a front"],
+                  [f"{query}, below", called(frontless[below])[0], f"{(1 / gain[below]).median():.1f} ({Interval(1 / gain[below]):.1f}) times the fastest with one"]]
+    configurations = by_configuration(time.xs("contacts", level="query", drop_level=False))
+    return {**found, "rows": lines, "short": short, "configurations": len(configurations.dropna(axis=1).columns)}
+
+
+@quotes("fronts")
+def lists(record):
+    """What a list saves at most in tests, what lists are worth, and a kinetic list beside margins."""
+    time = fronts.read(record)
+    sums = pd.read_csv(records.table_at(record / f"{record.name}.coherence.csv"))
+    sums = sums[(sums["query"] == "contacts") & (sums.volume == "obb")]
+    ratio = (sums.tests / sums.entries).groupby(sums.fan_out)
+    best = time[fronts.STRATEGIES].idxmin(axis=1).isin(fronts.LISTS)
+    gain = fronts.worth(time, fronts.LISTS)
+    found = {}
+    for name in ("gathered, 2", "gathered, 16", "siblings", "mixed"):
+        key = name.replace("gathered, 2", "binary").replace("gathered, 16", "sixteen")
+        for query in fronts.QUERIES[:2]:
+            here = (level(gain, "engine") == name) & (level(gain, "query") == query)
+            found[f"{query}_{key}"] = gain[here].max()
+        found[f"best_{key}"] = 100 * best[level(best, "engine") == name].mean()
+    twice = pd.concat([(time["recursive-both"] / time.recursive), (time.adaptive / time.margins)])
+    twice = twice[level(twice, "engine").isin(["siblings", "mixed"])]
+    more, slower = fronts.kinetic(record.parent / "best-rebuilds")
+    claim((slower > 1).all(), "a kinetic list is slower than margins in each cell of slow motion")
+    adaptive = time.adaptive / time[fronts.STRATEGIES].min(axis=1)
+    return {**found, "two": Interval([ratio.get_group(2).min(), ratio.get_group(2).max()]), "sixteen": Interval([ratio.get_group(16).min(), ratio.get_group(16).max()]),
+            "kinetic_tests": Interval(more), "kinetic_time": Interval(slower), "noise": 100 * (twice - 1).abs().quantile(0.9),
+            "adaptive": adaptive.median(), "adaptive_most": adaptive.max(), "adaptive_near": 100 * (adaptive <= fronts.MISTAKEN).mean()}
+
+
+@quotes("fronts")
+def hypotheses(record):
+    judged = list(fronts.judged(fronts.read(record), record))
+    failing = [number for number, holds, _ in judged if not holds]
+    claim(len(judged) == HYPOTHESES, "nine hypotheses")
+    return {"rows": [[str(number), "holds" if holds else "fails", why] for number, holds, why in judged], "holding": HYPOTHESES - len(failing), "all": HYPOTHESES}
