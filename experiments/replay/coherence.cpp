@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "experiments/replay/registry.hpp"
 #include "traversal/all_pairs.hpp"
@@ -11,6 +14,7 @@
 #include "traversal/queries/contacts.hpp"
 #include "traversal/queries/distance.hpp"
 #include "traversal/queries/touching.hpp"
+#include "traversal/strategies/rising_front.hpp"
 
 namespace bvlab {
 namespace {
@@ -59,6 +63,7 @@ class CoherenceMeter {
   CoherenceMeter(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant)
       : pairs_(object_pairs(trace)),
         fronts_(pairs_.size()),
+        past_(pairs_.size()),
         hierarchies_(volume_entry(variant.volume).hierarchies(meshes, variant)),
         bodies_(loops_of<Query>(variant.volume)
                     .bodies(*hierarchies_, trace.objects, frame_of(variant))),
@@ -75,7 +80,7 @@ class CoherenceMeter {
     bodies_.move(poses, Vec3<double>::Zero());
     apart_.move(poses, Vec3<double>::Zero());
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
-      first ? (void)fresh_front(p, fronts_[p]) : look_at(p, poses);
+      first ? (void)(past_[p].complete = fresh_front(p, fronts_[p]).everything) : look_at(p, poses);
       waiting();
     }
     before_.assign(poses.begin(), poses.end());
@@ -86,20 +91,76 @@ class CoherenceMeter {
  private:
   void look_at(std::size_t p, std::span<const Pose> poses) {
     ++sums_.pair_runs;
-    const std::size_t entries = fronts_[p].size();
-    Front last = fronts_[p];
-    const std::uint64_t tests = fresh_front(p, fronts_[p]);
-    if (entries == 1 && fronts_[p].size() == 1) return;
+    const Front before = fronts_[p];
+    const std::size_t entries = before.size();
+    const TraversalStatistics fresh = fresh_front(p, fronts_[p]);
+    const bool complete = std::exchange(past_[p].complete, fresh.everything) && fresh.everything;
+    const bool is_near = entries > 1 || fronts_[p].size() > 1;
+    Front last = before;
+    const std::uint64_t again = is_near ? ask(p, last).volumes : 1;
+    const std::size_t kept = shared(before, fronts_[p]);
+    const Step step = step_of(entries, last, fronts_[p], kept);
+    follow(past_[p], p, fresh, complete, step);
+    if (!is_near) return;
+    if (complete && (step == Step::still || step == Step::up)) past_[p].one = {before, step};
     ++sums_.near_runs;
-    sums_.tests += tests;
+    sums_.tests += fresh.volumes;
     sums_.entries += entries;
-    sums_.kept += shared(last, fronts_[p]);
-    Counting again;
-    ask(p, last, again);
-    sums_.again += again.n_v;
+    sums_.kept += kept;
+    sums_.again += again;
     sums_.grown += last.size() - entries;
     if (last.size() == entries) ++sums_.still_runs, sums_.still_entries += entries;
+    if (complete) {
+      StepSums& sums = sums_.steps[static_cast<std::size_t>(step)];
+      ++sums.runs, sums.entries += entries, sums.tests += fresh.volumes, sums.again += again;
+      sums.raised += again + parents_tried(p, before, last);
+    }
     measure_motion(pairs_[p], poses);
+  }
+
+  /// `last` is the front of the frame before, run through again; `kept` of its entries are in both.
+  Step step_of(std::size_t entries, const Front& last, const Front& now, std::size_t kept) {
+    if (kept == entries && entries == now.size()) return Step::still;
+    if (last.size() == entries) return Step::up;
+    return last.size() == now.size() && shared(last, now) == now.size() ? Step::down : Step::mixed;
+  }
+
+  /// Parents that are tested where the entries that were not descended may rise.
+  std::uint64_t parents_tried(std::size_t p, const Front& before, const Front& last) {
+    RisingFront rising;
+    shared(before, last);
+    for (const NodePair& entry : shared_) rising.add(entry);
+    const std::uint64_t tests = ask(p, rising).volumes;
+    return tests - shared(rising, last);  // what has not risen is tested, too
+  }
+
+  /// A list that has not grown, and the step of its first run.
+  struct Kept {
+    Front list;
+    Step first = Step::still;
+  };
+  struct Past {
+    bool complete = false;                             ///< the last recursion
+    std::optional<Kept> one;                           ///< after one run without growth
+    std::optional<std::pair<Front, std::size_t>> two;  ///< after two; their place in two_runs
+  };
+
+  void follow(Past& past, std::size_t p, const TraversalStatistics& fresh, bool complete,
+              Step step) {
+    if (auto two = std::exchange(past.two, std::nullopt); two && complete) {
+      TwoRunSums& sums = sums_.two[two->second];
+      ++sums.runs, sums.kept += ask(p, two->first).volumes, sums.rebuilt += fresh.volumes;
+    }
+    if (auto one = std::exchange(past.one, std::nullopt); one && complete) {
+      const std::size_t entries = one->list.size();
+      ask(p, one->list);
+      const auto is_it = [&](const TwoRuns& t) {
+        return t.first == one->first && t.second == step;
+      };
+      const auto at = std::find_if(two_runs.begin(), two_runs.end(), is_it);
+      if (one->list.size() == entries && at != two_runs.end())
+        past.two = {std::move(one->list), static_cast<std::size_t>(at - two_runs.begin())};
+    }
   }
 
   void measure_motion(const ObjectPair& pair, std::span<const Pose> poses) {
@@ -118,21 +179,21 @@ class CoherenceMeter {
     sums_.motion_gap += moved < query.distance() ? moved / query.distance() : 1;
   }
 
-  /// From the roots; gives the tests of volumes it took.
-  std::uint64_t fresh_front(std::size_t p, Front& front) {
+  TraversalStatistics fresh_front(std::size_t p, Front& front) {
     front = Front();
     front.restart();
-    Counting counter;
-    ask(p, front, counter);
-    return counter.n_v;
+    return ask(p, front);
   }
 
-  void ask(std::size_t p, Front& front, Counting& counter) {
+  template <class AnyFront>
+  TraversalStatistics ask(std::size_t p, AnyFront& front) {
     found_.clear();
     Query query = asked<Query>(found_);
-    bodies_.pair(pairs_[p], query, counter).from_front(front);
+    NotCounting counter;
+    return bodies_.pair(pairs_[p], query, counter).from_front(front);
   }
 
+  /// How many entries are in both: those in `shared_`.
   std::size_t shared(const Front& a, const Front& b) {
     const auto before = [](const NodePair& x, const NodePair& y) {
       return x.a != y.a ? x.a < y.a : x.b < y.b;
@@ -141,24 +202,22 @@ class CoherenceMeter {
     new_.assign(b.entries().begin(), b.entries().end());
     std::sort(old_.begin(), old_.end(), before);
     std::sort(new_.begin(), new_.end(), before);
-    std::size_t count = 0;
-    for (std::size_t i = 0, j = 0; i < old_.size() && j < new_.size();) {
-      count += old_[i] == new_[j];
-      const bool a_first = before(old_[i], new_[j]), b_first = before(new_[j], old_[i]);
-      i += !b_first, j += !a_first;
-    }
-    return count;
+    shared_.clear();
+    std::set_intersection(old_.begin(), old_.end(), new_.begin(), new_.end(),
+                          std::back_inserter(shared_), before);
+    return shared_.size();
   }
 
   std::vector<ObjectPair> pairs_;
   std::vector<Front> fronts_;
+  std::vector<Past> past_;
   std::unique_ptr<AnyHierarchies> hierarchies_;
-  AnyBodies<Query, Counting> bodies_;
+  AnyBodies<Query, NotCounting> bodies_;
   AnyBodies<Distance, NotCounting> apart_;
   std::vector<Middle> middles_;
   std::vector<double> leaf_sizes_;
   std::vector<Pose> before_;
-  std::vector<NodePair> old_, new_;
+  std::vector<NodePair> old_, new_, shared_;
   std::vector<Contact> found_;
   CoherenceSums sums_;
 };

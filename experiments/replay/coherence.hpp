@@ -11,9 +11,20 @@
 ///              (translations plus 2 sin(angle / 2) radius), in units of a leaf's size, and as a
 ///              share of the gap between them, at most 1
 ///
+/// The talk tells steps apart by where the recursion stops (li1998incremental): a step is `still`
+/// where this frame's front is the last one's, `down` where it lies at or below it, `up` where it
+/// lies at or above it, and `mixed` where it does both. A list that never shrinks makes `again`
+/// tests. One that may shrink also tries the parent of siblings that all stay, and tries on where
+/// that parent is apart: `raised`. Runs that a hit cut short, now or in the frame before, are no
+/// steps, and no part of two runs.
+///
+/// Two runs are such that a list from the front before them grew in neither; each is named by its
+/// step. In the run after them the list may be kept or rebuilt.
+///
 /// What is counted is sums, so that parts of a trace, and traces, add up.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -21,6 +32,36 @@
 #include "experiments/replay/replay.hpp"
 
 namespace bvlab {
+
+enum class Step { still, down, up, mixed };
+inline constexpr std::array<const char*, 4> step_names{"still", "down", "up", "mixed"};
+
+/// Of the runs that make one kind of step.
+struct StepSums {
+  std::uint64_t runs = 0;
+  std::uint64_t entries = 0;  ///< entries of the last frame's front
+  std::uint64_t tests = 0;    ///< of pairs of volumes, from the roots
+  std::uint64_t again = 0;    ///< the same, of a run through the last front
+  std::uint64_t raised = 0;   ///< the same, where that front may also shrink
+};
+
+/// Of the runs after two without growth.
+struct TwoRunSums {
+  std::uint64_t runs = 0;
+  std::uint64_t kept = 0;     ///< tests of pairs of volumes, by the list
+  std::uint64_t rebuilt = 0;  ///< the same, from the roots
+};
+
+/// The two runs that grow no list: what is still at first can only come up.
+struct TwoRuns {
+  Step first, second;
+};
+inline constexpr std::array<TwoRuns, 6> two_runs{{{Step::up, Step::up},
+                                                  {Step::up, Step::still},
+                                                  {Step::up, Step::down},
+                                                  {Step::up, Step::mixed},
+                                                  {Step::still, Step::up},
+                                                  {Step::still, Step::still}}};
 
 struct CoherenceSums {
   std::uint64_t pair_runs = 0;      ///< pairs times frames, without the first
@@ -35,6 +76,8 @@ struct CoherenceSums {
   std::uint64_t still_entries = 0;  ///< entries of those last fronts that did not grow
   double motion_leaf = 0;           ///< sum of motions, in leaf sizes
   double motion_gap = 0;            ///< sum of motions as shares of the gap
+  std::array<StepSums, 4> steps;    ///< by Step
+  std::array<TwoRunSums, 6> two;    ///< by place in two_runs
 };
 
 /// For the variant's volume, query, build and leaf size; its strategy does not matter. The size of

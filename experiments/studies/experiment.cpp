@@ -73,6 +73,11 @@ Row coherence_row(Row row, const CoherenceSums& c, const std::optional<BestRebui
   row.push_back(std::to_string(c.motion_gap));
   row.push_back(best ? std::to_string(best->tests) : "");
   row.push_back(best ? std::to_string(best->rebuilds) : "");
+  for (const StepSums& s : c.steps)
+    for (const auto n : {s.runs, s.entries, s.tests, s.again, s.raised})
+      row.push_back(std::to_string(n));
+  for (const TwoRunSums& s : c.two)
+    for (const auto n : {s.runs, s.kept, s.rebuilt}) row.push_back(std::to_string(n));
   return row;
 }
 
@@ -92,10 +97,21 @@ const Row counted_columns{"pairs", "hits", "differing", "n_u", "n_v", "n_p", "fr
 const Row frame_columns{"frame", "n_u", "n_v", "n_p", "front", "hits"};
 const Row disagreement_columns{"frame",      "object_i", "object_j", "triangle_i",
                                "triangle_j", "theirs",   "ours",     "exact"};
-const Row coherence_columns{"pair_runs",  "near_runs",     "moved_runs",  "still_runs",
-                            "tests",      "entries",       "kept",        "grown",
-                            "again",      "still_entries", "motion_leaf", "motion_gap",
-                            "best_tests", "best_rebuilds"};
+/// Also those of each kind of step, and of two runs without growth.
+Row with_steps(Row columns) {
+  const auto add = [&](const std::string& of, std::initializer_list<const char*> sums) {
+    for (const char* sum : sums) columns.push_back(of + "_" + sum);
+  };
+  for (const std::string name : step_names)
+    add("step_" + name, {"runs", "entries", "tests", "again", "raised"});
+  const auto name = [](Step step) { return std::string(step_names[static_cast<int>(step)]); };
+  for (const TwoRuns& two : two_runs)
+    add("two_" + name(two.first) + "_" + name(two.second), {"runs", "kept", "rebuilt"});
+  return columns;
+}
+const Row coherence_columns = with_steps(
+    {"pair_runs", "near_runs", "moved_runs", "still_runs", "tests", "entries", "kept", "grown",
+     "again", "still_entries", "motion_leaf", "motion_gap", "best_tests", "best_rebuilds"});
 const Row prediction_columns{"strategy", "n_v", "n_p", "time_ns", "taken_ns", "low_ns", "high_ns"};
 
 /// What is computed of a record when it is read: see plots/bvlab_plots/records.py.
@@ -439,9 +455,12 @@ class Experiment {
   }
 
   bool is_measured(const Table& table, const Row& key) const {
+    const Row& columns = table.columns();
+    const auto best = std::find(columns.begin(), columns.end(), "best_rebuilds") - columns.begin();
     return std::any_of(table.rows().begin(), table.rows().end(), [&](const Row& row) {
       return std::equal(key.begin(), key.end(), row.begin()) &&
-             (&table != &coherence_ || !measures_best() || !row.back().empty());
+             (&table != &coherence_ ||
+              (!row.back().empty() && (!measures_best() || !row[best].empty())));
     });
   }
 
