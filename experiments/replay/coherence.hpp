@@ -52,7 +52,7 @@ struct TwoRunSums {
   std::uint64_t rebuilt = 0;  ///< the same, from the roots
 };
 
-/// The two runs that grow no list: what is still at first can only come up.
+/// The two runs that grow no list: what is still at first can then only stay or come up.
 struct TwoRuns {
   Step first, second;
 };

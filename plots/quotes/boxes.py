@@ -201,7 +201,10 @@ def deviations(*folders):
 @quotes(["boxes-figure-3", "boxes-figures-4-5"])
 def exponents(*folders):
     """How times grow with the number of boxes: least squares of logarithms, from the largest three sizes."""
-    lines = []
+    lines, logarithms = [], {1: [], 3: []}
+
+    def exponent(last):
+        return np.polyfit(np.log(last.index.to_numpy(float)), np.log(last.to_numpy(float)), 1)[0]
     for folder in folders:
         rows = records.read(folder)
         rows = rows[(rows.frame_ns > 0) & (rows.coherent != "on") & rows.method.isin([*SEEDS, "blocks"])]
@@ -210,10 +213,14 @@ def exponents(*folders):
             pairs = group.groupby("boxes").overlaps.median()
             cells = []
             for values in [pairs, *(time[method].dropna() for method in time)]:
-                last = values.iloc[-3:]
-                cells.append(f"{np.polyfit(np.log(last.index.to_numpy(float)), np.log(last.to_numpy(float)), 1)[0]:.2f}")
+                cells.append(f"{exponent(values.iloc[-3:]):.2f}")
+            for power in logarithms:
+                sizes = pairs.index.to_series().iloc[-3:]
+                logarithms[power].append(exponent(sizes * np.log(sizes) ** power))
             lines.append([name, *cells])
     packed = ("random", "sphere-packed")
     claim(all(abs(float(line[1]) - (2 if line[0] in packed else 1)) < 0.1 for line in lines),
           "pairs grow as the square on over-packed sets")
-    return {"rows": lines}
+    linear = [line for line in lines if line[0] not in packed]
+    return {"rows": lines, "hybrid": Interval([line[2] for line in linear]), "blocks": Interval([line[-1] for line in linear]),
+            "log": Interval(logarithms[1][-2:]), "log_cubed": Interval(logarithms[3][-2:])}
