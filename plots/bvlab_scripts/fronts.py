@@ -44,10 +44,10 @@ def medians(record, of, cell=CELL):
 
 def read(record):
     """Times in ns per pair without the first frame, and the survival of the scene, in the index; of distances that of contacts."""
+    time = pd.concat([medians(part, ["later_ns", "later_pairs"]) for part in (record, record.parent / "fronts-distance")])
     share = survival(record)
     of_contacts = share.xs("contacts").to_frame().assign(query="distance").set_index("query", append=True).survival
     share = pd.concat([share, of_contacts.reorder_levels(share.index.names)])
-    time = pd.concat([medians(part, ["later_ns", "later_pairs"]) for part in (record, record.parent / "fronts-distance")])
     return time.join(share, on=share.index.names).set_index("survival", append=True)
 
 
@@ -80,7 +80,8 @@ def threshold(time):
 
 def thresholds(time):
     """By query and kernel."""
-    return {at: threshold(part) for at, part in time.groupby(level=["query", "engine"], sort=False)}
+    found = {at: threshold(part) for at, part in time.groupby(level=["query", "engine"])}
+    return {at: found[at] for at in sorted(found, key=lambda at: QUERIES.index(at[0]))}
 
 
 def rule_off(time):

@@ -10,6 +10,7 @@ from quoting import Interval, claim, quotes
 
 SHARES = [(0, 0.5, "below .5"), (0.5, 0.8, ".5 to .8"), (0.8, 0.95, ".8 to .95"), (0.95, 1.01, "above .95")]
 KERNELS = {"gathered, 2": "gathered, binary", "gathered, 16": "gathered, 16", "siblings": "siblings", "mixed": "mixed"}
+SAME = {"recursive": "recursion", "recursive-both": "recursion", ("adaptive", "siblings"): "margins", ("adaptive", "mixed"): "margins"}
 KEPT = [*fronts.LISTS, "margins", "adaptive"]
 HYPOTHESES = 9
 
@@ -32,7 +33,7 @@ def fastest_of(time, strategies):
 
 def called(places):
     """The most frequent of these kernels and strategies, as text says it, and its share."""
-    names = places.map(lambda at: (KERNELS[at[1]], "recursion" if at[0].startswith("recursive") else at[0]))
+    names = places.map(lambda at: (KERNELS[at[1]], SAME.get((at[0], at[1]), SAME.get(at[0], at[0]))))
     most = names.value_counts(normalize=True)
     return f"{most.index[0][1]}, {most.index[0][0]}", 100 * most.iloc[0]
 
@@ -85,8 +86,8 @@ def overall(record):
         above = of_query & (level(gain, "survival") >= limit)
         below = of_query & ~above
         found[f"{query}_limit"], found[f"{query}_above"], found[f"{query}_below"] = limit, Interval(gain[above]), Interval(1 / gain[below])
-        short += [[f"{query}, from {limit:.2f} on", called(kept[above])[0], f"{gain[above].median():.1f} ({Interval(gain[above]):.1f}) times the fastest without a front"],
-                  [f"{query}, below", called(frontless[below])[0], f"{(1 / gain[below]).median():.1f} ({Interval(1 / gain[below]):.1f}) times the fastest with one"]]
+        short += [[f"{query}, survival from {limit:.2f} on", called(kept[above])[0], f"{gain[above].median():.1f} ({Interval(gain[above]):.1f}) times as fast as the fastest without a front"],
+                  [f"{query}, less survives", called(frontless[below])[0], f"{(1 / gain[below]).median():.1f} ({Interval(1 / gain[below]):.1f}) times as fast as the fastest with a front"]]
     configurations = by_configuration(time.xs("contacts", level="query", drop_level=False))
     return {**found, "rows": lines, "short": short, "configurations": len(configurations.dropna(axis=1).columns)}
 

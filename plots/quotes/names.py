@@ -2,7 +2,7 @@
 """Names of peers as text has them."""
 
 PEERS = {"cgal": "CGAL (cutoff 10)", "cgal-1000": "CGAL (cutoff 1000)", "fcl-tree": "FCL's tree", "embree": "Embree",
-         "bullet-dbvt": "Bullet's `btDbvt`"}
+         "bullet-dbvt": "Bullet's `btDbvt`", "physx-abp": "PhysX's ABP"}
 
 
 def called(names):
