@@ -90,12 +90,18 @@ def displacement(record):
     return {"others": 2 * (there.overlaps / there.boxes).median(), "over": Interval(over), "most": over.max(), "worst": worst[0], "at": 100 * worst[1], "sap": 100 * (1 - sap)}
 
 
+def by_radix(folder):
+    """The rows of a record with times, but for those of methods that sort by comparisons."""
+    rows = records.read(folder)
+    records.wrong_answers(rows)
+    return rows[(rows.frame_ns > 0) & (rows.sort != "comparison")]
+
+
 @quotes(["boxes-figure-3", "boxes-figures-4-5"])
 def published(*folders):
     def read(folder):
-        rows = records.read(folder)
-        records.wrong_answers(rows)
-        rows = rows[(rows.frame_ns > 0) & rows.method.isin(SEEDS)]
+        rows = by_radix(folder)
+        rows = rows[rows.method.isin(SEEDS)]
         return rows.groupby(["set", "coherent", "boxes", "method"]).frame_ns.median()
     times = pd.concat([read(folder) for folder in folders]).sort_index()
     scratch = times.xs("off", level="coherent").unstack("method")
@@ -124,11 +130,16 @@ def published(*folders):
     hybrid = scratch.loc["sphere-sparse"].hybrid
     ratio = coherent.min(axis=1) / hybrid
     claim((ratio[ratio.index >= sparse] >= 0.97).all(), "no coherent sweep overtakes HYBRID")
+    compared = records.read(folders[1])
+    compared = compared[(compared.sort == "comparison") & (compared.frame_ns > 0) & compared.method.isin(SWEEPS) & (compared.set == "adjacent")]
+    compared = compared.groupby(["boxes", "method", "coherent"]).frame_ns.median().unstack()
+    compared = 1 - compared["on"] / compared["off"]
+    claim(compared.median() < 0.33, "with a comparison sort, too, coherence saves less than a third in the median")
     both = times.unstack("coherent").dropna()
     both = both[both.index.get_level_values("method").isin(SWEEPS) & (both.index.get_level_values("set") == "adjacent")]
     return {"random_from": dense, "packed_from": packed, "worst_from": worst_from, "sparse_from": sparse, "adjacent_to": small.index.max(),
             **(scratch.loc["sphere-packed", 50000][["sweep4", "hybrid"]] / 1e6),
-            "saved": 100 * max(0, 1 - (both["on"] / both["off"]).median()), "saved_most": at_most(100 * (1 - (both["on"] / both["off"]).min()), 0)}
+            "compared": 100 * compared.median(), "compared_least": 100 * compared.min(), "compared_most": 100 * compared.max(), "saved": 100 * max(0, 1 - (both["on"] / both["off"]).median()), "saved_most": at_most(100 * (1 - (both["on"] / both["off"]).min()), 0)}
 
 
 # Those in which `blocks` plays the same frames with coherence and without; those of changing boxes are of `auto`, and told elsewhere.
@@ -140,9 +151,8 @@ def boxes_slowest(*folders):
     """What following costs where it does not pay, and how its slowest frames compare."""
     over, drift = [], None
     for folder in folders:
-        rows = records.read(folder)
-        records.wrong_answers(rows)
-        rows = rows[(rows.peer == "") & (rows.frame_ns > 0) & (rows.method == "blocks") & (rows.threads <= 1)]
+        rows = by_radix(folder)
+        rows = rows[(rows.peer == "") & (rows.method == "blocks") & (rows.threads <= 1)]
         keys = [key for key in ("set", "boxes", "motion", "displacement") if key in rows]
         time = rows.groupby([*keys, "coherent"])[["frame_ns", "p99_ns"]].median().unstack("coherent")
         ratio = (time.frame_ns["on"] / time.frame_ns["off"]).dropna()
@@ -171,8 +181,8 @@ def boxes_slowest(*folders):
 def deviations(*folders):
     """What the published figures say and these do not."""
     def read(folder):
-        rows = records.read(folder)
-        rows = rows[(rows.frame_ns > 0) & rows.method.isin(SEEDS)]
+        rows = by_radix(folder)
+        rows = rows[rows.method.isin(SEEDS)]
         return rows.groupby(["set", "coherent", "boxes", "method"]).frame_ns.median()
     times = pd.concat([read(folder) for folder in folders]).sort_index()
     scratch = times.xs("off", level="coherent").unstack("method")
@@ -206,8 +216,8 @@ def exponents(*folders):
     def exponent(last):
         return np.polyfit(np.log(last.index.to_numpy(float)), np.log(last.to_numpy(float)), 1)[0]
     for folder in folders:
-        rows = records.read(folder)
-        rows = rows[(rows.frame_ns > 0) & (rows.coherent != "on") & rows.method.isin([*SEEDS, "blocks"])]
+        rows = by_radix(folder)
+        rows = rows[(rows.coherent != "on") & rows.method.isin([*SEEDS, "blocks"])]
         for name, group in rows.groupby("set", sort=False):
             time = group.groupby(["boxes", "method"]).frame_ns.median().unstack()[[*SEEDS, "blocks"]]
             pairs = group.groupby("boxes").overlaps.median()

@@ -5,6 +5,7 @@ import pandas as pd
 
 from bvlab_scripts import nine_bunnies
 from bvlab_plots import records
+from quotes.boxes import by_radix
 from quoting import Interval, at_most, claim, quotes
 
 PRICES = [2, 10]  # of a pair of triangles, in tests of volumes
@@ -142,11 +143,11 @@ def closest_counts(record):
             "coherent_fast": Interval([grown(name, fast) for name in ("gjk-coherent", "v-clip")])}
 
 
-@quotes(["boxes-figure-3", "boxes-figure-4", "boxes-figure-5", "boxes-fast", "worlds"])
+@quotes(["boxes-figure-3", "boxes-figures-4-5", "boxes-fast", "worlds"])
 def box_statements(*folders):
     *figures, fast, worlds = folders
-    rows = pd.concat([records.read(folder) for folder in figures])
-    rows = rows[(rows.frame_ns > 0) & (rows.coherent != "on") & (rows.peer == "")]
+    rows = pd.concat([by_radix(folder) for folder in figures])
+    rows = rows[(rows.coherent != "on") & (rows.peer == "")]
     each = rows.assign(each=rows.bytes / (rows.boxes + rows.overlaps))
     linear = each[each.set.isin(["adjacent", "sphere-sparse"])].groupby(["method", "set", "boxes"]).each.median()
     growth = linear.groupby(["method", "set"]).agg(lambda group: group.iloc[-1] / group.iloc[1])
