@@ -27,7 +27,7 @@ def draw(folder, out):
 
 def draw_worth(record, out):
     """A point for each cell of the study."""
-    figure, axes = plt.subplots(2, len(fronts.QUERIES), figsize=(column.PAGE, 3.5), sharex="col", sharey=True, layout="constrained")
+    figure, axes = plt.subplots(2, len(fronts.QUERIES), figsize=(column.PAGE, 3.2), sharex=True, sharey=True, layout="constrained")
     fronts.draw_worth(fronts.read(record), out, figure, axes, "worth")
 
 
@@ -36,7 +36,7 @@ def draw_strategies(record, out):
     rows = law.read(record)
     strategies = law.strategies_of(rows)
     looks, edges = style.looks(strategies), np.quantile(rows.survival, np.linspace(0, 1, 13))
-    figure, axes = column.panels(2, 2.1, sharey=True)
+    figure, axes = column.panels(2, 2.0, sharey=True)
     values = []
     for axis, what in zip(axes, ("tests", "time")):
         for strategy in strategies:
@@ -61,7 +61,7 @@ def draw_strategies(record, out):
 def draw_lead(record, out):
     """How many times as long the fastest library takes, with intervals."""
     found = tournament.beside_all(record)
-    figure, (axis,) = column.panels(1, 2.1)
+    figure, (axis,) = column.panels(1, 1.9)
     names = [f"{work}, {polygons}" for work, polygons in found.index]
     places = np.arange(len(found))[::-1]
     axis.errorbar(found.ratio, places, xerr=[found.ratio - found.low, found.high - found.ratio], fmt="o", color="black", capsize=2)
