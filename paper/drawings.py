@@ -8,46 +8,27 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import column
-from bvlab_scripts import fan_outs
+from bvlab_scripts import fronts
 from bvlab_scripts import law
 import quoting
 from bvlab_plots import records
 from bvlab_plots import style
-from quotes import reuse, tournament
+from quotes import tournament
 
 
 def draw(folder, out):
     """All of them, into `out`."""
     with contextlib.redirect_stdout(io.StringIO()), plt.rc_context(column.LETTERS):
-        draw_reuse(quoting.record_of("fan-outs", folder), out)
-        draw_cycles(quoting.record_of("fan-outs", folder), out)
+        draw_worth(quoting.record_of("fronts", folder), out)
         draw_strategies(quoting.record_of("coherence", folder), out)
         draw_lead(quoting.record_of("tournament-peers", folder), out)
         draw_displacement(quoting.record_of("boxes-displacement", folder), out)
 
 
-def draw_reuse(record, out):
-    names = ("deferred", "raise", "margins")
-    figure, axes = plt.subplots(2, len(names), figsize=(column.PAGE, 3.7), sharex=True, sharey="row", layout="constrained")
-    fan_outs.draw_coherence(fan_outs.read(record), fan_outs.survival(record), out, figure, axes, names, "reuse")
-
-
-def draw_cycles(record, out):
-    """The counting argument, as lines, and what was measured at rest."""
-    cells = fan_outs.read(record)
-    rest = fan_outs.at_rest(cells)
-    rested = cells.xs("rest", level="motion", drop_level=False)
-    figure, (axis,) = column.panels(1, 2.0)
-    at = np.linspace(2, 16, 100)
-    shown = (("a list's run", 0, rest, "black", "o"), ("deferred", 2, fan_outs.savings(rested, "n_v", "deferred"), "#2f6fb0", "s"),
-             ("separation list", 1, fan_outs.savings(rested, "n_v", "separation-list"), "#c0653b", "^"))
-    for label, deferral, measured, colour, marker in shown:
-        ratio = at / (at - 1)
-        axis.plot(at, reuse.cycle(ratio, deferral) if deferral else ratio, color=colour, linewidth=0.8)
-        axis.plot(measured.index.get_level_values("fan_out"), measured, color=colour, marker=marker, linestyle="none", label=label)
-    axis.set(xlabel="fan-out F", ylabel="speedup in tests at rest", ylim=(0.95, 2.1))
-    axis.set_xticks([2, 4, 8, 16])
-    column.finish(figure, [axis], out, "cycles")
+def draw_worth(record, out):
+    """A point for each cell of the study."""
+    figure, axes = plt.subplots(2, len(fronts.QUERIES), figsize=(column.PAGE, 3.2), sharex=True, sharey=True, layout="constrained")
+    fronts.draw_worth(fronts.read(record), out, figure, axes, "worth")
 
 
 def draw_strategies(record, out):
@@ -55,7 +36,7 @@ def draw_strategies(record, out):
     rows = law.read(record)
     strategies = law.strategies_of(rows)
     looks, edges = style.looks(strategies), np.quantile(rows.survival, np.linspace(0, 1, 13))
-    figure, axes = column.panels(2, 2.1, sharey=True)
+    figure, axes = column.panels(2, 2.0, sharey=True)
     values = []
     for axis, what in zip(axes, ("tests", "time")):
         for strategy in strategies:
@@ -80,7 +61,7 @@ def draw_strategies(record, out):
 def draw_lead(record, out):
     """How many times as long the fastest library takes, with intervals."""
     found = tournament.beside_all(record)
-    figure, (axis,) = column.panels(1, 2.1)
+    figure, (axis,) = column.panels(1, 1.9)
     names = [f"{work}, {polygons}" for work, polygons in found.index]
     places = np.arange(len(found))[::-1]
     axis.errorbar(found.ratio, places, xerr=[found.ratio - found.low, found.high - found.ratio], fmt="o", color="black", capsize=2)

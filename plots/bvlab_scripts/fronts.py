@@ -160,6 +160,8 @@ def draw_worth(time, out, figure=None, axes=None, name="fronts-worth"):
     """A point for each cell: what margins, and the best list, are worth, against survival."""
     if figure is None:
         figure, axes = style.subplots(2, len(QUERIES), (7.4, 4.4))
+    most = max(10, worth(time, ["margins"]).max(), worth(time, LISTS).max())
+    ticks = [tick for tick in (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100) if tick <= most]
     engines = list(dict.fromkeys(time.index.get_level_values("engine")))
     colours = [matplotlib.colormaps["viridis"](0.9 - 0.28 * i) for i in range(len(engines))]
     for line, (strategies, label) in zip(axes, ((["margins"], "worth of margins"), (LISTS, "worth of the best list"))):
@@ -170,9 +172,9 @@ def draw_worth(time, out, figure=None, axes=None, name="fronts-worth"):
                     axis.plot(survivals(part), worth(part, strategies), marker, color=colour, label=engine, markersize=3.5, alpha=0.8, markeredgewidth=0)
             axis.axhline(1, color="black", linewidth=0.7)
             axis.set_yscale("log")
-            axis.set_yticks([0.1, 0.2, 0.5, 1, 2, 5, 10], ["0.1", "0.2", "0.5", "1", "2", "5", "10"])
+            axis.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
             axis.minorticks_off()
-            axis.set_ylim(0.08, 12)
+            axis.set_ylim(0.08, 1.2 * most)
         line[0].set_ylabel(label)
     for axis, query in zip(axes[0], QUERIES):
         axis.set_title(query)

@@ -12,6 +12,7 @@ SHARES = [(0, 0.5, "below .5"), (0.5, 0.8, ".5 to .8"), (0.8, 0.95, ".8 to .95")
 KERNELS = {"gathered, 2": "gathered, binary", "gathered, 16": "gathered, 16", "siblings": "siblings", "mixed": "mixed"}
 SAME = {"recursive": "recursion", "recursive-both": "recursion", ("adaptive", "siblings"): "margins", ("adaptive", "mixed"): "margins"}
 KEPT = [*fronts.LISTS, "margins", "adaptive"]
+MOST = 0.9  # of a front: where motion is slow enough for any front to pay
 HYPOTHESES = 9
 
 
@@ -54,7 +55,10 @@ def rule(record):
                      f"{off.median():.2f}, {off.max():.2f}"])
         query_before = query
     unseen = fronts.left_out_off(time, record.parent / "coherence")
+    found["survival"] = Interval(100 * fronts.survivals(time))
     seen = records.read(record)
+    other = [set(level(unseen, "mesh")) - set(seen.mesh), set(level(unseen, "motion_model")) - {"all bodies, all freedoms"}]
+    claim([len(names) for names in other] == [3, 2] and set(level(unseen, "query")) == {"touching", "contacts"}, "left out are three shapes and two models of motion, for touching and contacts")
     claim((seen.alone == "yes").all(), "the times of fronts are of rows that were alone")
     claim(len(set(seen.seed)) == 5 and len(set(seen.mesh)) == 3, "five seeds, three meshes")
     for query in fronts.QUERIES:
@@ -64,6 +68,32 @@ def rule(record):
             found[f"{query}_{polygons}"] = fronts.degrees_at(time, query, polygons, limits[query, fronts.BINARY])
     return {**found, "rows": rows, "cells": len(loss), "off": loss.median(), "most": loss.max(), "wrong": 100 * (loss > fronts.MISTAKEN).mean(),
             "unseen": unseen.median(), "unseen_most": unseen.max(), "unseen_wrong": 100 * (unseen > fronts.MISTAKEN).mean(), "unseen_cells": len(unseen)}
+
+
+@quotes("fronts")
+def kernels(record):
+    """By query and kernel: the time from the roots over the fastest kernel's, and what the best front is worth where most of it survives."""
+    time = fronts.read(record)
+    roots = time[FRONTLESS].min(axis=1).unstack("engine")
+    roots = roots.div(roots.min(axis=1), axis=0)
+    behind, first = roots.groupby("query").median(), (roots == 1).groupby("query").mean()
+    gain = fronts.worth(time, KEPT)
+    slow = fronts.survivals(time) >= MOST
+    cells = {name: gain[here].groupby(["query", "engine"]) for name, here in (("high", slow), ("low", ~slow))}
+    middle = {name: of.median().unstack() for name, of in cells.items()}
+    claim(first.loc["contacts"].idxmax() == first.loc["touching"].idxmax() == "siblings" and first.loc["distance"].idxmax() == "mixed",
+          "from the roots, siblings are the fastest kernel for touching and contacts, and mixed is for distances")
+    claim(middle["high"].loc["contacts"].idxmin() == "siblings", "for contacts, a front is worth least on the kernel that is fastest from the roots")
+    claim((middle["high"].loc[["touching", "contacts"], ["siblings", "mixed"]].max(axis=1) < middle["high"].loc[["touching", "contacts"], fronts.BINARY]).all(),
+          "for touching and contacts, a front is worth less on siblings and mixed than on binary trees")
+    rows, found = [], {}
+    for query in fronts.QUERIES:
+        for engine in behind.loc[query].dropna().sort_values().index:
+            rows.append([query if query not in (row[0] for row in rows) else "", KERNELS[engine], f"{behind.loc[query, engine]:.2f}",
+                         f"{100 * first.loc[query, engine]:.0f} %", *(f"{table.loc[query, engine]:.2f}" for table in middle.values())])
+            key = engine.replace("gathered, 2", "binary").replace("gathered, 16", "sixteen")
+            found |= {f"{query}_{key}": middle["high"].loc[query, engine], f"{query}_{key}_roots": behind.loc[query, engine]}
+    return {**found, "rows": rows, "most": MOST}
 
 
 @quotes("fronts")
