@@ -18,14 +18,13 @@
 #include "experiments/replay/scene_page.hpp"
 #include "experiments/scenes/pair_files.hpp"
 #include "experiments/scenes/read_mesh.hpp"
-#include "experiments/scenes/scene_x3d.hpp"
 
 namespace bvlab {
 namespace {
 
 struct Arguments {
   std::vector<std::string> meshes;
-  std::string trace, out, nearest, json, page, x3d, count = "off", broad_phase = "auto";
+  std::string trace, out, nearest, json, page, count = "off", broad_phase = "auto";
   PairFiles pairs;
   std::optional<std::string> configuration;
   Variant variant;
@@ -88,8 +87,7 @@ void check(const Arguments& arguments) {
   const NamedFile written[] = {place_of_totals(arguments.json),
                                {"--out", arguments.out},
                                {"--nearest", arguments.nearest},
-                               {"--page", arguments.page},
-                               {"--x3d", arguments.x3d}};
+                               {"--page", arguments.page}};
   require_places(read, written);
   if (!arguments.page.empty() &&
       (arguments.variant.kernel != "gathered" || arguments.variant.fan_out != 2))
@@ -103,14 +101,11 @@ void check(const Arguments& arguments) {
   if (arguments.broad_phase == "on" && arguments.variant.query == "distance")
     throw Unusable("--broad-phase on",
                    "not with --query distance, which has an answer for every pair");
-  if (!arguments.pairs.say_nothing())
-    for (const auto& [option, file] :
-         {std::pair("--page", arguments.page), {"--x3d", arguments.x3d}})
-      if (!file.empty())
-        throw Unusable(option, "shows all pairs; not with --pairs, --without or --groups");
+  if (!arguments.pairs.say_nothing() && !arguments.page.empty())
+    throw Unusable("--page", "shows all pairs; not with --pairs, --without or --groups");
   if (!arguments.budget) return;
-  for (const auto& [option, file] : {std::pair("--page", arguments.page), {"--x3d", arguments.x3d}})
-    if (!file.empty()) throw Unusable(option, "shows whole answers; not with --budget");
+  if (!arguments.page.empty())
+    throw Unusable("--page", "shows whole answers; not with --budget");
   if (arguments.variant.query != "touching")
     throw Unusable("--budget",
                    "answers whether surfaces touch; not with --query " + arguments.variant.query);
@@ -158,7 +153,7 @@ void run(Arguments arguments) {
   ReplayOptions options;
   options.count = count;
   options.threads = arguments.threads;
-  options.keep_answers = !arguments.out.empty() || !arguments.x3d.empty();
+  options.keep_answers = !arguments.out.empty();
   options.keep_nearest = !arguments.nearest.empty();
   options.broad_phase = broad_phase;
   options.trees = chosen.trees.get();
@@ -169,8 +164,6 @@ void run(Arguments arguments) {
   if (!arguments.out.empty()) write_answers(arguments, trace, result);
   if (!arguments.nearest.empty()) write_nearest(arguments, trace, result);
   if (!arguments.page.empty()) write_page(arguments, meshes, trace);
-  if (!arguments.x3d.empty())
-    write_whole(arguments.x3d, scene_x3d(meshes, trace, result.touching, name(arguments.trace)));
   write_totals(totals, arguments.json);
 }
 
@@ -243,9 +236,6 @@ void add_replay(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--page", arguments->page,
                       "the scene in 3D, as one self-contained HTML file");
-  command->add_option(
-      "--x3d", arguments->x3d,
-      "the scene as X3D for other viewers; bodies that touch are red (--query touching)");
   command->add_option("--json", arguments->json, "totals (default: standard output)");
   command->callback([arguments, command] {
     // What is not said is what the kernel is compiled for.

@@ -57,8 +57,8 @@ std::vector<std::string> words_of(int argc, char** argv) {
 }
 
 /// What may be left out, so that an empty value would count as none.
-constexpr std::string_view optional_texts[] = {"--out",    "--json", "--csv",    "--page", "--x3d",
-                                               "--record", "--part", "--meshes", "--from", "kind"};
+constexpr std::string_view optional_texts[] = {"--out",  "--json",   "--csv",  "--page", "--record",
+                                               "--part", "--meshes", "--from", "kind"};
 
 void refuse_empty_values(CLI::App& app) {
   const auto not_empty = [](const std::string& value) {

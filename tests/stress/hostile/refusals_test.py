@@ -305,7 +305,7 @@ class Names(ProgramTest):
         self.refuse(*self.replay, "--volume", mentions="--volume")
 
     def test_of_empty_values(self):
-        for option in ("--out", "--json", "--page", "--x3d"):
+        for option in ("--out", "--json", "--page"):
             self.refuse(*self.replay, option, "", mentions=[option, "a value is needed"])
         self.refuse("predict", "poses.npy", "--mesh", "mesh.off", "--csv", "", mentions="--csv")
         self.refuse("scene", "random-walk", "--out", "out.npy", "--meshes", "", mentions="--meshes")
