@@ -141,7 +141,7 @@ def judged(time, record):
     yield 6, bool((high >= 1.5).all() and low.isin(["witness", *LISTS]).mean() > 0.5), f"above .95 {high.min():.2f} to {high.max():.2f}; a list or witness in {low.isin(['witness', *LISTS]).mean():.0%}"
     beside = (time.adaptive / time[STRATEGIES].min(axis=1)) <= MISTAKEN
     yield 7, bool(beside.mean() >= 0.8), f"{beside.mean():.0%} of cells"
-    more, slower = kinetic(record.parent / "best-rebuilds")
+    more, slower, _ = kinetic(record.parent / "best-rebuilds")
     yield 8, bool((more >= 2).all() and (slower > 1).all()), f"{more.min():.1f} to {more.max():.1f} times the tests, {slower.min():.1f} to {slower.max():.1f} times the time"
     wrong = left_out_off(time, record.parent / "coherence") > MISTAKEN
     yield 9, bool(wrong.mean() <= 0.2), f"in {wrong.mean():.0%} of {len(wrong)} cells"
@@ -151,9 +151,10 @@ KINETIC = ["kinetic-list:8", "kinetic-list:50"]
 
 
 def kinetic(record):
-    """Of best-rebuilds, the better kinetic list's tests and time over those of margins in slow motion."""
+    """Of best-rebuilds, the better kinetic list's tests and time over those of margins in slow motion, and its time over the best list's."""
     tests, time = (medians(record, of, ["query", "degrees"]) for of in (["n_v", "pairs"], ["later_ns", "later_pairs"]))
-    return [(table[KINETIC].min(axis=1) / table.margins)[table.index.get_level_values("degrees") <= 1] for table in (tests, time)]
+    ratios = [tests[KINETIC].min(axis=1) / tests.margins, time[KINETIC].min(axis=1) / time.margins, time[KINETIC].min(axis=1) / time[LISTS].min(axis=1)]
+    return [ratio[ratio.index.get_level_values("degrees") <= 1] for ratio in ratios]
 
 
 def draw_worth(time, out, figure=None, axes=None, name="fronts-worth"):

@@ -148,16 +148,14 @@ def tournament_peers(record):
     best = us[libraries].idxmin(axis=1)
     physx = best.index[best == "PhysX"]
     claim(set(best.drop(physx)) == {"OPCODE, coherent"}, "OPCODE's coherent mode is the fastest library where PhysX is not")
-    rule = rows[rows.method == "recommended"].groupby(["work", "polygons", "seed"])[["volume", "fan_out"]].first()
-    other = rule[rule.volume != "slab-box"]
-    claim({*other.volume} == {"obb"} and {*other.fan_out} == {4} and {*rule.drop(other.index).fan_out} == {16}, "recommended takes slab-boxes or oriented boxes")
-    oriented = [f"`{work}` with {polygons} polygons" for work, polygons in dict.fromkeys(other.index.droplevel("seed"))]
-    claim(oriented, "it takes oriented boxes somewhere")
+    rule = rows[rows.method == "recommended"].groupby(["work", "polygons", "seed"])[["volume", "build", "strategy"]].first()
+    claim({*rule.volume} == {"slab-box"} and {*rule.build} == {"on-demand"} and {*rule.strategy} == {"margins", "recursive"},
+          "recommended takes slab-boxes in trees made on demand, with margins or from the roots")
     lead = times.groupby("work")
     wrong = rows[rows.differing > 0].groupby("method").differing.max()
     claim(set(rows[rows.differing > 0].work) == {"contacts, near"} and set(wrong.index) == {"Coal, obb", "Coal, obbrss", "OPCODE", "PhysX"}, "Coal, OPCODE and PhysX differ, in contacts alone")
     return {"touching": Interval(touching), "five": int((touching >= 5).sum()), "cells": len(touching), "roots": Interval(roots),
-            "contacts": Interval(contacts), "physx": len(physx), "places": len(us), "slab": len(rule) - len(other), "chosen": len(rule), "oriented": len(other), "oriented_in": oriented,
+            "contacts": Interval(contacts), "physx": len(physx), "places": len(us), "chosen": len(rule), "margins": int((rule.strategy == "margins").sum()),
             **{f"lead_{short}": Interval(lead.get_group(work)) for short, work in (("five", "5 degrees"), ("near", "near"), ("contacts", "contacts, near"))},
             "roots_faster": int((us["wide, from the roots"] < us.recommended).sum()), "coal": int(wrong["Coal, obb"]), "opcode": int(wrong["OPCODE"]), "physx_wrong": int(wrong["PhysX"]), "seeds": rows.seed.nunique(),
             "repetitions": rows.repetition.nunique()}
