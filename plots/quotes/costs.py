@@ -28,7 +28,7 @@ def cost(record):
     claim(min(pose, key=pose.get) == min(batched, key=batched.get) == "sphere", "spheres cost least")
     claim(max(pose, key=pose.get) == "kdop26", "26-DOPs cost most to pose")
     claim(max(batched, key=batched.get) == "shell", "shells cost most to test")
-    claim(share.max() < 1, "the model predicts too little")
+    claim(share.quantile(0.9) < 0.9, "the model predicts too little in nine of ten cells")
     busy = rows[rows.density != "sparse"]
     near, everywhere = fitted(busy), fitted(rows)
     claim(all((constants > 0).all() for constants, _ in near.values()), "where bodies are near each other all fitted costs are positive")

@@ -54,8 +54,8 @@ def best_of_ours(record):
     name = best["best variant"]
     much = (best.motion == "5 degrees") & (best["query"] != "distance") & (best.density != "sparse")
     little = (best.motion != "5 degrees") & (best["query"] == "touching")
-    claim(name[much].isin(["obb recursive-both", "rss recursive-both"]).all(), "boxes and rectangles, both descended, where much moves and "
-          "bodies are near each other")
+    boxes = name[much].isin(["obb recursive-both", "rss recursive-both"])
+    claim(boxes.mean() > 0.7, "boxes and rectangles, both descended, mostly, where much moves and bodies are near each other")
     alone = (best.motion == "5 degrees") & (best["query"] != "distance") & (best.density == "sparse")
     claim(not name[alone].isin(["obb recursive-both", "rss recursive-both"]).any(), "neither boxes nor rectangles, both descended, where most pairs are far apart and much moves")
     claim("fcl-obb" not in set(middle[middle["query"] == "distance"].peer), "FCL has no tree of oriented boxes for distances")
@@ -73,7 +73,7 @@ def best_of_ours(record):
     contacts = rows[(rows["query"] == "contacts") & (rows.density == "sparse") & (rows.peer == "")]
     return {"variants": ours.variant.nunique(), "recursive": ours[ours.strategy == "recursive"].variant.nunique(),
             "repetitions": rows.repetition.nunique(), "leads": [f"{lead:.1f}" for lead in leads], "leads_first": [f"{lead:.1f}" for lead in leads_first],
-            "much": int(much.sum()), "distance_rss": int(name[best["query"] == "distance"].str.startswith("rss").sum()), "distances": int((best["query"] == "distance").sum()),
+            "much": int(boxes.sum()), "much_cells": int(much.sum()), "distance_rss": int(name[best["query"] == "distance"].str.startswith("rss").sum()), "distances": int((best["query"] == "distance").sum()),
             "shortest": contacts.later_ns.min() / 1e3,
             "margins": name[little].str.endswith("margins").sum(), "asked": little.sum(),
             "shells": name.str.startswith("shell").sum(), "cells": len(name),
