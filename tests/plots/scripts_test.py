@@ -26,7 +26,7 @@ SPECS = {
                                                            stressor="offset"), None),
     "triangles_error": ("triangles-error", dict(set=2), dict(test="moller", set="random"), None),
 }
-BY_THEMSELVES = {"fan_outs"}  # has a test of its own, which says otherwise what is no record of its own
+BY_THEMSELVES = {"fronts"}  # has a test of its own, which says otherwise what is no record of its own
 # Drawn together with others, without a name of their own; or on one line with all that are the same.
 POOLED = {"cost_model": ["strategy"], "stability_map": ["volume"]}
 
