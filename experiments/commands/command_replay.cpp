@@ -104,8 +104,7 @@ void check(const Arguments& arguments) {
   if (!arguments.pairs.say_nothing() && !arguments.page.empty())
     throw Unusable("--page", "shows all pairs; not with --pairs, --without or --groups");
   if (!arguments.budget) return;
-  if (!arguments.page.empty())
-    throw Unusable("--page", "shows whole answers; not with --budget");
+  if (!arguments.page.empty()) throw Unusable("--page", "shows whole answers; not with --budget");
   if (arguments.variant.query != "touching")
     throw Unusable("--budget",
                    "answers whether surfaces touch; not with --query " + arguments.variant.query);

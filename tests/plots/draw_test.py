@@ -23,7 +23,7 @@ STRANGE = [
     ("best-rebuilds", dict(motion=3), dict(strategy=("deferred", STRATEGIES)), RECURSIVE),
     ("boxes-displacement", dict(set=1, displacement=4), dict(method="blocks", set="random"), None),
     ("boxes-fast", dict(set=2), dict(method=("blocks", METHODS[1]), set="random", motion="drift"), None),
-    ("boxes-figures-4-5", dict(boxes=3, set=1), dict(method=METHODS), None),
+    ("boxes-figures-4-5", dict(boxes=3), dict(method=METHODS), None),
     ("closest-features", dict(motion=2, mesh=2), dict(strategy=("recursive", STRATEGIES), mesh="icosphere:80"),
      RECURSIVE),
     ("distance-error", dict(relative_error=3), dict(volume="sphere", mesh="knot"), None),
