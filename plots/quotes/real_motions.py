@@ -20,6 +20,8 @@ def real_motions(record):
     middle = rows.groupby(["motion", "method"])[["us", "whole"]].median().unstack()
     libraries = list(peers.method.unique())
     us, whole = middle.us, middle.whole
+    alone, fixed_run = us[libraries].min(axis=1) / us.recommended, whole[libraries].min(axis=1) / whole[FIXED]
+    build = rows[rows.method == FIXED].groupby("motion").build_ns.median() / 1e6
     times, run = us[libraries].min(axis=1) / us[FIXED], whole[libraries].min(axis=1) / whole.recommended
     differ = peers.groupby(["method", "motion"]).differing.max().groupby("method").sum()
     claim(len(us) == 14, "fourteen motions are in the record")
@@ -31,7 +33,7 @@ def real_motions(record):
               f"{times[motion]:.1f}", f"{whole.recommended[motion]:.2f}", whole[libraries].loc[motion].idxmin(), f"{run[motion]:.1f}"] for motion in us.index]
     return {"rows": table, "others": len(us) - len(PLANNED), "planned": len(PLANNED), "count": len(us), "times": Interval(times), "run": Interval(run),
             "libraries": peers.method.str.split(",").str[0].nunique(), "five": int((times >= 5).sum()), "slowest_at": times.idxmin().split()[0],
-            "behind": int((run < 1).sum()), "frames": rows.frames.max(),
+            "behind": int((run < 1).sum()), "alone": Interval(alone), "alone_behind": int((alone < 1).sum()), "fixed_run_behind": int((fixed_run < 1).sum()), "build": Interval(build), "frames": rows.frames.max(),
             "bullet": int(differ["Bullet"]), "physx": int(differ["PhysX"]), "opcode": int(differ["OPCODE"])}
 
 
