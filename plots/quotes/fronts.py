@@ -133,7 +133,7 @@ def fixed(record):
         loss = np.where(above, table[kept], table[roots]) / table.min(axis=1)
         losses.append(loss)
         for name, other, of, when in ((names[0], names[1], ratio[above], f"survival from {limit:.2f} on"), (names[1], names[0], 1 / ratio[~above], "less survives")):
-            rows.append([f"{query}, {when}", name, f"{of.median():.1f} ({Interval(of):.2f}) times as fast as {other}; the other is faster in {(of < 1).sum()} of {len(of)} scenes"])
+            rows.append([f"{query}, {when}", name, f"{of.median():.2f} ({Interval(of):.2f}) times as fast as {other}; the other is faster in {(of < 1).sum()} of {len(of)} scenes"])
         found[f"{query}_configurations"] = table.shape[1]
     losses = pd.concat(losses)
     return {**found, "rows": rows, "off": losses.median(), "most": losses.max(), "wrong": 100 * (losses > fronts.MISTAKEN).mean()}
