@@ -68,12 +68,18 @@ def is_ours(record):
 
 
 def paragraphs_on(record):
-    """Those that link to this record, and what follows under the same heading until another record is linked to; their
-    numbers are held against the records by a test. Limits are those of all records."""
+    """Those that link to this record, and what follows under the same heading until another record is linked to; of tables
+    that link to records, the rows that link to this one. Their numbers are held against the records by a test. Limits are
+    those of all records."""
     found, here, of_all = [], False, False
     for part in story() if is_ours(record) else []:
         if part.startswith("#"):
             here, of_all = False, part.startswith("## Limits")
+        elif part.startswith("|") and LINK.search(part):
+            head, rule, *lines = part.splitlines()
+            if lines := [line for line in lines if mentions(line, record)]:
+                found.append("\n".join([head, rule, *lines]))
+            continue
         elif not part.startswith("!") and not of_all and LINK.search(part):
             here = bool(mentions(part, record))
         if here and not part.startswith(("!", "#")):
