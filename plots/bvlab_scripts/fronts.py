@@ -6,6 +6,8 @@ usage: plots/script fronts RECORD [--out DIR] [--table-only]
 RECORD is that of fronts; the records of fronts-distance, best-rebuilds and coherence lie beside it.
 """
 
+from functools import cache
+
 import matplotlib
 import numpy as np
 import pandas as pd
@@ -42,6 +44,7 @@ def medians(record, of, cell=CELL):
     return middle.groupby([rows[name] for name in (*cell, "strategy")]).median().unstack("strategy")
 
 
+@cache
 def read(record):
     """Times in ns per pair without the first frame, and the survival of the scene, in the index; of distances that of contacts."""
     time = pd.concat([medians(part, ["later_ns", "later_pairs"]) for part in (record, record.parent / "fronts-distance")])
@@ -62,8 +65,7 @@ def survivals(time):
 
 def chosen(time, threshold):
     """What the rule takes in each cell: margins where the survival is at least the threshold."""
-    frontless = time[[name for name in FRONTLESS if name in time]].min(axis=1)
-    return pd.Series(np.where(survivals(time) >= threshold, time.margins, frontless), time.index)
+    return pd.Series(np.where(survivals(time) >= threshold, time.margins, time[FRONTLESS].min(axis=1)), time.index)
 
 
 def off(time, threshold):
