@@ -80,13 +80,15 @@ std::unique_ptr<detail::AnyPairs<Query>> wide(std::span<const TriangleMesh> mesh
                                               const Trace& trace, Run& run) {
   std::unique_ptr<detail::AnyPairs<Query>> made;
   WideVolumes::with(run.variant.volume, [&]<class V>(std::type_identity<V>) {
-    constexpr int fan_out = detail::fan_out_of<Kernel, typename V::scalar>;
-    using Trees = detail::WideHierarchies<typename Kernel::template Hierarchy<V, fan_out>>;
-    const auto trees = std::make_shared<Trees>(meshes, run.variant, 1);
-    const auto shapes = shapes_over(meshes, trees->all(), trace.objects);
+    using InLoops = detail::InLoops<V>;
+    using Tree = detail::TreeOf<InLoops, Kernel>;
+    const auto trees = std::make_shared<detail::WideTreesOf<detail::TreeOf<V, Kernel>, Tree>>(
+        meshes, run.variant, 1);
+    const auto shapes = trees->shapes(meshes, trace.objects);
     const auto with = [&]<class Memory>(const Memory& memory) {
-      using Pairs = WidePairs<V, fan_out, Memory, Kernel>;
-      made = std::make_unique<detail::PairsOver<Pairs, Query, Trees>>(trees, Pairs(shapes, memory));
+      using Pairs = WidePairs<InLoops, detail::fan_out_of<Kernel>, Memory, Kernel>;
+      made = std::make_unique<detail::PairsOver<Pairs, Query, detail::WideTrees<Tree>>>(
+          trees, Pairs(shapes, memory));
     };
     if (run.variant.strategy == WideMargins::name)
       with(WideMargins());

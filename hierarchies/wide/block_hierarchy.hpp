@@ -20,38 +20,23 @@
 #include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/local_mesh.hpp"
 #include "hierarchies/geometry/threads.hpp"
+#include "hierarchies/wide/block_tree.hpp"
 #include "hierarchies/wide/fitting.hpp"
-#include "hierarchies/wide/support_map.hpp"
-#include "hierarchies/wide/triangle_lanes.hpp"
 
 namespace bvlab {
 
 template <BoundingVolume V>
-class BlockHierarchy {
+class BlockHierarchy : public BlockTree {
  public:
-  using scalar = typename V::scalar;
-  static_assert(std::is_same_v<scalar, float>, "a lane holds a number and a node alike");
-  static constexpr int fan_out = 4;
+  static_assert(std::is_same_v<typename V::scalar, scalar>);
   static constexpr int fields = sizeof(V) / sizeof(scalar);
 
-  /// The word that names a node in a lane: its index, and a flag for leaves.
-  static constexpr std::uint32_t leaf_flag = 0x80000000u;
-  static constexpr std::uint32_t number_of(std::uint32_t name) { return name & ~leaf_flag; }
-
-  struct alignas(32) Node {
+  struct alignas(32) Node : BlockTree::Node {
     V volume;
-    scalar size;
-    std::uint32_t first;          ///< the index of its row and block; leaf: of its first triangle
-    std::uint16_t grandchildren;  ///< which lanes of its block are in use
-    std::uint8_t children;        ///< which lanes of its row hold a child; leaf: of its triangles
-    std::uint8_t leaf;            ///< 0 or 1
   };
-
   template <std::size_t width>
-  struct alignas(64) Lanes {
+  struct alignas(64) Lanes : BlockTree::Lanes<width> {
     std::array<std::array<scalar, width>, fields> volume;
-    std::array<scalar, width> size;
-    std::array<std::uint32_t, width> name;
   };
   using Row = Lanes<4>;
   using Block = Lanes<16>;
@@ -66,14 +51,15 @@ class BlockHierarchy {
 
  private:
   BlockHierarchy(const LocalMesh& local, const Topology& binary, Fit fit, std::uint32_t leaf_size,
-                 Threads& threads)
-      : origin_(local.origin()),
-        sphere_(local.mesh()),
-        supports_(local.mesh(), sphere_.centre, threads) {
+                 Threads& threads) {
+    origin_ = local.origin();
+    sphere_ = MeshSphere(local.mesh());
+    supports_ = SupportMap(local.mesh(), sphere_.centre, threads);
     const TriangleMesh& mesh = local.mesh();
     const WideTopology topology =
         collapsed(mesh, binary, fan_out, std::min<std::uint32_t>(leaf_size, fan_out));
     nodes_.resize(topology.nodes.size()), node_spheres_.resize(topology.nodes.size());
+    node_heads_ = Heads<BlockTree::Node>(nodes_.data());
     const OrderedTriangles triangles(mesh, topology.primitives, threads);
     std::vector<Reach> reach(threads.count());
     threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
@@ -81,7 +67,7 @@ class BlockHierarchy {
       assert(node.count <= fan_out);
       const V volume = triangles.template volume<V>(node.begin, node.end, fit);
       const auto children = static_cast<std::uint8_t>((1u << node.count) - 1);
-      nodes_[i] = {volume, size_of(volume), 0, 0, children, node.leaf};
+      nodes_[i] = {{size_of(volume), 0, 0, children, node.leaf}, volume};
       node_spheres_[i] = NodeSphere(triangles.points(node.begin, node.end));
       reach[worker].add(volume);
     });
@@ -91,37 +77,19 @@ class BlockHierarchy {
   }
 
  public:
-  std::size_t size() const { return nodes_.size(); }
   const Node& node(std::uint32_t i) const { return nodes_[i]; }
-  const NodeSphere& node_sphere(std::uint32_t i) const { return node_spheres_[i]; }
-  /// The row of an inner node, by its `first`.
   const Row& row(std::uint32_t first) const { return rows_[first]; }
   const Block& block(std::uint32_t first) const { return blocks_[first]; }
-  /// The row for a root that is a leaf.
   const Row& root_alone() const { return rows_.back(); }
-  /// The corners of a leaf, by its `first`.
-  const TriangleLanes<scalar, 4>& corners(std::uint32_t first) const {
-    return corners_[first / fan_out];
-  }
-  /// The mesh's index of the triangle in lane `k - first` of a leaf.
-  std::uint32_t triangle(std::uint32_t k) const { return triangles_[k]; }
-  std::uint32_t root() const { return nodes_[0].leaf ? leaf_flag : 0; }
-  /// The origin of the mesh (LocalMesh), in its frame: all else is relative to it.
-  const Vec3<double>& origin() const { return origin_; }
-  /// An upper bound on the distance of vertices and volumes from the origin.
-  double reach() const { return reach_; }
-
-  const MeshSphere& sphere() const { return sphere_; }
-  /// The support map about the sphere's centre.
-  const SupportMap& supports() const { return supports_; }
 
  private:
   /// Fills a row and a block for each inner node, and the row for the root.
   void put_in_blocks(const WideTopology& topology) {
-    std::uint32_t inner = 0;
     for (Node& node : nodes_)
-      if (!node.leaf) node.first = inner++;
-    rows_.resize(inner + 1), blocks_.resize(inner);
+      if (!node.leaf) node.first = inner_++;
+    rows_.resize(inner_ + 1), blocks_.resize(inner_);
+    row_heads_ = Heads<BlockTree::Row>(rows_.data());
+    block_heads_ = Heads<BlockTree::Block>(blocks_.data());
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       Node& node = nodes_[i];
       if (node.leaf) continue;
@@ -166,15 +134,8 @@ class BlockHierarchy {
   }
 
   LargeVector<Node> nodes_;
-  LargeVector<NodeSphere> node_spheres_;
   LargeVector<Row> rows_;
   LargeVector<Block> blocks_;
-  LargeVector<TriangleLanes<scalar, 4>> corners_;
-  LargeVector<std::uint32_t> triangles_;
-  double reach_ = 0;
-  Vec3<double> origin_;
-  MeshSphere sphere_;
-  SupportMap supports_;
 };
 
 }  // namespace bvlab

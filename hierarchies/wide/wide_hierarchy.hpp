@@ -31,33 +31,23 @@
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/wide/fitting.hpp"
 #include "hierarchies/wide/lanes.hpp"
-#include "hierarchies/wide/support_map.hpp"
-#include "hierarchies/wide/triangle_lanes.hpp"
+#include "hierarchies/wide/wide_tree.hpp"
 
 namespace bvlab {
 
-/// The fan-out of trees where none is asked for: as many children as a register has lanes. A wider
-/// node would be tested in several steps; none is narrower than two.
-template <class T>
-inline constexpr int native_fan_out = std::clamp(native_width<T>, 2, 16);
-
 template <BoundingVolume V, int F>
-class WideHierarchy {
-  static_assert(F == 2 || F == 4 || F == 8 || F == 16);
+class WideHierarchy : public WideTree<typename V::scalar, F> {
+  using Tree = WideTree<typename V::scalar, F>;
+  using Tree::whole, Tree::nothing, Tree::node_spheres_, Tree::corners_, Tree::triangles_,
+      Tree::leaves_, Tree::reach_, Tree::origin_, Tree::sphere_, Tree::supports_;
 
  public:
   using scalar = typename V::scalar;
-  using Lane = Batch<scalar, F>;
-  static constexpr int fan_out = F;
+  using Lane = typename Tree::Lane;
+  using Tree::size;
 
-  /// The data of a node that are read before it is tested or opened.
-  struct alignas(32) Node {
+  struct alignas(32) Node : Tree::Node {
     V volume;
-    scalar size;
-    std::uint32_t first;  ///< of its children, once made; leaf: of its triangles, see triangle()
-    std::uint16_t lanes;  ///< which of its lanes hold a child, once made
-    std::uint16_t leaf;   ///< 0 or 1
-    std::uint32_t made;   ///< `whole` once its children are, else see once.hpp
   };
 
   /// The children of a node, one per lane.
@@ -92,10 +82,10 @@ class WideHierarchy {
   }
 
  private:
-  WideHierarchy(const LocalMesh& local, const WideTopology& topology, Fit fit, Threads& threads)
-      : origin_(local.origin()),
-        sphere_(local.mesh()),
-        supports_(local.mesh(), sphere_.centre, threads) {
+  WideHierarchy(const LocalMesh& local, const WideTopology& topology, Fit fit, Threads& threads) {
+    origin_ = local.origin();
+    sphere_ = MeshSphere(local.mesh());
+    supports_ = SupportMap(local.mesh(), sphere_.centre, threads);
     const TriangleMesh& mesh = local.mesh();
     std::vector<std::uint32_t> leaves;
     for (std::uint32_t i = 0; i < topology.nodes.size(); ++i)
@@ -125,27 +115,10 @@ class WideHierarchy {
   }
 
  public:
-  /// The number of nodes; on demand, the most that there may be.
-  std::size_t size() const { return nodes_.size(); }
   /// Those that exist: of a tree on demand the root and the children of all nodes that were made.
   std::size_t known() const { return unmade_ ? unmade_->nodes.load() : size(); }
   const Node& node(std::uint32_t i) const { return nodes_[i]; }
-  const NodeSphere& node_sphere(std::uint32_t i) const { return node_spheres_[i]; }
   const Siblings& children(std::uint32_t i) const { return siblings_[i]; }
-  /// The corners of a leaf, by its `first`.
-  const TriangleLanes<scalar, F>& corners(std::uint32_t first) const { return corners_[first / F]; }
-  /// The leaf that holds triangle k.
-  std::uint32_t leaf_of(std::uint32_t k) const { return leaves_[k / F]; }
-  /// The mesh's index of the triangle in lane `k - first` of a leaf.
-  std::uint32_t triangle(std::uint32_t k) const { return triangles_[k]; }
-  /// The origin of the mesh (LocalMesh), in its frame: all else is relative to it.
-  const Vec3<double>& origin() const { return origin_; }
-  /// An upper bound on the distance of vertices and volumes from the origin.
-  double reach() const { return reach_; }
-
-  const MeshSphere& sphere() const { return sphere_; }
-  /// The support map about the sphere's centre; of a tree on demand it is empty.
-  const SupportMap& supports() const { return supports_; }
   /// The mesh whose support map is not made, about the origin; null where it is.
   const TriangleMesh* mesh_of_supports() const {
     return unmade_ ? &unmade_->local.mesh() : nullptr;
@@ -173,7 +146,6 @@ class WideHierarchy {
   }
 
  private:
-  static constexpr std::uint32_t whole = 1, nothing = 0;
   /// Children of nodes of more triangles are bounded by their boxes alone: 20 ns a triangle, and
   /// 300 with slabs, which for so many save up to a fifth of the tests.
   static constexpr std::uint32_t large = TriangleColumns::large;
@@ -192,14 +164,11 @@ class WideHierarchy {
 
   /// On demand.
   WideHierarchy(LocalMesh&& local, std::uint32_t leaf_size)
-      : nodes_(LargeAllocator<Node>(Paging::when_written)),
-        node_spheres_(LargeAllocator<NodeSphere>(Paging::when_written)),
-        siblings_(LargeAllocator<Siblings>(Paging::when_written)),
-        corners_(LargeAllocator<TriangleLanes<scalar, F>>(Paging::when_written)),
-        triangles_(LargeAllocator<std::uint32_t>(Paging::when_written)),
-        leaves_(LargeAllocator<std::uint32_t>(Paging::when_written)),
-        origin_(local.origin()),
-        sphere_(local.mesh(), local.box()) {
+      : Tree(Paging::when_written),
+        nodes_(LargeAllocator<Node>(Paging::when_written)),
+        siblings_(LargeAllocator<Siblings>(Paging::when_written)) {
+    origin_ = local.origin();
+    sphere_ = MeshSphere(local.mesh(), local.box());
     const Eigen::AlignedBox3d box = local.box();
     // Of a box [a, b] within one from -m to m, |a + b| / 2 + |b - a| / 2 is at most the root of
     // |a|^2 + |b|^2, and so of 2 |m|^2. A slab-box is rounded twice, after its box.
@@ -288,8 +257,8 @@ class WideHierarchy {
     unmade_->ranges.resize(nodes);
   }
   void make_room(std::size_t nodes, std::size_t leaves) {
-    nodes_.resize(nodes), node_spheres_.resize(nodes), siblings_.resize(nodes);
-    leaves_.resize(leaves), corners_.resize(leaves), triangles_.resize(leaves * F);
+    nodes_.resize(nodes), siblings_.resize(nodes);
+    Tree::make_room(Heads<typename Tree::Node>(nodes_.data()), nodes, leaves);
   }
 
   /// Returns the volume's reach.
@@ -297,7 +266,7 @@ class WideHierarchy {
                   const std::pair<V, NodeSphere>& around, std::uint32_t made) const {
     assert(node.count <= F);
     const auto& [volume, sphere] = around;
-    nodes_[i] = {volume, size_of(volume), node.first, all_lanes(node.count), node.leaf, made};
+    nodes_[i] = {{size_of(volume), node.first, all_lanes(node.count), node.leaf, made}, volume};
     node_spheres_[i] = sphere;
     return static_cast<double>(reach_of(volume));
   }
@@ -325,15 +294,7 @@ class WideHierarchy {
 
   // Of a tree on demand, what is not made is not written.
   mutable LargeVector<Node> nodes_;
-  mutable LargeVector<NodeSphere> node_spheres_;
   mutable LargeVector<Siblings> siblings_;
-  mutable LargeVector<TriangleLanes<scalar, F>> corners_;
-  mutable LargeVector<std::uint32_t> triangles_;
-  mutable LargeVector<std::uint32_t> leaves_;  // the node of each leaf, in the order of corners_
-  double reach_ = 0;
-  Vec3<double> origin_;
-  MeshSphere sphere_;
-  SupportMap supports_;
   std::unique_ptr<Unmade> unmade_;
 };
 

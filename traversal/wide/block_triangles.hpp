@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "hierarchies/wide/block_hierarchy.hpp"
 #include "hierarchies/wide/lanes.hpp"
 #include "traversal/node_pair.hpp"
 #include "traversal/primitives/triangle_filter.hpp"
@@ -18,9 +17,9 @@
 
 namespace bvlab {
 
-template <BoundingVolume V>
+/// Tree is a BlockTree.
+template <class Tree>
 class BlockTriangles {
-  using Tree = BlockHierarchy<V>;
   using S = SixteenLanes;
   static constexpr std::size_t parts = 16 / S::size();
 

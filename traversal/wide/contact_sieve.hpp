@@ -8,19 +8,20 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "hierarchies/wide/block_hierarchy.hpp"
-#include "hierarchies/wide/wide_hierarchy.hpp"
+#include "hierarchies/wide/lanes.hpp"
+#include "hierarchies/wide/triangle_lanes.hpp"
 #include "traversal/wide/contact_batch.hpp"
 #include "traversal/wide/sixteen_lanes.hpp"
 #include "traversal/wide/work_queue.hpp"
 
 namespace bvlab {
 
-/// Triangles of a against all triangles of a leaf of b.
-template <BoundingVolume V, int F>
+/// Triangles of a against all triangles of a leaf of b. Tree is a WideTree.
+template <class Tree>
 class SiblingsSieve {
-  using S = Batch<typename V::scalar, F>;
-  using Trees = std::array<const WideHierarchy<V, F>*, 2>;
+  static constexpr int F = Tree::fan_out;
+  using S = typename Tree::Lane;
+  using Trees = std::array<const Tree*, 2>;
 
  public:
   void begin() { leaf_of_a_.forget(); }
@@ -56,10 +57,9 @@ class SiblingsSieve {
   TransformedLeaf<F> leaf_of_a_;
 };
 
-/// Up to four triangles of a leaf of a against up to four of a leaf of b.
-template <BoundingVolume V>
+/// Up to four triangles of a leaf of a against up to four of a leaf of b. Tree is a BlockTree.
+template <class Tree>
 class BlocksSieve {
-  using Tree = BlockHierarchy<V>;
   using S = SixteenLanes;
   using Trees = std::array<const Tree*, 2>;
 

@@ -12,12 +12,10 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 
-#include "hierarchies/wide/block_hierarchy.hpp"
+#include "traversal/wide/block_tests.hpp"
 #include "traversal/wide/block_triangles.hpp"
 #include "traversal/wide/contact_sieve.hpp"
 #include "traversal/wide/relative_frame.hpp"
@@ -37,22 +35,23 @@ struct MixedKernel {
   /// Nodes whose sizes differ by no more than this factor are alike.
   static constexpr float alike = 2;
 
-  template <BoundingVolume V, int F>
-  using Hierarchy = BlockHierarchy<V>;
-  template <BoundingVolume V, int F>
-  using Body = WideBody<BlockHierarchy<V>>;
+  template <class V, int F>
+  using Hierarchy = typename BlockTests<V>::Tree;
+  template <class V, int F>
+  using Body = WideBody<Hierarchy<V, F>>;
 
-  template <BoundingVolume V, int F>
+  template <class V, int F>
   class PairFrame {
-    static_assert(F == BlockHierarchy<V>::fan_out, "blocks are four by four");
-    using Tree = BlockHierarchy<V>;
+    using Tests = BlockTests<V>;
+    using Tree = typename Tests::Tree;
+    static_assert(F == Tree::fan_out, "blocks are four by four");
     using Node = typename Tree::Node;
+    using Row = typename Tree::Row;
     using Block = typename Tree::Block;
-    using SiblingTest = SiblingTestOf<V>;
 
    public:
     using S = SixteenLanes;
-    using ContactSieve = BlocksSieve<V>;
+    using ContactSieve = BlocksSieve<Tree>;
     static constexpr std::size_t parts = 16 / S::size();
 
     void begin(Body<V, F>& a, Body<V, F>& b) {
@@ -66,58 +65,14 @@ struct MixedKernel {
       triangles.push(touched, 0);
     }
 
-    /// Four children of a, posed into b's frame, against four of b.
-    struct FourByFour {
+    /// Four children of a against four of b.
+    struct FourByFour : Tests::Four {
+      using Tests::Four::row_a, Tests::Four::row_b;
       const PairFrame& pair_frame;
-      const typename Tree::Row &row_a, &row_b;
       NodePair node;
       std::uint64_t used;
 
       std::uint64_t lanes() const { return used; }
-      struct Unused {};
-      using Posed =
-          decltype(SiblingTest::in_lanes(std::declval<const Over<V, S>&>(),
-                                         std::declval<const typename SiblingTest::FrameChange&>()));
-      struct LastPosed {
-        std::size_t child = 4;
-        Posed volume;
-      };
-      /// Where a register has fewer than four lanes, several hold the same child of a: it is posed
-      /// once.
-      [[no_unique_address]] mutable std::conditional_t<(S::size() < 4), LastPosed, Unused> last =
-          {};
-      [[gnu::always_inline]] Posed posed(std::size_t part) const {
-        const auto pose = [&]() __attribute__((always_inline)) {
-          return SiblingTest::in_lanes(
-              volumes([&](std::size_t k) { return each_of_four(row_a.volume[k].data(), part); }),
-              pair_frame.frames_.change[1]);
-        };
-        if constexpr (S::size() >= 4) {
-          return pose();
-        } else {
-          const std::size_t child = part * S::size() / 4;
-          if (child != last.child) last = {child, pose()};
-          return last.volume;
-        }
-      }
-      [[gnu::always_inline]] Over<V, S> others(std::size_t part) const {
-        return volumes([&](std::size_t k) { return four_repeated(row_b.volume[k].data(), part); });
-      }
-      [[gnu::always_inline]] S sizes(std::size_t part) const {
-        return each_of_four(row_a.size.data(), part) + four_repeated(row_b.size.data(), part);
-      }
-      [[gnu::always_inline]] OverlapLanes<S> overlap(std::size_t part) const {
-        return SiblingTest::template overlap<S>(posed(part), pair_frame.frames_.change[1],
-                                                others(part), sizes(part));
-      }
-      [[gnu::always_inline]] GapLanes<S> separation(std::size_t part) const {
-        return separation_of<SiblingTest, S>(posed(part), pair_frame.frames_.change[1],
-                                             others(part), sizes(part));
-      }
-      [[gnu::always_inline]] S gaps(std::size_t part) const {
-        return SiblingTest::template gaps<S>(posed(part), pair_frame.frames_.change[1],
-                                             others(part));
-      }
       std::uint64_t leaf_lanes() const {
         return highest_bits(each_of_four(row_a.name.data()) & four_repeated(row_b.name.data()));
       }
@@ -135,33 +90,15 @@ struct MixedKernel {
       }
     };
 
-    /// One volume, posed into the other body's frame, against the sixteen lanes of a block.
-    struct OneBySixteen {
+    /// One volume against the sixteen lanes of a block.
+    struct OneBySixteen : Tests::One {
+      using Tests::One::block;
       const PairFrame& pair_frame;
       std::size_t side;  ///< whose nodes are in the lanes
-      const Block& block;
       std::uint32_t single, name;
       std::uint64_t used;
-      typename SiblingTest::PosedNode posed;
 
       std::uint64_t lanes() const { return used; }
-      [[gnu::always_inline]] Over<V, S> others(std::size_t part) const {
-        return volumes([&](std::size_t k) { return of_sixteen(block.volume[k].data(), part); });
-      }
-      [[gnu::always_inline]] S sizes(std::size_t part) const {
-        return of_sixteen(block.size.data(), part) + S(posed.size);
-      }
-      [[gnu::always_inline]] OverlapLanes<S> overlap(std::size_t part) const {
-        return SiblingTest::template overlap<S>(posed, pair_frame.frames_.change[side],
-                                                others(part), sizes(part));
-      }
-      [[gnu::always_inline]] GapLanes<S> separation(std::size_t part) const {
-        return separation_of<SiblingTest, S>(posed, pair_frame.frames_.change[side], others(part),
-                                             sizes(part));
-      }
-      [[gnu::always_inline]] S gaps(std::size_t part) const {
-        return SiblingTest::template gaps<S>(posed, pair_frame.frames_.change[side], others(part));
-      }
       std::uint64_t leaf_lanes() const {
         return highest_bits(of_sixteen(block.name.data()) & (NodesOfLanes{} + name));
       }
@@ -188,20 +125,29 @@ struct MixedKernel {
       const bool leaves = pair.a & pair.b & Tree::leaf_flag;  // both roots are leaves
       if ((inner && a.size <= alike * b.size && b.size <= alike * a.size) || leaves) {
         counter.posed(static_cast<std::uint64_t>(std::popcount(a.children)));
-        test(FourByFour{*this,
-                        leaves ? trees_[0]->root_alone() : trees_[0]->row(a.first),
-                        leaves ? trees_[1]->root_alone() : trees_[1]->row(b.first),
+        test(FourByFour{{leaves ? trees_[0]->root_alone() : trees_[0]->row(a.first),
+                         leaves ? trees_[1]->root_alone() : trees_[1]->row(b.first),
+                         frames_.change[1]},
+                        *this,
                         {i, j},
                         leaves ? 1 : four_by_four(a.children, b.children)});
         return;
       }
       counter.posed(1);
       if (!a.leaf && (b.leaf || a.size > b.size))
-        test(OneBySixteen{*this, 0, trees_[0]->block(a.first), j, pair.b, a.grandchildren,
-                          SiblingTest::posed_node(b.volume, b.size, frames_.change[0])});
+        test(OneBySixteen{{b, trees_[0]->block(a.first), frames_.change[0]},
+                          *this,
+                          0,
+                          j,
+                          pair.b,
+                          a.grandchildren});
       else
-        test(OneBySixteen{*this, 1, trees_[1]->block(b.first), i, pair.a, b.grandchildren,
-                          SiblingTest::posed_node(a.volume, a.size, frames_.change[1])});
+        test(OneBySixteen{{a, trees_[1]->block(b.first), frames_.change[1]},
+                          *this,
+                          1,
+                          i,
+                          pair.a,
+                          b.grandchildren});
     }
 
     /// Begins to load what the step of a pair of nodes will read.
@@ -220,7 +166,7 @@ struct MixedKernel {
         lines(trees_[1]->block(b.first));
     }
 
-    using Triangles = BlockTriangles<V>;
+    using Triangles = BlockTriangles<Tree>;
     [[gnu::always_inline]] Triangles triangles(const NodePair& pair) const {
       return {trees_, frames_.transform, pair};
     }
@@ -241,19 +187,6 @@ struct MixedKernel {
     }
 
    private:
-    /// A batch of volumes, filled field by field.
-    template <class Field>
-    [[gnu::always_inline]] static Over<V, S> volumes(const Field& field) {
-      static_assert(sizeof(Over<V, S>) == sizeof(S) * Tree::fields);
-      Over<V, S> result;
-#pragma GCC unroll 32
-      for (std::size_t k = 0; k < Tree::fields; ++k) {
-        const S lanes = field(k);
-        std::memcpy(reinterpret_cast<char*>(&result) + sizeof lanes * k, &lanes, sizeof lanes);
-      }
-      return result;
-    }
-
     /// Pairs of two leaves go to the queue of triangles.
     template <class Order, class From>
     [[gnu::always_inline]] static void push_nodes(WorkQueue& nodes, WorkQueue& triangles,
@@ -269,7 +202,7 @@ struct MixedKernel {
     }
 
     std::array<const Tree*, 2> trees_;
-    TwoFrames<SiblingTest> frames_;
+    TwoFrames<typename Tests::SiblingTest> frames_;
   };
 };
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <new>
@@ -63,43 +64,70 @@ struct TwoFrames {
     const RelativePose a_from_b(a.orthonormal_pose(), b.orthonormal_pose());
     const RelativePose b_from_a(b.orthonormal_pose(), a.orthonormal_pose());
     const double reach_a = a.hierarchy().reach(), reach_b = b.hierarchy().reach();
-    // Constructed in place: a copy in wider pieces than were written would stall.
-    ::new (&change[1]) FrameChange(SiblingTest::frame_change(a_from_b, reach_a, reach_b));
-    ::new (&change[0]) FrameChange(SiblingTest::frame_change(b_from_a, reach_b, reach_a));
+    put_change(1, a_from_b, a.hierarchy(), b.hierarchy());
+    put_change(0, b_from_a, b.hierarchy(), a.hierarchy());
     transform[0].begin(a_from_b, reach_a, reach_b);
     transform[1].begin(b_from_a, reach_b, reach_a);
   }
+
+ private:
+  /// Constructed in place: a copy in wider pieces than were written would stall.
+  template <class Tree>
+  [[gnu::always_inline]] void put_change(std::size_t side, const RelativePose& pose,
+                                         const Tree& tree, const Tree& other) {
+    if constexpr (std::constructible_from<FrameChange, RelativePose, Tree, Tree>)
+      ::new (&change[side]) FrameChange(pose, tree, other);
+    else
+      ::new (&change[side])
+          FrameChange(SiblingTest::frame_change(pose, tree.reach(), other.reach()));
+  }
 };
 
-/// Two bodies over wide trees. A side is 0 for a and 1 for b.
-template <BoundingVolume V, int F>
-class RelativeFrame {
+/// Two wide trees and the transforms between their frames. A side is 0 for a and 1 for b.
+template <class TreeType, class SiblingTest>
+class FramesOfTrees {
+ public:
+  using Tree = TreeType;
+
+  void begin(const WideBody<Tree>& a, const WideBody<Tree>& b) {
+    trees_ = {&a.hierarchy(), &b.hierarchy()};
+    frames_.begin(a, b);
+  }
+  const CornerTransform& a_to_b() const { return frames_.transform[0]; }
+  ReferenceSphere reference_sphere(std::size_t side, std::uint32_t node) const {
+    return reference_sphere_of(trees_[side]->node_sphere(node), side, frames_.transform);
+  }
+
+ protected:
+  std::array<const Tree*, 2> trees_;
+  TwoFrames<SiblingTest> frames_;
+};
+
+/// The tests of two wide trees of one volume.
+template <class V, int F>
+class RelativeFrame : public FramesOfTrees<WideHierarchy<V, F>, SiblingTestOf<V>> {
   using SiblingTest = SiblingTestOf<V>;
   using T = typename V::scalar;
   using S = Batch<T, F>;
-  using Hierarchy = WideHierarchy<V, F>;
+  using Frames = FramesOfTrees<WideHierarchy<V, F>, SiblingTest>;
+  using Frames::trees_, Frames::frames_;
 
  public:
   using PosedNode = typename SiblingTest::PosedNode;
-
-  void begin(WideBody<Hierarchy>& a, WideBody<Hierarchy>& b) {
-    hierarchies_ = {&a.hierarchy(), &b.hierarchy()};
-    frames_.begin(a, b);
-  }
 
   /// A node of `side`, in the frame of the other side.
   template <class Counter>
   [[gnu::always_inline]] PosedNode posed_node(std::size_t side, std::uint32_t node,
                                               Counter& counter) const {
     counter.posed(1);
-    const auto& of = hierarchies_[side]->node(node);
+    const auto& of = trees_[side]->node(node);
     return SiblingTest::posed_node(of.volume, of.size, frames_.change[1 - side]);
   }
   /// The child of a node of `side` in a lane.
   template <class Counter>
   PosedNode posed_child(std::size_t side, std::uint32_t node, int lane, Counter& counter) const {
     counter.posed(1);
-    const auto& of = hierarchies_[side]->children(node);
+    const auto& of = trees_[side]->children(node);
     return SiblingTest::posed_node(lane_of<V>(of.volumes, lane),
                                    T(of.size[static_cast<std::size_t>(lane)]),
                                    frames_.change[1 - side]);
@@ -108,32 +136,28 @@ class RelativeFrame {
   /// Tests `posed`, of the other side, against all children of a node of `side`.
   [[gnu::always_inline]] OverlapLanes<S> overlap(std::size_t side, std::uint32_t node,
                                                  const PosedNode& posed) const {
-    const auto& lanes = hierarchies_[side]->children(node);
+    const auto& lanes = trees_[side]->children(node);
     return SiblingTest::template overlap<S>(posed, frames_.change[side], lanes.volumes,
                                             lanes.size + S(posed.size));
   }
   [[gnu::always_inline]] S gaps(std::size_t side, std::uint32_t node,
                                 const PosedNode& posed) const {
     return SiblingTest::template gaps<S>(posed, frames_.change[side],
-                                         hierarchies_[side]->children(node).volumes);
+                                         trees_[side]->children(node).volumes);
   }
   /// A lower bound on the distance to each lane, negative where they may overlap; cheaper than
   /// gaps, and as tight for volumes that are near each other.
   [[gnu::always_inline]] GapLanes<S> separation(std::size_t side, std::uint32_t node,
                                                 const PosedNode& posed) const {
-    const auto& lanes = hierarchies_[side]->children(node);
+    const auto& lanes = trees_[side]->children(node);
     return separation_of<SiblingTest, S>(posed, frames_.change[side], lanes.volumes,
                                          lanes.size + S(posed.size));
   }
 
-  const CornerTransform& a_to_b() const { return frames_.transform[0]; }
-  ReferenceSphere reference_sphere(std::size_t side, std::uint32_t node) const {
-    return reference_sphere_of(hierarchies_[side]->node_sphere(node), side, frames_.transform);
+  /// What a test of a node's children will read.
+  const void* lanes(std::size_t side, std::uint32_t node) const {
+    return &trees_[side]->children(node);
   }
-
- private:
-  std::array<const Hierarchy*, 2> hierarchies_;
-  TwoFrames<SiblingTest> frames_;
 };
 
 }  // namespace bvlab

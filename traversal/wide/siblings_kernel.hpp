@@ -53,20 +53,21 @@ struct SiblingsKernel {
   /// The nearest of all open pairs is taken first (see WorkQueue).
   static constexpr bool nearest_child_first = false;
 
-  template <BoundingVolume V, int F>
-  using Hierarchy = WideHierarchy<V, F>;
-  template <BoundingVolume V, int F>
-  using Body = WideBody<WideHierarchy<V, F>>;
+  template <class V, int F>
+  using Hierarchy = typename RelativeFrame<V, F>::Tree;
+  template <class V, int F>
+  using Body = WideBody<Hierarchy<V, F>>;
 
-  template <BoundingVolume V, int F>
+  template <class V, int F>
   class PairFrame {
     using Body = SiblingsKernel::Body<V, F>;
     using Frame = RelativeFrame<V, F>;
-    using Node = typename WideHierarchy<V, F>::Node;
+    using Tree = typename Frame::Tree;
+    using Node = typename Tree::Node;
 
    public:
     using S = Batch<typename V::scalar, F>;
-    using ContactSieve = SiblingsSieve<V, F>;
+    using ContactSieve = SiblingsSieve<Tree>;
     static constexpr std::size_t parts = 1;
     /// Whether volumes can be tested against triangles.
     static constexpr bool tests_triangles =
@@ -186,7 +187,7 @@ struct SiblingsKernel {
       if (tests_triangles && a.leaf & b.leaf)
         return lines(&hierarchies_[1]->corners(b.first), sizeof(TriangleLanes<float, F>));
       const std::size_t side = larger(a, b);
-      lines(&hierarchies_[side]->children(side ? pair.b : pair.a), 12 * 64);
+      lines(frame_.lanes(side, side ? pair.b : pair.a), 12 * 64);
     }
 
     /// A triangle of a against all triangles of a leaf of b.
@@ -269,7 +270,7 @@ struct SiblingsKernel {
       return (a.leaf & ~b.leaf & 1u) | (((a.leaf | b.leaf) == 0) & (b.size > a.size));
     }
 
-    std::array<const WideHierarchy<V, F>*, 2> hierarchies_;
+    std::array<const Tree*, 2> hierarchies_;
     Frame frame_;
   };
 };

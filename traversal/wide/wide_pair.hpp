@@ -31,7 +31,7 @@ struct WideWorkspace {
   std::vector<std::uint64_t> due;  ///< of a front, for each register of entries those that are due
 };
 
-template <BoundingVolume V, int F, class Kernel>
+template <class V, int F, class Kernel>
 class WidePair {
  public:
   using PairFrame = typename Kernel::template PairFrame<V, F>;

@@ -27,14 +27,14 @@
 
 namespace bvlab {
 
-template <BoundingVolume V, int F, class Kernel = SiblingsKernel>
+template <class V, int F, class Kernel = SiblingsKernel>
 using WideShape = ShapeOver<typename Kernel::template Hierarchy<V, F>>;
 
 /// Hierarchies that may have been made on demand.
 template <class Hierarchy>
 concept MadeOnDemand = requires(const Hierarchy& hierarchy) { hierarchy.mesh_of_supports(); };
 
-template <BoundingVolume V, int F, class Memory = NoMemory, class Kernel = SiblingsKernel>
+template <class V, int F, class Memory = NoMemory, class Kernel = SiblingsKernel>
 class WidePairs {
   using Body = typename Kernel::template Body<V, F>;
   using Hierarchy = typename Kernel::template Hierarchy<V, F>;
