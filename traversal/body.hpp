@@ -32,9 +32,7 @@ class Body : public MovingBody {
         group_(hierarchy),
         frame_(PlacedRelatively<V> ? frame : Frame::world) {
     if (frame_ == Frame::body) stamp_ = posed_for_good;
-    // A volume in the world is larger by ten roundings of its distance from the origin, and more.
-    const HierarchyExtent& extent = hierarchy.extent();
-    far_ = extent.leaf_size() / (256 * unit_roundoff<typename V::scalar>) - extent.reach;
+    far_ = far_from_origin<typename V::scalar>(hierarchy.extent());
   }
 
   /// Sets the pose. `origin` must be the same for all bodies that are tested against each other.

@@ -11,6 +11,13 @@
 
 namespace bvlab {
 
+/// The distance of a body's origin from the world's from which on it is far (MovingBody::is_far). A
+/// volume in the world is larger by ten roundings of its distance from the origin, and more.
+template <class T>
+double far_from_origin(const HierarchyExtent& extent) {
+  return extent.leaf_size() / (256 * unit_roundoff<T>)-extent.reach;
+}
+
 class MovingBody {
  public:
   explicit MovingBody(const HierarchyExtent& extent) : extent_(extent) {}

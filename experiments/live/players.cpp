@@ -80,13 +80,13 @@ std::unique_ptr<detail::AnyPairs<Query>> wide(std::span<const TriangleMesh> mesh
                                               const Trace& trace, Run& run) {
   std::unique_ptr<detail::AnyPairs<Query>> made;
   WideVolumes::with(run.variant.volume, [&]<class V>(std::type_identity<V>) {
-    using InLoops = detail::InLoops<V>;
+    using InLoops = std::conditional_t<HasSiblingTest<V>, V, AnyVolume>;
     using Tree = detail::TreeOf<InLoops, Kernel>;
     const auto trees = std::make_shared<detail::WideTreesOf<detail::TreeOf<V, Kernel>, Tree>>(
         meshes, run.variant, 1);
     const auto shapes = trees->shapes(meshes, trace.objects);
     const auto with = [&]<class Memory>(const Memory& memory) {
-      using Pairs = WidePairs<InLoops, detail::fan_out_of<Kernel>, Memory, Kernel>;
+      using Pairs = WidePairs<InLoops, detail::kernel_lanes<Kernel>, Memory, Kernel>;
       made = std::make_unique<detail::PairsOver<Pairs, Query, detail::WideTrees<Tree>>>(
           trees, Pairs(shapes, memory));
     };

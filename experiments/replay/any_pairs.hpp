@@ -86,6 +86,8 @@ class PairsOver final : public AnyPairs<Query> {
   void count_posed([[maybe_unused]] Counting& counter) override {
     if constexpr (requires { pairs_.bodies().count_posed(counter); })
       pairs_.bodies().count_posed(counter);
+    else if constexpr (requires { pairs_.count_posed(counter); })
+      pairs_.count_posed(counter);
   }
   void see_fronts(
       [[maybe_unused]] const std::function<void(std::size_t, std::span<const NodePair>)>& see)

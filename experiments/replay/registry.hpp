@@ -41,12 +41,11 @@ bool has(const std::vector<Named>& all, std::string_view name);
 std::string name_or_first(std::string_view name, const std::vector<Named>& all);
 std::vector<Named> volumes();
 std::vector<Named> frames();
-/// How the lanes of a register are filled. What each is compiled for, and why not for the rest,
-/// stands in its description: `bvlab list kernels` is that table.
+/// How the lanes of a register are filled.
 std::vector<Named> kernels();
 /// Those that a kernel of sixteen lanes is compiled for.
 std::vector<Named> wide_volumes(std::string_view kernel);
-/// Children a node of such a kernel over a volume; 0 where it is not compiled for that.
+/// The fan-out with which such a kernel is fastest; 0 where it is not compiled for the volume.
 std::uint32_t wide_fan_out(std::string_view volume, std::string_view kernel);
 std::vector<Named> strategies();
 std::vector<Named> queries();

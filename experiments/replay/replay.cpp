@@ -35,30 +35,23 @@ void check_gathered(const Variant& variant) {
                    "; use --frame world");
 }
 
-/// Kernels of sixteen lanes are each compiled for one fan-out and one frame.
 void check_wide(const Variant& variant) {
   std::string volumes;
   for (const auto& each : wide_volumes(variant.kernel))
     volumes += (volumes.empty() ? "" : ", ") + each.name;
-  const std::uint32_t fan_out = wide_fan_out(variant.volume, variant.kernel);
-  if (fan_out == 0)
+  if (wide_fan_out(variant.volume, variant.kernel) == 0)
     throw Unusable("--volume " + variant.volume + ": the kernel " + variant.kernel +
                    " does not take it; there is " + volumes);
   if (!wide_entry(variant.volume, variant.query).play)
     throw Unusable("--query " + variant.query + ": not with --kernel " + variant.kernel +
                    ", which culls by whether volumes are disjoint; use --kernel gathered");
-  const std::string with = ": not with --kernel " + variant.kernel + "; there ";
   play_entry(name_of(variant.strategy), variant.query).check(variant.strategy);
   if (!wide_strategy(name_of(variant.strategy)))
-    throw Unusable("--strategy " + variant.strategy + with + "are those of strategies.hpp");
-  if (variant.fan_out != fan_out)
-    throw Unusable("--fan-out " + std::to_string(variant.fan_out) + with + "is " +
-                   std::to_string(fan_out));
-  if (frame_of(variant) != Frame::body)
-    throw Unusable("--frame " + variant.frame + with + "is body");
+    throw Unusable("--strategy " + variant.strategy + ": not with --kernel " + variant.kernel +
+                   "; there are those of strategies.hpp");
 }
 
-/// Names of a tree, a frame and a kernel, and what each kernel is compiled for.
+/// Names of a tree, a frame and a kernel, and what each kernel takes.
 void check_engine(const Variant& variant) {
   if (std::find(std::begin(fan_outs), std::end(fan_outs), variant.fan_out) == std::end(fan_outs))
     throw Unusable("--fan-out " + std::to_string(variant.fan_out) +

@@ -42,7 +42,7 @@ inline Frame frame_of(const Variant& variant) {
   return variant.frame == name_of(Frame::body) ? Frame::body : Frame::world;
 }
 
-/// Sets a kernel, and the fan-out and frame that it is compiled for.
+/// Sets a kernel, and the fan-out and frame with which it is fastest.
 void set_kernel(Variant& variant, std::string_view kernel);
 
 /// Sets what an older definition says by `tree`: "binary" or "wide". Says whether it is one of
@@ -69,7 +69,8 @@ using KeptTrees = std::map<std::string, TreesOfMeshes>;
 /// What a variant says of wide trees.
 inline std::string trees_of(const Variant& variant) {
   return variant.kernel + ' ' + variant.volume + ' ' + variant.build + ' ' + variant.fit + ' ' +
-         std::to_string(variant.leaf_size);
+         std::to_string(variant.leaf_size) + ' ' + std::to_string(variant.fan_out) + ' ' +
+         variant.frame;
 }
 
 struct ReplayOptions {

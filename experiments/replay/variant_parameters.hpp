@@ -28,8 +28,7 @@ void visit_parameters(V&& variant, Visit&& visit) {
   visit("query", variant.query, "see `bvlab list queries`", user);
   visit("build", variant.build, "how trees are built; see `bvlab list builds`", configuration);
   visit("leaf_size", variant.leaf_size,
-        "most triangles in a leaf; with kernel siblings or mixed, at most as many as children of a "
-        "node",
+        "most triangles in a leaf; with kernel siblings at most as many as its lanes, with mixed 4",
         configuration);
   visit("fit", variant.fit,
         "how volumes are fitted: published, or tight where they have such a fit", configuration);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// A volume in wide trees under one query, as the program sees it while it runs: bodies in each
-/// other's frames, as many children per node as the kernel has lanes for, and every strategy.
+/// A volume in wide trees under one query, as the program sees it while it runs, under every
+/// strategy.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ constexpr bool wide_strategy(std::string_view name) {
 
 struct WideEntry {
   std::string_view volume, volume_description, query;
-  /// Of a kernel; 0 where it is not compiled for the volume.
+  /// With which a kernel is fastest; 0 where it is not compiled for the volume.
   std::uint32_t (*fan_out)(std::string_view kernel);
   /// Adds to the result, the time to build included. This and `world` are null for a query that
   /// wide trees cannot answer.

@@ -39,13 +39,28 @@ std::unique_ptr<AnyPairs<Query>> wide_pairs(std::span<const TriangleMesh> meshes
                                             std::size_t objects, const Variant& variant,
                                             int threads, KeptTrees* kept, double& build_seconds) {
   std::unique_ptr<AnyPairs<Query>> made;
+  const auto trees = [&]<class Hierarchy, class Tree>() {
+    return wide_trees_of<WideTreesOf<Hierarchy, Tree>>(meshes, variant, threads, kept,
+                                                       build_seconds);
+  };
   Kernels::with(variant.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
-    using Trees = WideTreesOf<TreeOf<V, Kernel>, TreeOf<InLoops<V>, Kernel>>;
-    const auto trees = wide_trees_of<Trees>(meshes, variant, threads, kept, build_seconds);
+    const auto any = [&]<int lanes>() {
+      made = pairs_over_any<Query>(
+          trees.template operator()<TreeOf<V, Kernel, lanes>, TreeOf<AnyVolume, Kernel, lanes>>(),
+          meshes, objects, variant);
+    };
+    constexpr int lanes = kernel_lanes<Kernel>;
+    if constexpr (lanes < most_kernel_lanes<Kernel>)
+      if (variant.fan_out > lanes) return any.template operator()<most_kernel_lanes<Kernel>>();
+    // Loops of a volume's own are compiled where it has a sibling test of its own.
     if constexpr (HasSiblingTest<V>)
-      made = pairs_over<V, Kernel, Query>(trees, meshes, objects, variant);
-    else
-      made = pairs_over_any<Kernel, Query>(trees, meshes, objects, variant);
+      if (frame_of(variant) == Frame::body) {
+        using Tree = TreeOf<V, Kernel>;
+        made = pairs_over<V, Kernel, lanes, Query>(trees.template operator()<Tree, Tree>(), meshes,
+                                                   objects, variant);
+        return;
+      }
+    any.template operator()<lanes>();
   });
   return made;
 }
@@ -68,12 +83,13 @@ std::unique_ptr<WorldEngine> wide_world(std::span<const TriangleMesh> meshes, st
       threads);
 }
 
+/// The fan-out for which a kernel is fastest.
 template <BoundingVolume V>
 constexpr std::uint32_t fan_out_with(std::string_view kernel) {
   std::uint32_t fan_out = 0;
   if constexpr (WideVolume<V>)
     Kernels::with(kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
-      fan_out = fan_out_of<Kernel>;
+      fan_out = kernel_lanes<Kernel>;
     });
   return fan_out;
 }

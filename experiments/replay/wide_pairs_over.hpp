@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// The loops of wide trees: compiled for each volume with a sibling test of its own, and once for
-/// all others (wide_any.cpp.in).
+/// The loops of wide trees: compiled for each volume with a sibling test of its own, in a body's
+/// frame, and once for all else (wide_any.cpp.in).
 #pragma once
 
 #include <memory>
@@ -35,16 +35,35 @@ void with_memory(const Variant& variant, const With& with) {
 }
 
 /// Pairs over these trees; bodies are of the meshes in turn.
-template <class V, class Kernel, class Query>
-std::unique_ptr<AnyPairs<Query>> pairs_over(std::shared_ptr<WideTrees<TreeOf<V, Kernel>>> trees,
-                                            std::span<const TriangleMesh> meshes,
-                                            std::size_t objects, const Variant& variant) {
+template <class V, class Kernel, int lanes, class Query>
+std::unique_ptr<AnyPairs<Query>> pairs_over(
+    const std::shared_ptr<WideTrees<TreeOf<V, Kernel, lanes>>>& trees,
+    std::span<const TriangleMesh> meshes, std::size_t objects, const Variant& variant) {
   std::unique_ptr<AnyPairs<Query>> made;
   const auto shapes = trees->shapes(meshes, objects);
   with_memory(variant, [&]<class Memory>(const Memory& memory) {
-    using Pairs = WidePairs<V, fan_out_of<Kernel>, Memory, Kernel>;
-    made = std::make_unique<PairsOver<Pairs, Query, WideTrees<TreeOf<V, Kernel>>>>(
-        std::move(trees), Pairs(shapes, memory));
+    using Pairs = WidePairs<V, lanes, Memory, Kernel>;
+    made = std::make_unique<PairsOver<Pairs, Query, WideTrees<TreeOf<V, Kernel, lanes>>>>(
+        trees, Pairs(shapes, memory, frame_of(variant)));
+  });
+  return made;
+}
+
+/// The same over trees of any kernel, by loops that do not know their volume.
+template <class Query>
+std::unique_ptr<AnyPairs<Query>> pairs_over_trees(const std::shared_ptr<AnyTrees>& trees,
+                                                  std::span<const TriangleMesh> meshes,
+                                                  std::size_t objects, const Variant& variant) {
+  std::unique_ptr<AnyPairs<Query>> made;
+  const auto with = [&]<class Kernel, int lanes>() {
+    using Trees = WideTrees<TreeOf<AnyVolume, Kernel, lanes>>;
+    if (const auto of = std::dynamic_pointer_cast<Trees>(trees))
+      made = pairs_over<AnyVolume, Kernel, lanes, Query>(of, meshes, objects, variant);
+  };
+  Kernels::for_each([&]<class Kernel>(std::type_identity<Kernel>) {
+    with.template operator()<Kernel, kernel_lanes<Kernel>>();
+    if constexpr (kernel_lanes<Kernel> < most_kernel_lanes<Kernel>)
+      with.template operator()<Kernel, most_kernel_lanes<Kernel>>();
   });
   return made;
 }

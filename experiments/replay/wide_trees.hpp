@@ -2,9 +2,11 @@
 /// Wide trees of meshes by a variant, and pairs of bodies over them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <memory>
 #include <span>
@@ -17,15 +19,21 @@
 #include "hierarchies/builds.hpp"
 #include "traversal/shape.hpp"
 #include "traversal/wide/any_volume.hpp"
+#include "traversal/wide/calls_of.hpp"
 #include "traversal/wide/kernels.hpp"
 
 namespace bvlab::detail {
 
-/// Trees of some meshes, and of others when a body of them comes, as pairs of bodies take them.
-template <class Tree>
-class WideTrees {
+/// Trees of some meshes, and of others when a body of them comes, of one kind (WideTrees).
+class AnyTrees {
  public:
-  virtual ~WideTrees() = default;
+  virtual ~AnyTrees() = default;
+};
+
+/// The same as pairs of bodies take them.
+template <class Tree>
+class WideTrees : public AnyTrees {
+ public:
   /// The mesh must outlive this.
   virtual ShapeOver<Tree> of(const TriangleMesh& mesh) = 0;
   /// Of trees on demand: all nodes, and those that have been made.
@@ -62,15 +70,20 @@ class WideTreesOf final : public WideTrees<Tree> {
 
  private:
   const Hierarchy& build(const TriangleMesh& mesh) {
-    if constexpr (requires { Hierarchy::on_demand(mesh, variant_.leaf_size); })
-      if (variant_.build == builds::OnDemand::name)
+    if constexpr (std::is_same_v<Hierarchy, Tree> &&
+                  requires { Hierarchy::on_demand(mesh, variant_.leaf_size); })
+      if (variant_.build == builds::OnDemand::name && variant_.fan_out == Hierarchy::fan_out)
         return all_.emplace_back(Hierarchy::on_demand(mesh, variant_.leaf_size));
     Threads several(threads_);
     // Leaves are made while the tree is collapsed.
     Variant down_to_triangles = variant_;
     down_to_triangles.leaf_size = 1;
-    Hierarchy& built = all_.emplace_back(mesh, topology_of(mesh, down_to_triangles),
-                                         fit_of(variant_), variant_.leaf_size, several);
+    constexpr std::uint32_t most = Hierarchy::fan_out;
+    WideTopology topology =
+        collapsed(mesh, topology_of(mesh, down_to_triangles), variant_.fan_out,
+                  std::min<std::uint32_t>(variant_.leaf_size, most));
+    if (variant_.fan_out > most) topology = in_rows(topology, most);
+    Hierarchy& built = all_.emplace_back(mesh, topology, fit_of(variant_), several);
     if constexpr (!std::is_same_v<Hierarchy, Tree>) built.calls = calls_of(built);
     return built;
   }
@@ -81,14 +94,19 @@ class WideTreesOf final : public WideTrees<Tree> {
   std::unordered_map<const TriangleMesh*, const Hierarchy*> known_;
 };
 
-/// The fan-out that a kernel is compiled for.
+/// The lanes of siblings for which a kernel is compiled: of `siblings` as many as a register has,
+/// and, where these are fewer, sixteen; of `mixed` four in a row.
 template <class Kernel>
-inline constexpr int fan_out_of = native_fan_out<float>;
+inline constexpr int kernel_lanes = native_fan_out<float>;
 template <>
-inline constexpr int fan_out_of<MixedKernel> = BlockTree::fan_out;
+inline constexpr int kernel_lanes<MixedKernel> = BlockTree::fan_out;
+template <class Kernel>
+inline constexpr int most_kernel_lanes = 16;
+template <>
+inline constexpr int most_kernel_lanes<MixedKernel> = kernel_lanes<MixedKernel>;
 
-template <class V, class Kernel>
-using TreeOf = typename Kernel::template Hierarchy<V, fan_out_of<Kernel>>;
+template <class V, class Kernel, int lanes = kernel_lanes<Kernel>>
+using TreeOf = typename Kernel::template Hierarchy<V, lanes>;
 
 /// Volumes that these kernels take: over float, with a sibling test of their own or
 /// PosedSiblingTest.
@@ -96,16 +114,11 @@ template <class V>
 concept WideVolume = std::same_as<typename V::scalar, float> &&
                      (HasSiblingTest<V> || (std::same_as<Posed<V>, V> && PlacedRelatively<V>));
 
-/// What loops see of a volume: itself where it has a sibling test of its own, which is to be
-/// inlined; of all others one set of loops is compiled.
-template <class V>
-using InLoops = std::conditional_t<HasSiblingTest<V>, V, AnyVolume>;
-
-/// Pairs over trees of volumes without a sibling test of their own; bodies are of the meshes in
-/// turn. Compiled once (wide_any.cpp.in).
-template <class Kernel, class Query>
-std::unique_ptr<AnyPairs<Query>> pairs_over_any(
-    std::shared_ptr<WideTrees<TreeOf<AnyVolume, Kernel>>> trees,
-    std::span<const TriangleMesh> meshes, std::size_t objects, const Variant& variant);
+/// Pairs over trees whose volume the loops do not know; bodies are of the meshes in turn. Compiled
+/// once for each query (wide_any.cpp.in).
+template <class Query>
+std::unique_ptr<AnyPairs<Query>> pairs_over_any(const std::shared_ptr<AnyTrees>& trees,
+                                                std::span<const TriangleMesh> meshes,
+                                                std::size_t objects, const Variant& variant);
 
 }  // namespace bvlab::detail

@@ -47,17 +47,19 @@ class BlockHierarchy : public BlockTree {
   /// The same on several threads. The result does not depend on their number.
   BlockHierarchy(const TriangleMesh& mesh, const Topology& binary, Fit fit, std::uint32_t leaf_size,
                  Threads& threads)
-      : BlockHierarchy(LocalMesh(mesh), binary, fit, leaf_size, threads) {}
+      : BlockHierarchy(mesh,
+                       collapsed(mesh, binary, fan_out, std::min<std::uint32_t>(leaf_size, fan_out)),
+                       fit, threads) {}
+  /// From a wide topology of at most four children per node and four triangles per leaf.
+  BlockHierarchy(const TriangleMesh& mesh, const WideTopology& topology, Fit fit, Threads& threads)
+      : BlockHierarchy(LocalMesh(mesh), topology, fit, threads) {}
 
  private:
-  BlockHierarchy(const LocalMesh& local, const Topology& binary, Fit fit, std::uint32_t leaf_size,
-                 Threads& threads) {
+  BlockHierarchy(const LocalMesh& local, const WideTopology& topology, Fit fit, Threads& threads) {
     origin_ = local.origin();
     sphere_ = MeshSphere(local.mesh());
     supports_ = SupportMap(local.mesh(), sphere_.centre, threads);
     const TriangleMesh& mesh = local.mesh();
-    const WideTopology topology =
-        collapsed(mesh, binary, fan_out, std::min<std::uint32_t>(leaf_size, fan_out));
     nodes_.resize(topology.nodes.size()), node_spheres_.resize(topology.nodes.size());
     node_heads_ = Heads<BlockTree::Node>(nodes_.data());
     const OrderedTriangles triangles(mesh, topology.primitives, threads);

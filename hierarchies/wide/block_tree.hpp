@@ -53,6 +53,8 @@ class BlockTree {
 
   std::size_t size() const { return node_spheres_.size(); }
   const Node& node(std::uint32_t i) const { return node_heads_[i]; }
+  /// The number of rows, that for the root included.
+  std::size_t rows() const { return inner_ + 1; }
   const NodeSphere& node_sphere(std::uint32_t i) const { return node_spheres_[i]; }
   /// The row of an inner node, by its `first`.
   const Row& row(std::uint32_t first) const { return row_heads_[first]; }

@@ -13,6 +13,7 @@
 #include <cassert>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -198,6 +199,49 @@ class Collapsing {
 inline WideTopology collapsed(const TriangleMesh& mesh, const Topology& binary,
                               std::uint32_t fan_out, std::uint32_t leaf_size) {
   return detail::Collapsing(mesh, binary, leaf_size).collapse(fan_out);
+}
+
+/// The same tree with at most `most` children per node, of which there were at most the square of
+/// that: the children of a wider node are put in rows, each a node of its own.
+inline WideTopology in_rows(const WideTopology& wide, std::uint32_t most) {
+  /// Some siblings; alone, the node itself.
+  struct Row {
+    std::span<const std::uint32_t> nodes;
+  };
+  std::vector<std::vector<std::uint32_t>> children(wide.nodes.size());
+  std::vector<std::uint32_t> root{0};
+  std::vector<Row> rows{{root}};
+  WideTopology result;
+  result.primitives = wide.primitives;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    std::span<const std::uint32_t> below = rows[i].nodes;
+    WideTopology::Node node;
+    node.begin = wide.nodes[below.front()].begin, node.end = wide.nodes[below.back()].end;
+    if (below.size() == 1) {
+      const WideTopology::Node& from = wide.nodes[below[0]];
+      if (from.leaf) {
+        result.nodes.push_back(from);
+        continue;
+      }
+      auto& of = children[below[0]];
+      for (std::uint32_t k = 0; k < from.count; ++k) of.push_back(from.first + k);
+      // What is in a row is contiguous.
+      std::sort(of.begin(), of.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return wide.nodes[a].begin < wide.nodes[b].begin;
+      });
+      below = of;
+    }
+    const auto count = static_cast<std::uint32_t>(below.size());
+    const std::uint32_t parts = count <= most ? count : (count + most - 1) / most;
+    node.first = static_cast<std::uint32_t>(rows.size()), node.count = parts;
+    for (std::uint32_t k = 0; k < parts; ++k) {
+      const std::size_t from = std::size_t{count} * k / parts,
+                        to = std::size_t{count} * (k + 1) / parts;
+      rows.push_back({below.subspan(from, to - from)});
+    }
+    result.nodes.push_back(node);
+  }
+  return result;
 }
 
 }  // namespace bvlab

@@ -67,17 +67,54 @@ template <Scalar S, class P>
 
 }  // namespace detail
 
+/// The test of posed volumes P in one frame: there is nothing to change.
+template <class P>
+struct PosedTest {
+  using T = typename P::scalar;
+
+  struct FrameChange {};
+  struct PosedNode {
+    P volume;
+    T size;
+  };
+  static PosedNode posed_node(const P& volume, T size, const FrameChange&) {
+    return {volume, size};
+  }
+
+  template <Batched S, class Change>
+  [[gnu::always_inline]] static OverlapLanes<S> overlap(const PosedNode& one, const Change& change,
+                                                        const Over<P, S>& lanes, const S& sizes) {
+    return overlap<S>(in_all_lanes<S>(one.volume), change, lanes, sizes);
+  }
+  template <Batched S, class Change>
+  [[gnu::always_inline]] static S gaps(const PosedNode& one, const Change&,
+                                       const Over<P, S>& lanes) {
+    return gap(in_all_lanes<S>(one.volume), lanes);
+  }
+
+  template <class Lanes>
+  [[gnu::always_inline]] static const Lanes& in_lanes(const Lanes& volumes, const FrameChange&) {
+    return volumes;
+  }
+  template <Batched S, class Change>
+  [[gnu::always_inline]] static OverlapLanes<S> overlap(const Over<P, S>& one, const Change&,
+                                                        const Over<P, S>& lanes, const S& sizes) {
+    return detail::overlap_of_posed<S>(one, lanes, sizes);
+  }
+  template <Batched S, class Change>
+  [[gnu::always_inline]] static S gaps(const Over<P, S>& one, const Change&,
+                                       const Over<P, S>& lanes) {
+    return gap(one, lanes);
+  }
+};
+
 /// The default sibling test, for volumes V whose posed form is again a V.
 template <class V>
-struct PosedSiblingTest {
-  using T = typename V::scalar;
+struct PosedSiblingTest : PosedTest<V> {
+  using typename PosedTest<V>::T, typename PosedTest<V>::PosedNode;
   static_assert(std::is_same_v<Posed<V>, V>, "this volume needs a sibling test of its own");
 
   using FrameChange = PlacementOf<V>;
-  struct PosedNode {
-    V volume;
-    T size;
-  };
 
   static FrameChange frame_change(const RelativePose& pose, double reach,
                                   double /*reach_of_lanes*/) {
@@ -86,32 +123,10 @@ struct PosedSiblingTest {
   static PosedNode posed_node(const V& volume, T size, const FrameChange& frame_change) {
     return {posed(volume, frame_change), size};
   }
-
-  template <Batched S>
-  [[gnu::always_inline]] static OverlapLanes<S> overlap(const PosedNode& one, const FrameChange&,
-                                                        const Over<V, S>& lanes, const S& sizes) {
-    return detail::overlap_of_posed<S>(in_all_lanes<S>(one.volume), lanes, sizes);
-  }
-  template <Batched S>
-  [[gnu::always_inline]] static S gaps(const PosedNode& one, const FrameChange&,
-                                       const Over<V, S>& lanes) {
-    return gap(in_all_lanes<S>(one.volume), lanes);
-  }
-
   template <class Lanes>
   [[gnu::always_inline]] static Lanes in_lanes(const Lanes& volumes,
                                                const FrameChange& frame_change) {
     return posed(volumes, frame_change);
-  }
-  template <Batched S>
-  [[gnu::always_inline]] static OverlapLanes<S> overlap(const Over<V, S>& one, const FrameChange&,
-                                                        const Over<V, S>& lanes, const S& sizes) {
-    return detail::overlap_of_posed<S>(one, lanes, sizes);
-  }
-  template <Batched S>
-  [[gnu::always_inline]] static S gaps(const Over<V, S>& one, const FrameChange&,
-                                       const Over<V, S>& lanes) {
-    return gap(one, lanes);
   }
 };
 

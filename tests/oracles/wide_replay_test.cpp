@@ -241,8 +241,8 @@ TEST(WideReplays, RefuseWhatThereIsNot) {
   refused([](Variant& v) { v.volume = "cylinder"; });
   refused([](Variant& v) { v.strategy = "deferred:many"; });
   refused([](Variant& v) { v.strategy = "kinetic-list"; });
-  refused([](Variant& v) { v.fan_out = 2; });
-  refused([](Variant& v) { v.frame = "world"; });
+  refused([](Variant& v) { v.fan_out = 3; });
+  refused([](Variant& v) { v.frame = "mine"; });
   refused([](Variant& v) { v.kernel = "tall"; });
   refused([](Variant& v) { v.kernel = "gathered", v.fan_out = 3; });
   refused([](Variant& v) { v.kernel = "gathered", v.frame = "mine"; });

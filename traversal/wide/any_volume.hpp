@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// AnyVolume stands for a volume whose type loops do not know: `WidePairs<AnyVolume, F, ...>` is
-/// compiled once and traverses the trees of every volume, each through pointers to its tests. A
-/// step costs a call more than in loops of the volume's own. A tree is seen as its base, WideTree
-/// or BlockTree, whose `calls` are set by `calls_of` before bodies are made of it.
+/// compiled once and traverses the trees of every volume, in either frame (frame.hpp), each through
+/// pointers to its tests. A step costs a call more than in loops of the volume's own. A tree is
+/// seen as its base, WideTree or BlockTree, whose `calls` are set by `calls_of` (calls_of.hpp)
+/// before bodies are made of it.
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <new>
+#include <memory>
 
-#include "hierarchies/wide/block_hierarchy.hpp"
-#include "hierarchies/wide/wide_hierarchy.hpp"
+#include "hierarchies/wide/block_tree.hpp"
+#include "hierarchies/wide/wide_tree.hpp"
+#include "traversal/frame.hpp"
 #include "traversal/wide/block_tests.hpp"
 #include "traversal/wide/relative_frame.hpp"
 
@@ -21,19 +24,85 @@ struct AnyVolume {
   using scalar = float;
 };
 
-/// The FrameChange of a volume's test, and the test: `Calls` is SiblingCalls or BlockCalls.
+/// The volumes of a body in the world's frame: each is posed when it is first tested after a move.
+class PosedTree {
+ public:
+  virtual ~PosedTree() = default;
+
+  /// The body has moved.
+  void place(const Pose& pose, const Vec3<double>& origin) {
+    ++epoch_;
+    is_far_ = put_placement(pose, origin);
+  }
+  /// See MovingBody::is_far.
+  bool is_far() const { return is_far_; }
+  /// The number of volumes that have been posed since this was called last.
+  std::uint64_t take_posed() { return posed_.exchange(0, std::memory_order_relaxed); }
+
+ protected:
+  /// Returns whether the body is far.
+  virtual bool put_placement(const Pose& pose, const Vec3<double>& origin) = 0;
+  void count_posed(std::uint64_t count) { posed_.fetch_add(count, std::memory_order_relaxed); }
+
+  std::uint32_t epoch_ = 0;
+
+ private:
+  bool is_far_ = false;
+  std::atomic<std::uint64_t> posed_ = 0;
+};
+
+/// A body over the tree of any volume.
+template <class Tree>
+class AnyBody : public WideBody<Tree> {
+ public:
+  AnyBody(const TriangleMesh& mesh, const Tree& tree, Frame frame)
+      : WideBody<Tree>(mesh, tree),
+        posed_(frame == Frame::world ? tree.calls->posed_tree(tree) : nullptr) {}
+
+  bool set_pose(const Pose& pose) {
+    const bool moved = WideBody<Tree>::set_pose(pose);
+    is_placed_ = is_placed_ && !moved;
+    return moved;
+  }
+  /// To be called before a traversal, by one thread, once the pose is set. `origin` is that of the
+  /// world's frame.
+  void place(const Vec3<double>& origin) {
+    if (!posed_ || (is_placed_ && origin == origin_)) return;
+    posed_->place(this->pose(), origin);
+    origin_ = origin, is_placed_ = true;
+  }
+  /// Null in a body's frame.
+  PosedTree* posed() const { return posed_.get(); }
+
+ private:
+  std::unique_ptr<PosedTree> posed_;
+  Vec3<double> origin_ = Vec3<double>::Zero();
+  bool is_placed_ = false;
+};
+
+/// The FrameChange of a volume's test, and the test: `Calls` is SiblingCalls or BlockCalls. In the
+/// world's frame, its volumes there.
 template <class Calls>
 struct AnyFrameChange {
   static constexpr std::size_t room = 1024;
   const Calls* calls;
+  std::array<PosedTree*, 2> in_world{};  ///< of the volumes that are tested; of those in the lanes
   alignas(64) std::array<std::byte, room> change;
 
   AnyFrameChange() = default;
-  /// `tree` is of the volumes that are posed.
+  /// `body` is of the volumes that are posed.
   template <class Tree>
-  AnyFrameChange(const RelativePose& pose, const Tree& tree, const Tree& other)
-      : calls(tree.calls) {
-    calls->put_change(change.data(), pose, tree.reach(), other.reach());
+  AnyFrameChange(const RelativePose& pose, const AnyBody<Tree>& body, const AnyBody<Tree>& other)
+      : calls(body.hierarchy().calls) {
+    if (body.posed() && !body.posed()->is_far() && !other.posed()->is_far())
+      calls = calls->in_world, in_world = {body.posed(), other.posed()};
+    else
+      calls->put_change(change.data(), pose, body.hierarchy().reach(), other.hierarchy().reach());
+  }
+  /// Volumes in the world are counted where they are posed.
+  template <class Counter>
+  void count_posed(Counter& counter, std::uint64_t count) const {
+    if (!in_world[0]) counter.posed(count);
   }
 };
 
@@ -43,176 +112,82 @@ struct CalledTest {
   using FrameChange = AnyFrameChange<Calls>;
 };
 
-/// A node's volume, or with a lane that of its child there, to be posed by the test.
+/// A node's volume, or with a lane that of its child there.
 template <int F>
 struct VolumeInTree {
+  static constexpr int none = -1;
   const WideTree<float, F>* tree;
   std::uint32_t node;
   int lane = none;
-
-  static constexpr int none = -1;
 };
 
-/// The tests of a volume against the children of a node. `change` is into their frame.
+/// The tests of a volume against the children of a node; the change is into their frame.
 template <int F>
 struct SiblingCalls {
   using Tree = WideTree<float, F>;
   using S = typename Tree::Lane;
+  using Change = AnyFrameChange<SiblingCalls>;
+  struct Step {
+    VolumeInTree<F> one;
+    const Tree& tree;
+    std::uint32_t parent;
+    const Change& change;
+  };
 
+  const SiblingCalls* in_world;
+  std::unique_ptr<PosedTree> (*posed_tree)(const Tree&);
   void (*put_change)(void* to, const RelativePose&, double reach, double reach_of_lanes);
-  OverlapLanes<S> (*overlap)(const VolumeInTree<F>&, const void* change, const Tree&,
-                             std::uint32_t parent);
-  GapLanes<S> (*separation)(const VolumeInTree<F>&, const void* change, const Tree&,
-                            std::uint32_t parent);
-  S (*gaps)(const VolumeInTree<F>&, const void* change, const Tree&, std::uint32_t parent);
+  OverlapLanes<S> (*overlap)(const Step&);
+  GapLanes<S> (*separation)(const Step&);
+  S (*gaps)(const Step&);
 };
 
-/// The tests of BlockTests.
+/// The tests of BlockTests, of a register of sixteen lanes.
 struct BlockCalls {
   using S = SixteenLanes;
+  using Change = AnyFrameChange<BlockCalls>;
   struct Four {
     const BlockTree::Row &a, &b;
-    const void* into_b;
+    const Change& change;
     std::size_t part;
   };
   struct One {
     const BlockTree::Node& one;
     const BlockTree::Block& block;
-    const void* change;
+    const Change& change;
     std::size_t part;
   };
+  template <class Step>
+  struct Of {
+    OverlapLanes<S> (*overlap)(const Step&);
+    GapLanes<S> (*separation)(const Step&);
+    S (*gaps)(const Step&);
+  };
 
+  const BlockCalls* in_world;
+  std::unique_ptr<PosedTree> (*posed_tree)(const BlockTree&);
   void (*put_change)(void* to, const RelativePose&, double reach, double reach_of_lanes);
-  OverlapLanes<S> (*overlap_of_four)(const Four&);
-  GapLanes<S> (*separation_of_four)(const Four&);
-  S (*gaps_of_four)(const Four&);
-  OverlapLanes<S> (*overlap_of_one)(const One&);
-  GapLanes<S> (*separation_of_one)(const One&);
-  S (*gaps_of_one)(const One&);
+  Of<Four> four;
+  Of<One> one;
 };
-
-namespace detail {
-
-template <class V>
-void put_change(void* to, const RelativePose& pose, double reach, double reach_of_lanes) {
-  using Change = typename bvlab::SiblingTestOf<V>::FrameChange;
-  using Any = AnyFrameChange<BlockCalls>;
-  static_assert(sizeof(Change) <= Any::room && alignof(Change) <= alignof(Any));
-  ::new (to) Change(bvlab::SiblingTestOf<V>::frame_change(pose, reach, reach_of_lanes));
-}
-template <class V>
-const auto& change_of(const void* change) {
-  return *static_cast<const typename bvlab::SiblingTestOf<V>::FrameChange*>(change);
-}
-
-template <class V, int F>
-struct CalledSiblings {
-  using Test = bvlab::SiblingTestOf<V>;
-  using Hierarchy = WideHierarchy<V, F>;
-  using Tree = WideTree<float, F>;
-  using S = typename Tree::Lane;
-
-  /// Calls `test` with the posed volume, the change of frames, the siblings, and the sums of sizes.
-  template <class Do>
-  [[gnu::always_inline]] static auto with(const VolumeInTree<F>& one, const void* into,
-                                          const Tree& tree, std::uint32_t parent, const Do& test) {
-    const auto& change = change_of<V>(into);
-    const auto& from = static_cast<const Hierarchy&>(*one.tree);
-    const auto& lanes = static_cast<const Hierarchy&>(tree).children(parent);
-    const auto posed = [&] {
-      if (one.lane == VolumeInTree<F>::none)
-        return Test::posed_node(from.node(one.node).volume, from.node(one.node).size, change);
-      const auto& siblings = from.children(one.node);
-      return Test::posed_node(lane_of<V>(siblings.volumes, one.lane),
-                              float(siblings.size[static_cast<std::size_t>(one.lane)]), change);
-    }();
-    return test(posed, change, lanes.volumes, lanes.size + S(posed.size));
-  }
-  static OverlapLanes<S> overlap(const VolumeInTree<F>& one, const void* into, const Tree& tree,
-                                 std::uint32_t parent) {
-    return with(one, into, tree, parent, [](const auto&... x) {
-      return Test::template overlap<S>(x...);
-    });
-  }
-  static GapLanes<S> separation(const VolumeInTree<F>& one, const void* into, const Tree& tree,
-                                std::uint32_t parent) {
-    return with(one, into, tree, parent,
-                [](const auto&... x) { return separation_of<Test, S>(x...); });
-  }
-  static S gaps(const VolumeInTree<F>& one, const void* into, const Tree& tree,
-                std::uint32_t parent) {
-    return with(one, into, tree, parent,
-                [](const auto& posed, const auto& change, const auto& lanes, const S&) {
-                  return Test::template gaps<S>(posed, change, lanes);
-                });
-  }
-};
-
-template <class V>
-struct CalledBlocks {
-  using S = SixteenLanes;
-  using Tests = BlockTests<V>;
-  using Tree = BlockHierarchy<V>;
-
-  static typename Tests::Four typed(const BlockCalls::Four& four) {
-    return {static_cast<const typename Tree::Row&>(four.a),
-            static_cast<const typename Tree::Row&>(four.b), change_of<V>(four.into_b)};
-  }
-  static typename Tests::One typed(const BlockCalls::One& one) {
-    return {static_cast<const typename Tree::Node&>(one.one),
-            static_cast<const typename Tree::Block&>(one.block), change_of<V>(one.change)};
-  }
-  template <class Call>
-  static OverlapLanes<S> overlap(const Call& call) {
-    return typed(call).overlap(call.part);
-  }
-  template <class Call>
-  static GapLanes<S> separation(const Call& call) {
-    return typed(call).separation(call.part);
-  }
-  template <class Call>
-  static S gaps(const Call& call) {
-    return typed(call).gaps(call.part);
-  }
-};
-
-template <class V, int F>
-inline constexpr SiblingCalls<F> sibling_calls{put_change<V>, CalledSiblings<V, F>::overlap,
-                                               CalledSiblings<V, F>::separation,
-                                               CalledSiblings<V, F>::gaps};
-template <class V>
-inline constexpr BlockCalls block_calls{
-    put_change<V>,
-    CalledBlocks<V>::template overlap<BlockCalls::Four>,
-    CalledBlocks<V>::template separation<BlockCalls::Four>,
-    CalledBlocks<V>::template gaps<BlockCalls::Four>,
-    CalledBlocks<V>::template overlap<BlockCalls::One>,
-    CalledBlocks<V>::template separation<BlockCalls::One>,
-    CalledBlocks<V>::template gaps<BlockCalls::One>};
-
-}  // namespace detail
-
-/// The tests of a tree's volumes.
-template <BoundingVolume V, int F>
-const SiblingCalls<F>* calls_of(const WideHierarchy<V, F>&) {
-  return &detail::sibling_calls<V, F>;
-}
-template <BoundingVolume V>
-const BlockCalls* calls_of(const BlockHierarchy<V>&) {
-  return &detail::block_calls<V>;
-}
 
 namespace detail {
 template <>
 struct SiblingTestOf<AnyVolume> {
   using type = CalledTest<BlockCalls>;
 };
+template <class Tree>
+struct BodyOf<AnyVolume, Tree> {
+  using type = AnyBody<Tree>;
+};
 }  // namespace detail
 
 template <int F>
-class RelativeFrame<AnyVolume, F> : public FramesOfTrees<WideTree<float, F>, CalledTest<SiblingCalls<F>>> {
-  using Frames = FramesOfTrees<WideTree<float, F>, CalledTest<SiblingCalls<F>>>;
+class RelativeFrame<AnyVolume, F>
+    : public FramesOfTrees<AnyBody<WideTree<float, F>>, CalledTest<SiblingCalls<F>>> {
+  using Frames = FramesOfTrees<AnyBody<WideTree<float, F>>, CalledTest<SiblingCalls<F>>>;
   using Frames::trees_, Frames::frames_;
+  using Calls = SiblingCalls<F>;
   using S = Batch<float, F>;
 
  public:
@@ -221,33 +196,31 @@ class RelativeFrame<AnyVolume, F> : public FramesOfTrees<WideTree<float, F>, Cal
   template <class Counter>
   [[gnu::always_inline]] PosedNode posed_node(std::size_t side, std::uint32_t node,
                                               Counter& counter) const {
-    counter.posed(1);
+    frames_.count_posed(counter, 1 - side, 1);
     return {trees_[side], node};
   }
   template <class Counter>
   PosedNode posed_child(std::size_t side, std::uint32_t node, int lane, Counter& counter) const {
-    counter.posed(1);
+    frames_.count_posed(counter, 1 - side, 1);
     return {trees_[side], node, lane};
   }
   OverlapLanes<S> overlap(std::size_t side, std::uint32_t node, const PosedNode& posed) const {
-    return call(&SiblingCalls<F>::overlap, side, node, posed);
+    return frames_.change[side].calls->overlap(step(side, node, posed));
   }
   S gaps(std::size_t side, std::uint32_t node, const PosedNode& posed) const {
-    return call(&SiblingCalls<F>::gaps, side, node, posed);
+    return frames_.change[side].calls->gaps(step(side, node, posed));
   }
   GapLanes<S> separation(std::size_t side, std::uint32_t node, const PosedNode& posed) const {
-    return call(&SiblingCalls<F>::separation, side, node, posed);
+    return frames_.change[side].calls->separation(step(side, node, posed));
   }
   const void* lanes(std::size_t side, std::uint32_t node) const {
     return &trees_[side]->node(node);
   }
 
  private:
-  template <class Call>
-  [[gnu::always_inline]] auto call(Call which, std::size_t side, std::uint32_t node,
-                                   const PosedNode& posed) const {
-    const auto& into = frames_.change[side];
-    return (into.calls->*which)(posed, into.change.data(), *trees_[side], node);
+  [[gnu::always_inline]] typename Calls::Step step(std::size_t side, std::uint32_t node,
+                                                   const PosedNode& posed) const {
+    return {posed, *trees_[side], node, frames_.change[side]};
   }
 };
 
@@ -265,16 +238,16 @@ struct BlockTests<AnyVolume> {
     Four(const Tree::Row& a, const Tree::Row& b, const FrameChange& into_b)
         : row_a(a), row_b(b), into_b_(into_b) {}
     OverlapLanes<S> overlap(std::size_t part) const {
-      return into_b_.calls->overlap_of_four(call(part));
+      return into_b_.calls->four.overlap({row_a, row_b, into_b_, part});
     }
     GapLanes<S> separation(std::size_t part) const {
-      return into_b_.calls->separation_of_four(call(part));
+      return into_b_.calls->four.separation({row_a, row_b, into_b_, part});
     }
-    S gaps(std::size_t part) const { return into_b_.calls->gaps_of_four(call(part)); }
+    S gaps(std::size_t part) const {
+      return into_b_.calls->four.gaps({row_a, row_b, into_b_, part});
+    }
 
    private:
-    BlockCalls::Four call(std::size_t part) const { return {row_a, row_b, into_b_.change.data(), part}; }
-
     const FrameChange& into_b_;
   };
   class One {
@@ -284,18 +257,14 @@ struct BlockTests<AnyVolume> {
     One(const Tree::Node& one, const Tree::Block& lanes, const FrameChange& change)
         : block(lanes), one_(one), change_(change) {}
     OverlapLanes<S> overlap(std::size_t part) const {
-      return change_.calls->overlap_of_one(call(part));
+      return change_.calls->one.overlap({one_, block, change_, part});
     }
     GapLanes<S> separation(std::size_t part) const {
-      return change_.calls->separation_of_one(call(part));
+      return change_.calls->one.separation({one_, block, change_, part});
     }
-    S gaps(std::size_t part) const { return change_.calls->gaps_of_one(call(part)); }
+    S gaps(std::size_t part) const { return change_.calls->one.gaps({one_, block, change_, part}); }
 
    private:
-    BlockCalls::One call(std::size_t part) const {
-      return {one_, block, change_.change.data(), part};
-    }
-
     const Tree::Node& one_;
     const FrameChange& change_;
   };

@@ -38,7 +38,7 @@ struct MixedKernel {
   template <class V, int F>
   using Hierarchy = typename BlockTests<V>::Tree;
   template <class V, int F>
-  using Body = WideBody<Hierarchy<V, F>>;
+  using Body = BodyOf<V, Hierarchy<V, F>>;
 
   template <class V, int F>
   class PairFrame {
@@ -124,7 +124,7 @@ struct MixedKernel {
       const bool inner = !((pair.a | pair.b) & Tree::leaf_flag);
       const bool leaves = pair.a & pair.b & Tree::leaf_flag;  // both roots are leaves
       if ((inner && a.size <= alike * b.size && b.size <= alike * a.size) || leaves) {
-        counter.posed(static_cast<std::uint64_t>(std::popcount(a.children)));
+        frames_.count_posed(counter, 1, static_cast<std::uint64_t>(std::popcount(a.children)));
         test(FourByFour{{leaves ? trees_[0]->root_alone() : trees_[0]->row(a.first),
                          leaves ? trees_[1]->root_alone() : trees_[1]->row(b.first),
                          frames_.change[1]},
@@ -133,7 +133,7 @@ struct MixedKernel {
                         leaves ? 1 : four_by_four(a.children, b.children)});
         return;
       }
-      counter.posed(1);
+      frames_.count_posed(counter, 0, 1);
       if (!a.leaf && (b.leaf || a.size > b.size))
         test(OneBySixteen{{b, trees_[0]->block(a.first), frames_.change[0]},
                           *this,

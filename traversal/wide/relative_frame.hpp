@@ -23,6 +23,8 @@ namespace bvlab {
 template <class Hierarchy>
 class WideBody {
  public:
+  using Tree = Hierarchy;
+
   WideBody(const TriangleMesh& mesh, const Hierarchy& hierarchy)
       : mesh_(&mesh), hierarchy_(&hierarchy) {}
 
@@ -64,32 +66,52 @@ struct TwoFrames {
     const RelativePose a_from_b(a.orthonormal_pose(), b.orthonormal_pose());
     const RelativePose b_from_a(b.orthonormal_pose(), a.orthonormal_pose());
     const double reach_a = a.hierarchy().reach(), reach_b = b.hierarchy().reach();
-    put_change(1, a_from_b, a.hierarchy(), b.hierarchy());
-    put_change(0, b_from_a, b.hierarchy(), a.hierarchy());
+    put_change(1, a_from_b, a, b);
+    put_change(0, b_from_a, b, a);
     transform[0].begin(a_from_b, reach_a, reach_b);
     transform[1].begin(b_from_a, reach_b, reach_a);
+  }
+  /// Counts volumes of the other side that are posed INTO the frame of `side`.
+  template <class Counter>
+  [[gnu::always_inline]] void count_posed(Counter& counter, std::size_t side,
+                                          std::uint64_t count) const {
+    if constexpr (requires { change[side].count_posed(counter, count); })
+      change[side].count_posed(counter, count);
+    else
+      counter.posed(count);
   }
 
  private:
   /// Constructed in place: a copy in wider pieces than were written would stall.
-  template <class Tree>
+  template <class Body>
   [[gnu::always_inline]] void put_change(std::size_t side, const RelativePose& pose,
-                                         const Tree& tree, const Tree& other) {
-    if constexpr (std::constructible_from<FrameChange, RelativePose, Tree, Tree>)
-      ::new (&change[side]) FrameChange(pose, tree, other);
+                                         const Body& body, const Body& other) {
+    if constexpr (std::constructible_from<FrameChange, const RelativePose&, const Body&,
+                                          const Body&>)
+      ::new (&change[side]) FrameChange(pose, body, other);
     else
-      ::new (&change[side])
-          FrameChange(SiblingTest::frame_change(pose, tree.reach(), other.reach()));
+      ::new (&change[side]) FrameChange(SiblingTest::frame_change(
+          pose, body.hierarchy().reach(), other.hierarchy().reach()));
   }
 };
 
+namespace detail {
+template <class V, class Tree>
+struct BodyOf {
+  using type = WideBody<Tree>;
+};
+}  // namespace detail
+/// A body over a tree of volumes V.
+template <class V, class Tree>
+using BodyOf = typename detail::BodyOf<V, Tree>::type;
+
 /// Two wide trees and the transforms between their frames. A side is 0 for a and 1 for b.
-template <class TreeType, class SiblingTest>
+template <class Body, class SiblingTest>
 class FramesOfTrees {
  public:
-  using Tree = TreeType;
+  using Tree = typename Body::Tree;
 
-  void begin(const WideBody<Tree>& a, const WideBody<Tree>& b) {
+  void begin(const Body& a, const Body& b) {
     trees_ = {&a.hierarchy(), &b.hierarchy()};
     frames_.begin(a, b);
   }
@@ -105,11 +127,11 @@ class FramesOfTrees {
 
 /// The tests of two wide trees of one volume.
 template <class V, int F>
-class RelativeFrame : public FramesOfTrees<WideHierarchy<V, F>, SiblingTestOf<V>> {
+class RelativeFrame : public FramesOfTrees<WideBody<WideHierarchy<V, F>>, SiblingTestOf<V>> {
   using SiblingTest = SiblingTestOf<V>;
   using T = typename V::scalar;
   using S = Batch<T, F>;
-  using Frames = FramesOfTrees<WideHierarchy<V, F>, SiblingTest>;
+  using Frames = FramesOfTrees<WideBody<WideHierarchy<V, F>>, SiblingTest>;
   using Frames::trees_, Frames::frames_;
 
  public:

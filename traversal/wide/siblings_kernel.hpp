@@ -56,7 +56,7 @@ struct SiblingsKernel {
   template <class V, int F>
   using Hierarchy = typename RelativeFrame<V, F>::Tree;
   template <class V, int F>
-  using Body = WideBody<Hierarchy<V, F>>;
+  using Body = BodyOf<V, Hierarchy<V, F>>;
 
   template <class V, int F>
   class PairFrame {

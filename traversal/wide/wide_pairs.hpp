@@ -20,6 +20,7 @@
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/unless_done.hpp"
 #include "traversal/counters.hpp"
+#include "traversal/frame.hpp"
 #include "traversal/shape.hpp"
 #include "traversal/wide/siblings_kernel.hpp"
 #include "traversal/wide/wide_margins.hpp"
@@ -41,15 +42,20 @@ class WidePairs {
 
  public:
   /// One body for each shape, which must outlive this.
-  explicit WidePairs(std::span<const WideShape<V, F, Kernel>> shapes, Memory memory = {})
-      : memory_(std::move(memory)) {
+  /// `frame` is for bodies of AnyVolume; all others are tested in a body's frame.
+  explicit WidePairs(std::span<const WideShape<V, F, Kernel>> shapes, Memory memory = {},
+                     Frame frame = Frame::body)
+      : memory_(std::move(memory)), frame_(frame) {
     bodies_.reserve(shapes.size());
     for (const auto& shape : shapes) add(shape);
   }
 
   void add(const WideShape<V, F, Kernel>& shape) {
     const auto& [mesh, hierarchy] = shape;
-    bodies_.emplace_back(*mesh, *hierarchy);
+    if constexpr (takes_frames)
+      bodies_.emplace_back(*mesh, *hierarchy, frame_);
+    else
+      bodies_.emplace_back(*mesh, *hierarchy);
     meshes_.push_back(mesh);
     [[maybe_unused]] const bool is_first = culling_.add_body(hierarchy->supports());
     if constexpr (MadeOnDemand<Hierarchy>)
@@ -110,7 +116,7 @@ class WidePairs {
   /// Sets the pose of one of the movers, on any thread.
   void set_pose(std::uint32_t i) {
     move(i);
-    memory_.require(bodies_[i], poses_[i]);
+    require(i);
   }
 
   /// Queries the pairs in `slots` as worker `number`, which is below the number of threads: decides
@@ -132,8 +138,17 @@ class WidePairs {
   /// opened, or a triangle against a leaf.
   std::size_t front_size() const { return memory_.front_size(); }
   std::size_t front_size(std::uint32_t slot) const { return memory_.front_size(slot); }
+  /// Counts the volumes that have been posed into the world since this was called last.
+  template <class Counter>
+  void count_posed(Counter& counter)
+    requires requires(Body& body) { body.posed(); }
+  {
+    for (const Body& body : bodies_)
+      if (body.posed()) counter.posed(body.posed()->take_posed());
+  }
 
  private:
+  static constexpr bool takes_frames = requires(Body& body) { body.posed(); };
   static constexpr std::size_t at_once = 2;
   static constexpr std::uint32_t most_pairs = 1u << 30;  // early tests gather at 2 p, an int32
 
@@ -167,6 +182,10 @@ class WidePairs {
   }
 
   void move(std::size_t i) { memory_.move(i, bodies_[i], poses_[i], culling_, *origin_); }
+  void require(std::size_t i) {
+    memory_.require(bodies_[i], poses_[i]);
+    if constexpr (takes_frames) bodies_[i].place(*origin_);
+  }
 
   template <class Slots, class MakeQuery, class Take>
   void run_counting(const Slots& slots, std::size_t number, Counting& counter,
@@ -235,7 +254,7 @@ class WidePairs {
       const std::uint32_t p = near[next++];
       Running& now = *running[k];
       const auto [i, j] = pairs_[p];
-      memory_.require(bodies_[i], poses_[i]), memory_.require(bodies_[j], poses_[j]);
+      require(i), require(j);
       now.pair = p;
       now.query.emplace(make_query(p, pairs_[p]));
       now.traversal.emplace(bodies_[i], bodies_[j], *now.query, counter,
@@ -275,6 +294,7 @@ class WidePairs {
   std::vector<Worker> workers_;
   const Vec3<double>* origin_ = nullptr;  // of the spheres in culling_
   [[no_unique_address]] Memory memory_;
+  Frame frame_;
   std::span<const Pose> poses_;
   std::vector<std::uint32_t> moved_;  // in the frame that `begin` began last
 };
