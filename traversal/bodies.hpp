@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The bodies of a scene over one kind of volume. StrategyPairs uses no more than this interface,
 /// so that the bvlab program can substitute bodies whose volume is chosen at run time (AnyBodies).
+/// What pairs of them run is compiled once for all volumes.
 #pragma once
 
 #include <algorithm>
@@ -84,10 +85,12 @@ class Bodies {
   }
 
   template <class Query, class Counter>
-  BodyPair<B, V, Query, Counter> pair(const ObjectPair& pair, Query& query, Counter& counter) {
+  PairOfBodies<width<B>(), Query, Counter> pair(const ObjectPair& pair, Query& query,
+                                                Counter& counter) {
     // Several threads may query pairs at once.
     static thread_local Workspace workspace;
-    return {bodies_[pair.i], bodies_[pair.j], query, counter, workspace};
+    return BodyPair<B, V, Query, Counter>(bodies_[pair.i], bodies_[pair.j], query, counter,
+                                          workspace);
   }
 
   /// For each p of `fresh`, writes to `apart[p]` whether the query culls the roots of `pairs[p]`,
@@ -106,7 +109,9 @@ class Bodies {
     bool any_far = false;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (!wanted_[i]) continue;
-      bodies_[i].require(0, counter);
+      std::size_t posed = 0;
+      bodies_[i].require(0, posed);
+      counter.posed(posed);
       roots_[i] = bodies_[i].volumes()[0];
       any_far = any_far || bodies_[i].is_far();
     }
@@ -131,17 +136,10 @@ class Bodies {
   template <class Query>
   bool roots_are_apart(const ObjectPair& pair, Query& query) {
     static thread_local Workspace workspace;
-    auto &a = bodies_[pair.i], &b = bodies_[pair.j];
-    const auto* placement = placement_in_b(a, b, workspace);
-    if constexpr (PlacedRelatively<V>) {
-      PairBatch<Element<typename V::scalar>, false> roots;
-      roots.put(0, {0, 0});
-      return roots.culled(
-                 StoredVolumes<V>{a.hierarchy().volumes(), b.hierarchy().volumes(), *placement}, 1,
-                 query) &
-             1;
-    }
-    return false;
+    const auto tests =
+        tests_between<1, V, Query>(bodies_[pair.i], bodies_[pair.j], workspace);
+    const std::uint32_t root = 0;
+    return tests.culled->one(tests, &root, &root, query, nullptr) & 1;
   }
 
   std::vector<Body<V>> bodies_;

@@ -29,8 +29,7 @@ namespace bvlab {
 /// mesh: the diagonal of the patch's box, whatever the volume.
 class PatchSizes {
  public:
-  template <BoundingVolume V>
-  PatchSizes(const TriangleMesh& mesh, const Hierarchy<V>& hierarchy) : sizes_(hierarchy.size()) {
+  PatchSizes(const TriangleMesh& mesh, const Tree& hierarchy) : sizes_(hierarchy.size()) {
     std::vector<std::array<Vec3<double>, 2>> boxes(hierarchy.size());
     // Children come after their parent.
     for (std::size_t i = hierarchy.size(); i-- > 0;) {
@@ -161,7 +160,7 @@ class Budgeted {
  private:
   /// The largest size, enlarged for rotations that are not quite orthonormal and for rounding to
   /// float64.
-  double deepest(const Body<V>& a, const Body<V>& b) const {
+  double deepest(const MovingBody& a, const MovingBody& b) const {
     const double stretch = std::max(stretch_of(a.pose()), stretch_of(b.pose()));
     const double grain = 16 * unit_roundoff<double> *
                          (a.pose().translation.norm() + a.extent().reach +

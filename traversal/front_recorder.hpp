@@ -59,8 +59,8 @@ class FrontSweep {
 
   explicit FrontSweep(Traversal& traversal) : traversal_(traversal) {}
 
-  const auto& a() const { return pair().a().hierarchy(); }
-  const auto& b() const { return pair().b().hierarchy(); }
+  const auto& a() const { return pair().a().tree(); }
+  const auto& b() const { return pair().b().tree(); }
   Query& query() const { return traversal_.query(); }
   auto& workspace() const { return traversal_.workspace(); }
 
@@ -99,7 +99,7 @@ class FrontSweep {
     Step step;
     step.pairs.put(0, nodes);
     pair().open_up(step.pairs, 0, traversal_.recorder().no_entries(), traversal_.recorder(),
-                   traversal_.leaves(), traversal_.counter());
+                   traversal_.leaves());
   }
 
   /// Which of the pairs nodes(0), nodes(1), ..., at most W, the query culls, as bits.
@@ -137,7 +137,7 @@ class FrontSweep {
 
  private:
   Pair& pair() const { return traversal_.pair(); }
-  void require(const NodePair& nodes) { pair().require(nodes, traversal_.counter()); }
+  void require(const NodePair& nodes) { pair().require(nodes); }
 
   template <class Nodes>
   [[gnu::always_inline]] Step gathered(std::size_t count, Nodes&& nodes) {
@@ -205,8 +205,8 @@ class FrontRecorder {
     for (std::uint64_t rest = found.apart; rest; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
       const NodePair nodes = step.pairs[i];
-      const bool opens = front_.opens(query, pair.a().hierarchy().node(nodes.a),
-                                      pair.b().hierarchy().node(nodes.b), step.pairs.gap(i));
+      const bool opens = front_.opens(query, pair.a().tree().node(nodes.a),
+                                      pair.b().tree().node(nodes.b), step.pairs.gap(i));
       opened |= std::uint64_t{opens} << i;
     }
     for (std::uint64_t rest = found.apart & ~opened; rest; rest &= rest - 1) {

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The kernel that gathers: a step tests up to W pairs of nodes from anywhere in both trees, a lane
-/// each, and replaces those that overlap by pairs of their children. It runs on any volume
-/// and fan-out. In the world frame a volume is posed when it is first needed; else, and where a
-/// body is too far from the origin for float (Body::is_far), that of a is
-/// posed into the frame of b in each test.
+/// each, and replaces those that overlap by pairs of their children. It runs on trees of any volume
+/// and fan-out, in either frame (volume_tests.hpp).
 ///
 /// See traversal.hpp for the members of a pair. A step keeps its pairs and their gaps in memory,
-/// since the test itself is out of line: it is compiled once for all fronts and counters.
+/// since the test itself is out of line.
 #pragma once
 
 #include <algorithm>
@@ -20,37 +18,25 @@
 
 namespace bvlab {
 
-/// The placement of a in the frame of b, if volumes are tested there; null in the world frame,
-/// unless a body is far. It lies in the workspace and is valid until the next call.
-template <class V>
-const PlacementOf<V>* placement_in_b(Body<V>& a, Body<V>& b, Workspace& workspace) {
-  if constexpr (PlacedRelatively<V>)
-    if (a.frame() == Frame::body || a.is_far() || b.is_far()) {
-      auto& placement = workspace.template scratch<PlacementOf<V>>();
-      placement = relative_placement<V>(RelativePose(a.orthonormal_pose(), b.orthonormal_pose()),
-                                        a.hierarchy().extent().reach);
-      return &placement;
-    }
-  return nullptr;
-}
-
-/// Two bodies as this kernel sees them. B is the scalar or batch in which volumes are tested.
-template <class B, BoundingVolume V>
+/// Two bodies as this kernel sees them.
+template <std::size_t kLanes, class Query>
 class GatheredPair {
  public:
-  using Node = typename Hierarchy<V>::Node;
+  using Node = Tree::Node;
   using Workspace = bvlab::Workspace;
-  template <class Query, class Counter, class Recorder>
-  using Leaves = HeldPrimitives<V, Query, Counter, typename Recorder::Front>;
-  static constexpr std::size_t W = width<B>();
+  template <class SameQuery, class Counter, class Recorder>
+  using Leaves = HeldPrimitives<Query, Counter, typename Recorder::Front>;
+  static constexpr std::size_t W = kLanes;  ///< pairs tested at once
 
-  GatheredPair(Body<V>& a, Body<V>& b, Workspace& workspace)
-      : placement_(placement_in_b(a, b, workspace)), a_(a), b_(b), open_(workspace.open) {
+  GatheredPair(TreeBody& a, TreeBody& b, Workspace& workspace, const VolumeTests<Query>& tests)
+      : tests_(tests), a_(a), b_(b), open_(workspace.open) {
     open_.clear();
   }
 
-  Body<V>& a() const { return a_; }
-  Body<V>& b() const { return b_; }
+  TreeBody& a() const { return a_; }
+  TreeBody& b() const { return b_; }
+  /// The number of volumes posed in so many tests.
+  std::size_t posed(std::size_t tests) const { return posed_ + (tests_.placement ? tests : 0); }
   /// The pairs that wait for a test, a stack.
   OpenPairs& open() { return open_; }
   bool done() const { return open_.empty(); }
@@ -58,16 +44,16 @@ class GatheredPair {
   /// Pairs that are tested together, and their gaps if kGaps.
   template <bool kGaps>
   struct Step {
-    PairBatch<B, kGaps> pairs;
+    PairBatch<W, kGaps> pairs;
     std::size_t count = 0;
 
-    std::uint64_t lanes() const { return PairBatch<B, kGaps>::all(count); }
+    std::uint64_t lanes() const { return PairBatch<W, kGaps>::all(count); }
   };
   template <TestFor wanted>
   using StepFor = Step<wanted != TestFor::overlap>;
 
   /// Takes the next step's pairs from the stack and passes them to `visit`.
-  template <TestFor wanted, class Query, class Counter, class Recorder, class Visit>
+  template <TestFor wanted, class Counter, class Recorder, class Visit>
   [[gnu::always_inline]] void next(Query&, Counter&, Recorder&, Visit&& visit) {
     StepFor<wanted> step;
     step.count = std::min(W, open_.size());
@@ -76,61 +62,48 @@ class GatheredPair {
   }
 
   /// In the world frame, poses the two volumes unless that has been done since the last move.
-  template <class Counter>
-  void require(const NodePair& pair, Counter& counter) const {
-    a_.require(pair.a, counter);
-    b_.require(pair.b, counter);
+  void require(const NodePair& pair) {
+    a_.require(pair.a, posed_), b_.require(pair.b, posed_);
   }
   /// Which of the step's pairs the query culls. Their volumes must have been required.
-  template <TestFor, bool kGaps, class Query, class Counter>
-  [[gnu::always_inline]] LanesApart test(Step<kGaps>& step, Query& query, Counter& counter) const {
-    count_posed(step.count, counter);
-    if constexpr (PlacedRelatively<V>)
-      if (placement_) [[unlikely]]
-        return {culled_where_stored(step.pairs, stored_volumes(), step.count, query)};
-    return {step.pairs.culled(posed_volumes(), step.count, query)};
+  template <TestFor, bool kGaps, class Counter>
+  [[gnu::always_inline]] LanesApart test(Step<kGaps>& step, Query& query, Counter&) const {
+    return {step.pairs.culled(tests_, step.count, query)};
   }
   /// Replaces the pairs in `lanes` by pairs of their children; of two leaves, the primitives are
   /// held for a test. Entries are told that they are replaced, or kept as near.
-  template <bool kGaps, class Entries, class Recorder, class Leaves, class Query, class Counter>
+  template <bool kGaps, class Entries, class Recorder, class Leaves, class Counter>
   [[gnu::always_inline]] void pass_on(const Step<kGaps>& step, LanesApart, std::uint64_t lanes,
                                       const Entries& entries, Recorder& recorder, Leaves& leaves,
-                                      Query&, Counter& counter) {
+                                      Query&, Counter&) {
     open_.reserve(room);
     step.pairs.template for_each_near<Query>(
         lanes, [&](std::size_t i) __attribute__((always_inline)) {
-          open_up(step.pairs, i, entries, recorder, leaves, counter);
+          open_up(step.pairs, i, entries, recorder, leaves);
         });
   }
-  template <class Pairs, class Entries, class Recorder, class Leaves, class Counter>
+  template <class Pairs, class Entries, class Recorder, class Leaves>
   [[gnu::always_inline]] void open_up(const Pairs& pairs, std::size_t i, const Entries& entries,
-                                      Recorder& recorder, Leaves& leaves, Counter& counter) {
+                                      Recorder& recorder, Leaves& leaves) {
     const NodePair pair = pairs[i];
-    const Node &a = a_.hierarchy().node(pair.a), &b = b_.hierarchy().node(pair.b);
+    const Node &a = a_.tree().node(pair.a), &b = b_.tree().node(pair.b);
     if (a.count && b.count) {
       leaves.hold(a, b, entries.keep(pairs, i, EntryState::near, 0));
     } else {
       entries.replace(i);
-      descend(pair, a, b, recorder.descent(a, b), counter);
+      descend(pair, a, b, recorder.descent(a, b));
     }
   }
 
  private:
   static constexpr std::size_t room = 4 * W;  // for pairs pushed without a check
 
-  template <class Counter>
-  [[gnu::always_inline]] void count_posed(std::size_t count, Counter& counter) const {
-    if constexpr (Counter::counts)
-      if (placement_) counter.posed(count);
-  }
-
   /// The first children are pushed last, so that they are tested first. Room for four pairs of each
   /// lane has been reserved; larger nodes reserve their own.
-  template <class Counter>
   [[gnu::always_inline]] void descend(const NodePair& pair, const Node& a, const Node& b,
-                                      Descent descent, Counter& counter) {
+                                      Descent descent) {
     if (descent == Descent::both) {
-      a_.require_children(a, counter), b_.require_children(b, counter);
+      a_.require_children(a, posed_), b_.require_children(b, posed_);
       if (a.children + b.children > 4) [[unlikely]]
         return push_all(open_, a, b);
       open_.push({a.first + 1, b.first + 1});
@@ -138,20 +111,20 @@ class GatheredPair {
       open_.push({a.first, b.first + 1});
       open_.push({a.first, b.first});
     } else if (descent == Descent::b) {
-      open_one(b_, b, counter, [other = pair.a](std::uint32_t child) {
+      open_one(b_, b, [other = pair.a](std::uint32_t child) {
         return NodePair{other, child};
       });
     } else {
-      open_one(a_, a, counter, [other = pair.b](std::uint32_t child) {
+      open_one(a_, a, [other = pair.b](std::uint32_t child) {
         return NodePair{child, other};
       });
     }
   }
   /// Called for a or for b, in a branch each: a predicted branch does not wait for the sizes.
-  template <class Counter, class WithChild>
-  [[gnu::always_inline]] void open_one(Body<V>& body, const Node& node, Counter& counter,
+  template <class WithChild>
+  [[gnu::always_inline]] void open_one(TreeBody& body, const Node& node,
                                        const WithChild& with_child) {
-    body.require_children(node, counter);
+    body.require_children(node, posed_);
     if (node.children > 2) [[unlikely]]
       push_from_third(open_, node, with_child);
     open_.push(with_child(node.first + 1));
@@ -170,23 +143,10 @@ class GatheredPair {
     for (std::uint32_t i = a.children; i-- > 0;)
       for (std::uint32_t j = b.children; j-- > 0;) open.push({a.first + i, b.first + j});
   }
-  template <class Batch, class Query>
-  [[gnu::noinline]] static std::uint64_t culled_where_stored(Batch& batch,
-                                                             const StoredVolumes<V>& volumes,
-                                                             std::size_t count, Query& query) {
-    return batch.culled(volumes, count, query);
-  }
-
-  [[gnu::always_inline]] PosedVolumes<V> posed_volumes() const {
-    return {a_.volumes(), b_.volumes()};
-  }
-  [[gnu::always_inline]] StoredVolumes<V> stored_volumes() const {
-    return {a_.hierarchy().volumes(), b_.hierarchy().volumes(), *placement_};
-  }
-
-  const PlacementOf<V>* placement_;
-  Body<V>& a_;
-  Body<V>& b_;
+  const VolumeTests<Query> tests_;
+  TreeBody& a_;
+  TreeBody& b_;
+  std::size_t posed_ = 0;
   OpenPairs& open_;
 };
 

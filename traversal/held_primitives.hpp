@@ -15,12 +15,12 @@
 
 namespace bvlab {
 
-template <class V, class Query, class Counter, class F>
+template <class Query, class Counter, class F>
 class HeldPrimitives {
  public:
-  using Node = typename Hierarchy<V>::Node;
+  using Node = Tree::Node;
 
-  HeldPrimitives(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace,
+  HeldPrimitives(TreeBody& a, TreeBody& b, Query& query, Counter& counter, Workspace& workspace,
                  F& front)
       : a_(a),
         b_(b),
@@ -31,7 +31,7 @@ class HeldPrimitives {
         pending_(workspace.pending) {}
   /// The leaf stage of a traversal from a front (see traversal.hpp).
   template <class Pair, class Recorder>
-  HeldPrimitives(Body<V>& a, Body<V>& b, const Pair&, Query& query, Counter& counter,
+  HeldPrimitives(TreeBody& a, TreeBody& b, const Pair&, Query& query, Counter& counter,
                  Workspace& workspace, const Recorder& recorder)
       : HeldPrimitives(a, b, query, counter, workspace, recorder.front()) {
     pending_.clear();
@@ -93,7 +93,7 @@ class HeldPrimitives {
   /// Tests all held pairs, then the triangles of two large leaves until the query is satisfied.
   /// It uses a second object on the same buffer, so that the caller's stays in registers in the
   /// usual case.
-  [[gnu::noinline]] static Portions in_portions(Body<V>& body_a, Body<V>& body_b, Query& query,
+  [[gnu::noinline]] static Portions in_portions(TreeBody& body_a, TreeBody& body_b, Query& query,
                                                 Counter& counter, Workspace& workspace, F& front,
                                                 const Node& a, const Node& b, std::size_t slot,
                                                 bool satisfied) {
@@ -110,8 +110,8 @@ class HeldPrimitives {
   }
 
   void hold_pair(std::uint32_t i, std::uint32_t j, std::size_t slot) {
-    pending_.push_back({&a_.triangle(i), &b_.triangle(j), a_.hierarchy().primitive(i),
-                        b_.hierarchy().primitive(j), slot});
+    pending_.push_back({&a_.triangle(i), &b_.triangle(j), a_.tree().primitive(i),
+                        b_.tree().primitive(j), slot});
   }
 
   // Small for most fronts; inlined, it lets the whole traversal stay in registers.
@@ -126,8 +126,8 @@ class HeldPrimitives {
     return outcome.satisfied;
   }
 
-  Body<V>& a_;
-  Body<V>& b_;
+  TreeBody& a_;
+  TreeBody& b_;
   Query& query_;
   Counter& counter_;
   Workspace& workspace_;

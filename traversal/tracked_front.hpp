@@ -25,6 +25,12 @@ struct TraversalStatistics {
   bool everything = true;     ///< false if the query ended the run early
   std::size_t volumes = 0;    ///< pairs of volumes tested
   std::size_t triangles = 0;  ///< pairs of primitives tested
+  std::size_t posed = 0;      ///< volumes posed
+
+  template <class Counter>
+  void count(Counter& counter) const {
+    counter.tested(volumes), counter.posed(posed), counter.primitives(triangles);
+  }
 };
 
 /// What a run has found about an entry.

@@ -33,7 +33,8 @@
 /// Members of the leaves:
 ///   test_due(), finish()              test triangles that need not wait any longer, or all; return
 ///                                     whether the query is satisfied
-///   tested()                          pairs of triangles tested so far; called by run() alone
+///   tested()                          pairs of triangles tested so far; called by run() alone, as
+///                                     posed() of a pair is
 #pragma once
 
 #include <bit>
@@ -67,14 +68,15 @@ class Traversal {
                                                               : TestFor::overlap;
 
   /// The recorder is constructed from `start`; a FrontRecorder refers to it. All must outlive this.
-  template <class Body, class Start>
+  /// `of_pair` is what a pair takes beside the bodies.
+  template <class Body, class Start, class... OfPair>
   Traversal(Body& a, Body& b, Query& query, Counter& counter, typename Pair::Workspace& workspace,
-            Start&& start)
+            Start&& start, const OfPair&... of_pair)
       : query_(query),
         counter_(counter),
         workspace_(workspace),
         recorder_(start),
-        pair_(a, b, workspace),
+        pair_(a, b, workspace, of_pair...),
         leaves_(a, b, pair_, query, counter, workspace, recorder_) {
     recorder_.begin(pair_);
   }
@@ -87,7 +89,7 @@ class Traversal {
   [[gnu::always_inline]] TraversalStatistics run() {
     while (step()) {
     }
-    return {!satisfied_, tests_, leaves_.tested()};
+    return {!satisfied_, tests_, leaves_.tested(), pair_.posed(tests_)};
   }
 
   /// Tests a step's volumes and passes on what is near. Always inlined: what it finds stays in

@@ -75,8 +75,8 @@ struct Overlapping {
   }
 
   void pose_all(Body<V>& body) const {
-    NotCounting counter;
-    for (std::uint32_t node = 0; node < hierarchy.size(); ++node) body.require(node, counter);
+    std::size_t posed = 0;
+    for (std::uint32_t node = 0; node < hierarchy.size(); ++node) body.require(node, posed);
   }
 
  private:

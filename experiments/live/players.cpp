@@ -5,8 +5,7 @@
 #include <cstdlib>
 
 #include "experiments/live/watched_front.hpp"
-#include "experiments/replay/any_bodies.hpp"
-#include "experiments/replay/loops_of.hpp"
+#include "experiments/replay/bodies_of.hpp"
 #include "experiments/replay/played.hpp"
 #include "experiments/replay/wide_of.hpp"
 #include "hierarchies/wide/slab_box_sibling_test.hpp"
@@ -15,42 +14,40 @@
 namespace bvlab::live {
 namespace {
 
-/// The fronts of the strategies above.
-using Fronts = TypeList<NoFront, Front, RisingFront, MarginSweep>;
+/// A pair that tells which entries of its front a run has tested, if it is watched.
+template <class Query>
+class WatchedPair : public PairOfBodies<BodiesInside<Query>::W, Query, Counting> {
+  using Pair = PairOfBodies<BodiesInside<Query>::W, Query, Counting>;
 
-template <BoundingVolume V, class Query>
-class WatchedLoops final : public detail::BodiesOver<V, Query> {
  public:
-  WatchedLoops(const Trace& trace, Run& run)
-      : detail::BodiesOver<V, Query>(
-            static_cast<const HierarchiesOf<V>&>(*run.hierarchies).shapes(trace.objects),
-            frame_of(run.variant)),
-        run_(run) {}
-  AnyLoop loop(const std::type_info& front) const override { return find(front, Fronts{}); }
-
- private:
-  template <class... All>
-  static AnyLoop find(const std::type_info& front, TypeList<All...>) {
-    AnyLoop found = nullptr;
-    ((front == typeid(All) ? void(found = reinterpret_cast<AnyLoop>(traverse<All>)) : void()), ...);
-    return found;
-  }
+  WatchedPair(const Pair& pair, std::vector<NodePair>* tested) : Pair(pair), tested_(tested) {}
 
   template <class Front>
-  static TraversalStatistics traverse(BodyLoops<Query>& bodies, const ObjectPair& pair,
-                                      Query& query, Front& front) {
-    auto& self = static_cast<WatchedLoops&>(bodies);
-    const auto between = self.pair(pair, query);
-    if constexpr (std::is_same_v<Front, NoFront>) {
-      return between.from_front(front);
-    } else {
-      const std::size_t n = self.size(), i = pair.i, j = pair.j;
-      const bool watched = i * (2 * n - i - 1) / 2 + j - i - 1 == self.run_.watched;
-      return between.from_front(WatchedFront(front, watched ? &self.run_.tested : nullptr));
-    }
+  TraversalStatistics from_front(Front&& front) const {
+    if constexpr (std::is_same_v<std::remove_cvref_t<Front>, NoFront>)
+      return Pair::from_front(front);
+    else
+      return Pair::from_front(WatchedFront(front, tested_));
   }
 
-  Run& run_;
+ private:
+  std::vector<NodePair>* tested_;
+};
+
+template <class Query>
+class WatchedBodies : public AnyBodies<Query> {
+ public:
+  WatchedBodies(std::unique_ptr<BodiesInside<Query>> inside, Run& run)
+      : AnyBodies<Query>(std::move(inside)), run_(&run) {}
+
+  WatchedPair<Query> pair(const ObjectPair& pair, Query& query, Counting& counter) {
+    const std::size_t n = this->size(), i = pair.i, j = pair.j;
+    const bool watched = i * (2 * n - i - 1) / 2 + j - i - 1 == run_->watched;
+    return {AnyBodies<Query>::pair(pair, query, counter), watched ? &run_->tested : nullptr};
+  }
+
+ private:
+  Run* run_;
 };
 
 /// In place of hierarchies by mesh: no body is added.
@@ -60,17 +57,17 @@ struct NothingIsAdded {
 
 template <class Query>
 std::unique_ptr<detail::AnyPairs<Query>> gathered(const Trace& trace, Run& run) {
-  std::unique_ptr<BodyLoops<Query>> loops;
+  std::unique_ptr<BodiesInside<Query>> inside;
   Volumes::with(run.variant.volume, [&]<class V>(std::type_identity<V>) {
-    loops = std::make_unique<WatchedLoops<V, Query>>(trace, run);
+    inside = detail::bodies_over<V, Query>(*run.hierarchies, trace.objects, frame_of(run.variant));
   });
   std::unique_ptr<detail::AnyPairs<Query>> made;
-  if (loops)
+  if (inside)
     Strategies::with(run.variant.strategy, [&]<class Strategy>(std::type_identity<Strategy>) {
-      using Bodies = AnyBodies<Query, Counting, Fronts>;
-      using Pairs = StrategyPairs<Bodies, Strategy>;
+      using Pairs = StrategyPairs<WatchedBodies<Query>, Strategy>;
       made = std::make_unique<detail::PairsOver<Pairs, Query, NothingIsAdded>>(
-          std::make_shared<NothingIsAdded>(), Pairs(Bodies(std::move(loops)), Strategy{}));
+          std::make_shared<NothingIsAdded>(),
+          Pairs(WatchedBodies<Query>(std::move(inside), run), Strategy{}));
     });
   return made;
 }

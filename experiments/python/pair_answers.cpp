@@ -21,7 +21,7 @@ class AskedBodies {
  public:
   AskedBodies(const AnyHierarchies& hierarchies, std::string_view volume, std::size_t objects,
               Frame frame)
-      : bodies_(loops_of<Query>(volume).bodies(hierarchies, objects, frame)), poses_(objects) {}
+      : bodies_(bodies_entry<Query>(volume).bodies(hierarchies, objects, frame)), poses_(objects) {}
 
   std::size_t size() const { return poses_.size(); }
   void add(const OneOfHierarchies& of_mesh) {
@@ -42,7 +42,7 @@ class AskedBodies {
   }
 
  private:
-  AnyBodies<Query, NotCounting> bodies_;
+  AnyBodies<Query> bodies_;
   std::vector<std::optional<Pose>> poses_;
   std::optional<Vec3<double>> origin_;
 };

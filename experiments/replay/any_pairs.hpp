@@ -43,7 +43,8 @@ class AnyPairs {
   virtual const std::vector<ObjectPair>& pairs() const = 0;
   virtual std::size_t front_size() const = 0;
 
-  /// Counts the volumes that have been posed since this was called last. O(nodes) a body.
+  /// Counts the volumes that have been posed since this was called last, where that is not counted
+  /// at once.
   virtual void count_posed(Counting& counter) = 0;
   /// Calls with the number of each pair, and with its front if that is a list of pairs of nodes.
   virtual void see_fronts(
@@ -84,10 +85,7 @@ class PairsOver final : public AnyPairs<Query> {
   std::size_t front_size() const override { return pairs_.front_size(); }
 
   void count_posed([[maybe_unused]] Counting& counter) override {
-    if constexpr (requires { pairs_.bodies().count_posed(counter); })
-      pairs_.bodies().count_posed(counter);
-    else if constexpr (requires { pairs_.count_posed(counter); })
-      pairs_.count_posed(counter);
+    if constexpr (requires { pairs_.count_posed(counter); }) pairs_.count_posed(counter);
   }
   void see_fronts(
       [[maybe_unused]] const std::function<void(std::size_t, std::span<const NodePair>)>& see)

@@ -65,9 +65,9 @@ class CoherenceMeter {
         fronts_(pairs_.size()),
         past_(pairs_.size()),
         hierarchies_(volume_entry(variant.volume).hierarchies(meshes, variant)),
-        bodies_(loops_of<Query>(variant.volume)
+        bodies_(bodies_entry<Query>(variant.volume)
                     .bodies(*hierarchies_, trace.objects, frame_of(variant))),
-        apart_(loops_of<Distance>(variant.volume)
+        apart_(bodies_entry<Distance>(variant.volume)
                    .bodies(*hierarchies_, trace.objects, frame_of(variant))) {
     for (const auto& mesh : meshes) {
       middles_.emplace_back(mesh);
@@ -212,8 +212,8 @@ class CoherenceMeter {
   std::vector<Front> fronts_;
   std::vector<Past> past_;
   std::unique_ptr<AnyHierarchies> hierarchies_;
-  AnyBodies<Query, NotCounting> bodies_;
-  AnyBodies<Distance, NotCounting> apart_;
+  AnyBodies<Query> bodies_;
+  AnyBodies<Distance> apart_;
   std::vector<Middle> middles_;
   std::vector<double> leaf_sizes_;
   std::vector<Pose> before_;
@@ -235,7 +235,7 @@ class CoherenceMeter {
 template <class Query>
 class RebuildSearch {
  public:
-  explicit RebuildSearch(AnyBodies<Query, NotCounting> bodies) : bodies_(std::move(bodies)) {}
+  explicit RebuildSearch(AnyBodies<Query> bodies) : bodies_(std::move(bodies)) {}
 
   /// `poses[f]` are all bodies' in frame f.
   BestRebuilds search(const ObjectPair& pair, const std::vector<std::vector<Pose>>& poses) {
@@ -265,7 +265,7 @@ class RebuildSearch {
     return bodies_.pair(pair, query, counter).from_front(front).volumes;
   }
 
-  AnyBodies<Query, NotCounting> bodies_;
+  AnyBodies<Query> bodies_;
   std::vector<Contact> found_;
 };
 
@@ -287,8 +287,8 @@ BestRebuilds best_rebuilds_under(std::span<const TriangleMesh> meshes, const Tra
   std::vector<std::vector<Pose>> poses(trace.frames, std::vector<Pose>(trace.objects));
   for (std::size_t frame = 0; frame < trace.frames; ++frame) trace.poses(frame, poses[frame]);
   const auto hierarchies = volume_entry(variant.volume).hierarchies(meshes, variant);
-  RebuildSearch<Query> search(AnyBodies<Query, NotCounting>(
-      loops_of<Query>(variant.volume).bodies(*hierarchies, trace.objects, frame_of(variant))));
+  RebuildSearch<Query> search(AnyBodies<Query>(
+      bodies_entry<Query>(variant.volume).bodies(*hierarchies, trace.objects, frame_of(variant))));
   BestRebuilds sum;
   for (const auto& pair : object_pairs(trace)) {
     const BestRebuilds best = search.search(pair, poses);

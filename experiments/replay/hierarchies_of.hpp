@@ -9,7 +9,7 @@
 #include "experiments/replay/topology_of.hpp"
 #include "experiments/replay/volume_entry.hpp"
 #include "hierarchies/hierarchy.hpp"
-#include "traversal/bodies.hpp"
+#include "traversal/shape.hpp"
 
 namespace bvlab {
 
@@ -35,9 +35,9 @@ class HierarchiesOf final : public AnyHierarchies {
   const TriangleMesh& mesh(std::size_t i) const override { return meshes_[i]; }
   const Hierarchy<V>& operator[](std::size_t i) const { return all_[i]; }
 
-  Shape<V> shape(std::size_t mesh) const { return {&meshes_[mesh], &all_[mesh]}; }
+  ShapeOver<Hierarchy<V>> shape(std::size_t mesh) const { return {&meshes_[mesh], &all_[mesh]}; }
   /// Object i uses mesh i mod the number of meshes.
-  std::vector<Shape<V>> shapes(std::size_t objects) const {
+  std::vector<ShapeOver<Hierarchy<V>>> shapes(std::size_t objects) const {
     return shapes_over(meshes_, all_, objects);
   }
 

@@ -17,28 +17,14 @@ namespace bvlab {
 
 namespace detail {
 
-/// All the fronts that a strategy may start from.
-template <class Strategy, class List = Fronts>
-struct FrontsOf {
-  using type = Fronts;
-};
-template <class Strategy, class... Shared>
-  requires requires { typename Strategy::OwnFronts; }
-struct FrontsOf<Strategy, TypeList<Shared...>> {
-  template <class... Own>
-  static TypeList<Shared..., Own...> with(TypeList<Own...>);
-  using type = decltype(with(typename Strategy::OwnFronts{}));
-};
-
 /// `hierarchies` are of the volume.
 template <class Strategy, class Query>
 std::unique_ptr<AnyPairs<Query>> strategy_pairs(const VolumeEntry& volume,
                                                 std::shared_ptr<const AnyHierarchies> hierarchies,
                                                 std::size_t objects, const Variant& variant) {
-  using Bodies = AnyBodies<Query, Counting, typename FrontsOf<Strategy>::type>;
-  using Pairs = StrategyPairs<Bodies, Strategy>;
-  Bodies bodies(loops_of<Query>(volume.name).bodies(*hierarchies, objects, frame_of(variant)),
-                [&](const std::type_info& front) { return own_loop<Query>(volume.name, front); });
+  using Pairs = StrategyPairs<AnyBodies<Query>, Strategy>;
+  AnyBodies<Query> bodies(
+      bodies_entry<Query>(volume.name).bodies(*hierarchies, objects, frame_of(variant)));
   return std::make_unique<PairsOver<Pairs, Query, HierarchiesByMesh>>(
       std::make_shared<HierarchiesByMesh>(volume, std::move(hierarchies), variant),
       Pairs(std::move(bodies), made_from<Strategy>(variant.strategy)));

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/replay/loops_entry.hpp"
+#include "experiments/replay/bodies_of.hpp"
 #include "experiments/replay/play_entry.hpp"
 #include "experiments/replay/volume_entry.hpp"
 #include "experiments/replay/wide_entry.hpp"
@@ -25,11 +25,7 @@ std::span<const PlayEntry* const> play_entries();
 std::span<const WideEntry* const> wide_entries();
 /// One for each volume; specialised for each query.
 template <class Query>
-std::span<const LoopsEntry<Query>* const> loops_entries();
-
-/// One for each volume and each strategy that has a front of its own.
-template <class Query>
-std::span<const OwnLoopsEntry<Query>* const> own_loops_entries();
+std::span<const BodiesEntry<Query>* const> bodies_entries();
 
 /// A name and what it is.
 struct Named {
@@ -60,17 +56,9 @@ const WideEntry& wide_entry(std::string_view volume, std::string_view query);
 
 /// Of a volume that exists.
 template <class Query>
-const LoopsEntry<Query>& loops_of(std::string_view volume) {
-  for (const auto* entry : loops_entries<Query>())
+const BodiesEntry<Query>& bodies_entry(std::string_view volume) {
+  for (const auto* entry : bodies_entries<Query>())
     if (entry->volume == volume) return *entry;
-  std::abort();
-}
-/// Of that volume the loop from a front that is a strategy's own.
-template <class Query>
-AnyLoop own_loop(std::string_view volume, const std::type_info& front) {
-  for (const auto* entry : own_loops_entries<Query>())
-    if (entry->volume == volume)
-      if (const AnyLoop loop = entry->loop(front)) return loop;
   std::abort();
 }
 

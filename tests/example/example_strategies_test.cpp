@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "experiments/replay/loops_of.hpp"
+#include "experiments/replay/bodies_of.hpp"
 #include "tests/example/kinetic_list.hpp"
 #include "tests/example/periodic.hpp"
 #include "tests/laws/strategy_laws.hpp"
@@ -15,13 +15,12 @@ namespace {
 
 using namespace strategy_laws;
 
-/// As the bvlab program has them: the loops from a strategy's own fronts compiled by themselves.
-template <class Query, class Counter, class Strategy>
+/// As the bvlab program has them.
+template <class Query, class Strategy>
 auto any_bodies_of(const Scene& scene, const Strategy& strategy) {
-  using Bodies = AnyBodies<Query, Counter, typename Strategy::OwnFronts>;
-  return AllPairsOf<StrategyPairs<Bodies, Strategy>>(
-      {Bodies(std::make_unique<detail::LoopsOver<V, Query, TypeList<>>>(scene.shapes, Frame::world),
-              own_loops_for<V, Query, Strategy>().loop),
+  return AllPairsOf<StrategyPairs<AnyBodies<Query>, Strategy>>(
+      {AnyBodies<Query>(
+           std::make_unique<detail::BodiesOver<V, Query>>(scene.shapes, Frame::world)),
        strategy},
       all_object_pairs(2));
 }
@@ -62,11 +61,11 @@ TEST(KineticList, RestsWhereAListThatTests) {
   EXPECT_GT(saved, 10000u);
 }
 
-TEST(KineticList, RunsInTheProgramFromLoopsOfItsOwn) {
+TEST(KineticList, RunsInTheProgramFromAFrontOfItsOwn) {
   const Scene scene(400);
   Counting library, program;
   const auto contacts = contacts_by(bodies_of(scene, KineticList(6)), library);
-  const auto found = contacts_by(any_bodies_of<Contacts, Counting>(scene, KineticList(6)), program);
+  const auto found = contacts_by(any_bodies_of<Contacts>(scene, KineticList(6)), program);
   EXPECT_GT(contacts.size(), 1000u);
   EXPECT_EQ(found, contacts);
   EXPECT_EQ(program.n_p, library.n_p);

@@ -88,7 +88,6 @@ class KineticList {
   static constexpr std::string_view description =
       "separation list in a heap: entries rest until the bodies have moved by their gaps; rebuilt "
       "every k runs (kinetic-list:k)";
-  using OwnFronts = TypeList<KineticFront>;
 
   explicit KineticList(unsigned k = 50) : period_(k) {}
 

@@ -35,8 +35,8 @@ class AskedBodies {
     Variant variant;
     variant.build = builds::TopDownPrincipal::name, variant.fan_out = fan_out;
     hierarchies_ = volume_entry(V::name).hierarchies(meshes, variant);
-    const auto make = [&]<class Query>(std::optional<AnyBodies<Query, Counting>>& of_query) {
-      of_query.emplace(loops_of<Query>(V::name).bodies(*hierarchies_, bodies, frame));
+    const auto make = [&]<class Query>(std::optional<AnyBodies<Query>>& of_query) {
+      of_query.emplace(bodies_entry<Query>(V::name).bodies(*hierarchies_, bodies, frame));
     };
     std::apply([&](auto&... of_query) { (make(of_query), ...); }, all_);
   }
@@ -49,16 +49,14 @@ class AskedBodies {
   }
   template <class Strategy, class Query>
   void run(Strategy&& strategy, const ObjectPair& pair, Query& query, Counting& counter) {
-    auto& bodies = *std::get<std::optional<AnyBodies<Query, Counting>>>(all_);
+    auto& bodies = *std::get<std::optional<AnyBodies<Query>>>(all_);
     strategy.run(bodies.pair(pair, query, counter));
-    bodies.count_posed(counter);
   }
 
  private:
   std::unique_ptr<AnyHierarchies> hierarchies_;
-  std::tuple<std::optional<AnyBodies<Touching, Counting>>,
-             std::optional<AnyBodies<Contacts, Counting>>,
-             std::optional<AnyBodies<Distance, Counting>>>
+  std::tuple<std::optional<AnyBodies<Touching>>, std::optional<AnyBodies<Contacts>>,
+             std::optional<AnyBodies<Distance>>>
       all_;
 };
 

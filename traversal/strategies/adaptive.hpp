@@ -26,7 +26,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "traversal/fronts.hpp"
+#include "traversal/front.hpp"
+#include "traversal/no_front.hpp"
 #include "traversal/strategies/adaptive_prices.hpp"
 #include "traversal/strategies/last_answer.hpp"
 #include "traversal/strategies/margins.hpp"

@@ -22,7 +22,7 @@ template <class Query>
 class Both {
  public:
   explicit Both(const AnyHierarchies& hierarchies)
-      : bodies_(loops_of<Query>("sphere").bodies(hierarchies, 2, Frame::world)) {}
+      : bodies_(bodies_entry<Query>("sphere").bodies(hierarchies, 2, Frame::world)) {}
 
   void move(const Pose& first, const Pose& second) {
     bodies_.move(0, first, Vec3<double>::Zero());
@@ -34,7 +34,7 @@ class Both {
   }
 
  private:
-  AnyBodies<Query, NotCounting> bodies_;
+  AnyBodies<Query> bodies_;
   const ObjectPair pair_{0, 1};
   NotCounting counter_;
 };
