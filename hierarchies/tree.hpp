@@ -19,11 +19,11 @@ namespace bvlab {
 class Tree {
  public:
   struct Node {
-    std::uint32_t first;      ///< inner: the first of adjacent children; leaf: of its primitives
-    std::uint32_t count;      ///< number of primitives of a leaf; 0 for an inner node
-    std::uint32_t children;   ///< number of children, 2 to 16; 0 for a leaf
-    std::uint32_t group;      ///< the index of the children's group, see group()
-    float size;               ///< of its volume: the larger of a pair is descended
+    std::uint32_t first;     ///< inner: the first of adjacent children; leaf: of its primitives
+    std::uint32_t count;     ///< number of primitives of a leaf; 0 for an inner node
+    std::uint32_t children;  ///< number of children, 2 to 16; 0 for a leaf
+    std::uint32_t group;     ///< the index of the children's group, see group()
+    float size;              ///< of its volume: the larger of a pair is descended
   };
 
   std::size_t size() const { return nodes_.size(); }

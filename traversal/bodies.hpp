@@ -136,8 +136,7 @@ class Bodies {
   template <class Query>
   bool roots_are_apart(const ObjectPair& pair, Query& query) {
     static thread_local Workspace workspace;
-    const auto tests =
-        tests_between<1, V, Query>(bodies_[pair.i], bodies_[pair.j], workspace);
+    const auto tests = tests_between<1, V, Query>(bodies_[pair.i], bodies_[pair.j], workspace);
     const std::uint32_t root = 0;
     return tests.culled->one(tests, &root, &root, query, nullptr) & 1;
   }

@@ -145,17 +145,16 @@ class Body final : public TreeBody {
   /// Of a body that is far, only the root is ever read.
   std::uint32_t pose_siblings(std::uint32_t siblings) override {
     const bool is_read = !is_far_ || siblings == 0;
-    return volumes_posed_(siblings, stamp_, sharing_,
-                          [this, siblings, is_read] {
-                            if (!is_read) return;
-                            once(prepared_, epoch_, sharing_, [this] {
-                              placement_ = world_placement<V>(pose_, origin_, tree_->extent());
-                            });
-                            const auto& [parent, first, count, least] =
-                                tree_->above_group(siblings);
-                            for (std::uint32_t node = first; node < first + count; ++node)
-                              put(node);
-                          }) && is_read
+    return volumes_posed_(
+               siblings, stamp_, sharing_,
+               [this, siblings, is_read] {
+                 if (!is_read) return;
+                 once(prepared_, epoch_, sharing_,
+                      [this] { placement_ = world_placement<V>(pose_, origin_, tree_->extent()); });
+                 const auto& [parent, first, count, least] = tree_->above_group(siblings);
+                 for (std::uint32_t node = first; node < first + count; ++node) put(node);
+               }) &&
+                   is_read
                ? tree_->above_group(siblings).count
                : 0;
   }

@@ -26,7 +26,12 @@ class PairOfBodies {
 
   PairOfBodies(TreeBody& a, TreeBody& b, TestsBetween<Query> tests_between, Query& query,
                Counter& counter, Workspace& workspace)
-      : a_(a), b_(b), tests_between_(tests_between), query_(query), counter_(counter), workspace_(workspace) {}
+      : a_(a),
+        b_(b),
+        tests_between_(tests_between),
+        query_(query),
+        counter_(counter),
+        workspace_(workspace) {}
 
   MovingBody& a() const { return a_; }
   MovingBody& b() const { return b_; }
@@ -59,8 +64,8 @@ template <class B, BoundingVolume V, class Query, class Counter>
 class BodyPair : public PairOfBodies<width<B>(), Query, Counter> {
  public:
   BodyPair(Body<V>& a, Body<V>& b, Query& query, Counter& counter, Workspace& workspace)
-      : PairOfBodies<width<B>(), Query, Counter>(
-            a, b, tests_between<width<B>(), V, Query>, query, counter, workspace) {}
+      : PairOfBodies<width<B>(), Query, Counter>(a, b, tests_between<width<B>(), V, Query>, query,
+                                                 counter, workspace) {}
 };
 
 }  // namespace bvlab

@@ -62,9 +62,7 @@ class GatheredPair {
   }
 
   /// In the world frame, poses the two volumes unless that has been done since the last move.
-  void require(const NodePair& pair) {
-    a_.require(pair.a, posed_), b_.require(pair.b, posed_);
-  }
+  void require(const NodePair& pair) { a_.require(pair.a, posed_), b_.require(pair.b, posed_); }
   /// Which of the step's pairs the query culls. Their volumes must have been required.
   template <TestFor, bool kGaps, class Counter>
   [[gnu::always_inline]] LanesApart test(Step<kGaps>& step, Query& query, Counter&) const {
@@ -111,13 +109,9 @@ class GatheredPair {
       open_.push({a.first, b.first + 1});
       open_.push({a.first, b.first});
     } else if (descent == Descent::b) {
-      open_one(b_, b, [other = pair.a](std::uint32_t child) {
-        return NodePair{other, child};
-      });
+      open_one(b_, b, [other = pair.a](std::uint32_t child) { return NodePair{other, child}; });
     } else {
-      open_one(a_, a, [other = pair.b](std::uint32_t child) {
-        return NodePair{child, other};
-      });
+      open_one(a_, a, [other = pair.b](std::uint32_t child) { return NodePair{child, other}; });
     }
   }
   /// Called for a or for b, in a branch each: a predicted branch does not wait for the sizes.

@@ -110,8 +110,8 @@ class HeldPrimitives {
   }
 
   void hold_pair(std::uint32_t i, std::uint32_t j, std::size_t slot) {
-    pending_.push_back({&a_.triangle(i), &b_.triangle(j), a_.tree().primitive(i),
-                        b_.tree().primitive(j), slot});
+    pending_.push_back(
+        {&a_.triangle(i), &b_.triangle(j), a_.tree().primitive(i), b_.tree().primitive(j), slot});
   }
 
   // Small for most fronts; inlined, it lets the whole traversal stay in registers.

@@ -23,8 +23,8 @@ TraversalStatistics traverse(TreeBody& a, TreeBody& b, const VolumeTests<Query>&
       !requires { front.stays(std::size_t(), EntryState::culled, 0.0); },
       "a front's `stays` is now named `keep`: `stays` would never be called");
   NotCounting counter;
-  return Traversal<GatheredPair<W, Query>, Query, NotCounting, Recorder>(
-             a, b, query, counter, workspace, front, tests)
+  return Traversal<GatheredPair<W, Query>, Query, NotCounting, Recorder>(a, b, query, counter,
+                                                                         workspace, front, tests)
       .run();
 }
 
@@ -33,9 +33,9 @@ template <class B, class V, class Query, class Counter, class Front>
 TraversalStatistics traverse(Body<V>& a, Body<V>& b, Query& query, Counter& counter,
                              Workspace& workspace, Front&& front) {
   constexpr int W = width<B>();
-  const TraversalStatistics statistics = traverse<W>(
-      a, b, tests_between<W, V, Query>(a, b, workspace), query, workspace,
-      std::forward<Front>(front));
+  const TraversalStatistics statistics =
+      traverse<W>(a, b, tests_between<W, V, Query>(a, b, workspace), query, workspace,
+                  std::forward<Front>(front));
   statistics.count(counter);
   return statistics;
 }

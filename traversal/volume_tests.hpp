@@ -96,15 +96,15 @@ struct CulledPairs {
       using Lanes = Over<Posed<V>, Some>;
       const Lanes in_b = posed(volumes<Some>(tests.volumes_a, nodes_a), placement);
       return culled<kGaps>(
-          in_b,
-          static_cast<const Lanes&>(as_stored<V>(volumes<Some>(tests.volumes_b, nodes_b))), query,
-          gaps);
+          in_b, static_cast<const Lanes&>(as_stored<V>(volumes<Some>(tests.volumes_b, nodes_b))),
+          query, gaps);
     }
   }
   template <class Some>
-  [[gnu::noinline, gnu::flatten]] static std::uint64_t call(
-      const VolumeTests<Query>& tests, const std::uint32_t* nodes_a, const std::uint32_t* nodes_b,
-      Query& query, float* gaps) {
+  [[gnu::noinline, gnu::flatten]] static std::uint64_t call(const VolumeTests<Query>& tests,
+                                                            const std::uint32_t* nodes_a,
+                                                            const std::uint32_t* nodes_b,
+                                                            Query& query, float* gaps) {
     return some<Some>(tests, nodes_a, nodes_b, query, gaps);
   }
 
@@ -130,8 +130,8 @@ VolumeTests<Query> tests_between(TreeBody& body_a, TreeBody& body_b, Workspace& 
               &CulledPairs<V, W, true, false, Query>::of_widths, a.hierarchy().volumes(),
               b.hierarchy().volumes(), &placement};
     }
-  return {&CulledPairs<V, W, false, true, Query>::of_widths, &CulledPairs<V, W, true, true, Query>::of_widths,
-          a.volumes(), b.volumes(), nullptr};
+  return {&CulledPairs<V, W, false, true, Query>::of_widths,
+          &CulledPairs<V, W, true, true, Query>::of_widths, a.volumes(), b.volumes(), nullptr};
 }
 /// The same as a pointer: the placement is made where a traversal begins.
 template <class Query>

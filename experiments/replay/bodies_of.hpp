@@ -34,9 +34,7 @@ class BodiesOver final : public BodiesInside<Query> {
     const auto& all = static_cast<const HierarchiesOf<V>&>(*of_mesh.hierarchies);
     bodies_.add(all.shape(of_mesh.mesh));
   }
-  TestsBetween<Query> tests_between() const override {
-    return bvlab::tests_between<W, V, Query>;
-  }
+  TestsBetween<Query> tests_between() const override { return bvlab::tests_between<W, V, Query>; }
   void cull_roots(std::span<const ObjectPair> pairs, std::span<const std::uint32_t> fresh,
                   Query& query, Counting& counter, std::uint8_t* apart) override {
     bodies_.cull_roots(pairs, fresh, query, counter, apart);

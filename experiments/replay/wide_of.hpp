@@ -19,9 +19,8 @@ namespace detail {
 /// The trees of a variant, of those that are kept or new. Adds the time to build to
 /// `build_seconds`.
 template <class Trees>
-std::shared_ptr<Trees> wide_trees_of(std::span<const TriangleMesh> meshes,
-                                            const Variant& variant, int threads, KeptTrees* kept,
-                                            double& build_seconds) {
+std::shared_ptr<Trees> wide_trees_of(std::span<const TriangleMesh> meshes, const Variant& variant,
+                                     int threads, KeptTrees* kept, double& build_seconds) {
   KeptTrees here;
   TreesOfMeshes& of = (kept ? *kept : here)[trees_of(variant)];
   if (!of.trees) {
@@ -88,9 +87,8 @@ template <BoundingVolume V>
 constexpr std::uint32_t fan_out_with(std::string_view kernel) {
   std::uint32_t fan_out = 0;
   if constexpr (WideVolume<V>)
-    Kernels::with(kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
-      fan_out = kernel_lanes<Kernel>;
-    });
+    Kernels::with(
+        kernel, [&]<class Kernel>(std::type_identity<Kernel>) { fan_out = kernel_lanes<Kernel>; });
   return fan_out;
 }
 

@@ -79,9 +79,8 @@ class WideTreesOf final : public WideTrees<Tree> {
     Variant down_to_triangles = variant_;
     down_to_triangles.leaf_size = 1;
     constexpr std::uint32_t most = Hierarchy::fan_out;
-    WideTopology topology =
-        collapsed(mesh, topology_of(mesh, down_to_triangles), variant_.fan_out,
-                  std::min<std::uint32_t>(variant_.leaf_size, most));
+    WideTopology topology = collapsed(mesh, topology_of(mesh, down_to_triangles), variant_.fan_out,
+                                      std::min<std::uint32_t>(variant_.leaf_size, most));
     if (variant_.fan_out > most) topology = in_rows(topology, most);
     Hierarchy& built = all_.emplace_back(mesh, topology, fit_of(variant_), several);
     if constexpr (!std::is_same_v<Hierarchy, Tree>) built.calls = calls_of(built);
@@ -112,7 +111,7 @@ using TreeOf = typename Kernel::template Hierarchy<V, lanes>;
 /// PosedSiblingTest.
 template <class V>
 concept WideVolume = std::same_as<typename V::scalar, float> &&
-                     (HasSiblingTest<V> || (std::same_as<Posed<V>, V> && PlacedRelatively<V>));
+    (HasSiblingTest<V> || (std::same_as<Posed<V>, V> && PlacedRelatively<V>));
 
 /// Pairs over trees whose volume the loops do not know; bodies are of the meshes in turn. Compiled
 /// once for each query (wide_any.cpp.in).

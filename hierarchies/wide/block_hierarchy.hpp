@@ -47,9 +47,9 @@ class BlockHierarchy : public BlockTree {
   /// The same on several threads. The result does not depend on their number.
   BlockHierarchy(const TriangleMesh& mesh, const Topology& binary, Fit fit, std::uint32_t leaf_size,
                  Threads& threads)
-      : BlockHierarchy(mesh,
-                       collapsed(mesh, binary, fan_out, std::min<std::uint32_t>(leaf_size, fan_out)),
-                       fit, threads) {}
+      : BlockHierarchy(
+            mesh, collapsed(mesh, binary, fan_out, std::min<std::uint32_t>(leaf_size, fan_out)),
+            fit, threads) {}
   /// From a wide topology of at most four children per node and four triangles per leaf.
   BlockHierarchy(const TriangleMesh& mesh, const WideTopology& topology, Fit fit, Threads& threads)
       : BlockHierarchy(LocalMesh(mesh), topology, fit, threads) {}

@@ -16,9 +16,7 @@ class Heads {
       : at_(reinterpret_cast<const std::byte*>(static_cast<const T*>(first))),
         bytes_(sizeof(Derived)) {}
 
-  const T& operator[](std::size_t i) const {
-    return *reinterpret_cast<const T*>(at_ + i * bytes_);
-  }
+  const T& operator[](std::size_t i) const { return *reinterpret_cast<const T*>(at_ + i * bytes_); }
 
  private:
   const std::byte* at_ = nullptr;

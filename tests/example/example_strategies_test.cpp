@@ -19,8 +19,7 @@ using namespace strategy_laws;
 template <class Query, class Strategy>
 auto any_bodies_of(const Scene& scene, const Strategy& strategy) {
   return AllPairsOf<StrategyPairs<AnyBodies<Query>, Strategy>>(
-      {AnyBodies<Query>(
-           std::make_unique<detail::BodiesOver<V, Query>>(scene.shapes, Frame::world)),
+      {AnyBodies<Query>(std::make_unique<detail::BodiesOver<V, Query>>(scene.shapes, Frame::world)),
        strategy},
       all_object_pairs(2));
 }

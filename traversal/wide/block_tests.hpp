@@ -64,11 +64,11 @@ class FourByFourTest {
     Posed volume;
   };
   [[gnu::always_inline]] Posed posed(std::size_t part) const {
-    const auto pose = [&]() __attribute__((always_inline)) -> Posed {
-      return SiblingTest::in_lanes(
-          detail::volumes_of_fields<V>(
-              [&](std::size_t k) { return each_of_four(row_a.volume[k].data(), part); }),
-          into_b_);
+    const auto pose = [&]() __attribute__((always_inline))->Posed {
+      return SiblingTest::in_lanes(detail::volumes_of_fields<V>([&](std::size_t k) {
+                                     return each_of_four(row_a.volume[k].data(), part);
+                                   }),
+                                   into_b_);
     };
     if constexpr (S::size() >= 4) {
       return pose();

@@ -58,8 +58,8 @@ class PosedTreeOf : public PosedTree {
  public:
   explicit PosedTreeOf(const Tree& tree)
       : tree_(tree),
-        extent_{tree.sphere().centre, tree.sphere().radius, tree.reach(), tree.size(),
-                leaves_of(tree),      tree.origin()},
+        extent_{tree.sphere().centre, tree.sphere().radius, tree.reach(),
+                tree.size(),          leaves_of(tree),      tree.origin()},
         node_(tree.size()) {}
 
   /// A node's volume.
@@ -126,8 +126,7 @@ class PosedBlocks final : public PosedTreeOf<V, BlockHierarchy<V>> {
     std::array<std::array<float, width>, sizeof(Posed<V>) / sizeof(float)> volume;
   };
 
-  explicit PosedBlocks(const Tree& tree)
-      : Base(tree), rows_(tree.rows()), blocks_(tree.rows()) {}
+  explicit PosedBlocks(const Tree& tree) : Base(tree), rows_(tree.rows()), blocks_(tree.rows()) {}
 
   const Lanes<4>& row(const typename Tree::Row& stored) {
     return lanes(rows_, stored, this->tree_.row(0));
@@ -222,10 +221,8 @@ struct CalledSiblings {
     return Frame::with(step, [](const auto&... x) { return separation_of<Test, S>(x...); });
   }
   static S gaps(const Step& step) {
-    return Frame::with(step,
-                       [](const auto& posed, const auto& change, const auto& lanes, const S&) {
-                         return Test::template gaps<S>(posed, change, lanes);
-                       });
+    return Frame::with(step, [](const auto& posed, const auto& change, const auto& lanes,
+                                const S&) { return Test::template gaps<S>(posed, change, lanes); });
   }
 };
 
@@ -282,12 +279,9 @@ std::unique_ptr<PosedTree> posed_tree(const Base& tree) {
 template <class V, int F, class Frame>
 constexpr SiblingCalls<F> sibling_calls(const SiblingCalls<F>* in_world) {
   using Called = CalledSiblings<Frame, F>;
-  return {in_world,
-          posed_tree<PosedSiblings<V, F>, WideHierarchy<V, F>>,
-          put_change<V>,
-          Called::overlap,
-          Called::separation,
-          Called::gaps};
+  return {in_world,           posed_tree<PosedSiblings<V, F>, WideHierarchy<V, F>>,
+          put_change<V>,      Called::overlap,
+          Called::separation, Called::gaps};
 }
 template <class V, class Frame>
 constexpr BlockCalls block_calls(const BlockCalls* in_world) {

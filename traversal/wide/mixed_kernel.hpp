@@ -125,12 +125,12 @@ struct MixedKernel {
       const bool leaves = pair.a & pair.b & Tree::leaf_flag;  // both roots are leaves
       if ((inner && a.size <= alike * b.size && b.size <= alike * a.size) || leaves) {
         frames_.count_posed(counter, 1, static_cast<std::uint64_t>(std::popcount(a.children)));
-        test(FourByFour{{leaves ? trees_[0]->root_alone() : trees_[0]->row(a.first),
-                         leaves ? trees_[1]->root_alone() : trees_[1]->row(b.first),
-                         frames_.change[1]},
-                        *this,
-                        {i, j},
-                        leaves ? 1 : four_by_four(a.children, b.children)});
+        test(FourByFour{
+            {leaves ? trees_[0]->root_alone() : trees_[0]->row(a.first),
+             leaves ? trees_[1]->root_alone() : trees_[1]->row(b.first), frames_.change[1]},
+            *this,
+            {i, j},
+            leaves ? 1 : four_by_four(a.children, b.children)});
         return;
       }
       frames_.count_posed(counter, 0, 1);

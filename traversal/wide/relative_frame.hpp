@@ -90,8 +90,8 @@ struct TwoFrames {
                                           const Body&>)
       ::new (&change[side]) FrameChange(pose, body, other);
     else
-      ::new (&change[side]) FrameChange(SiblingTest::frame_change(
-          pose, body.hierarchy().reach(), other.hierarchy().reach()));
+      ::new (&change[side]) FrameChange(
+          SiblingTest::frame_change(pose, body.hierarchy().reach(), other.hierarchy().reach()));
   }
 };
 

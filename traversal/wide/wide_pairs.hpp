@@ -140,15 +140,16 @@ class WidePairs {
   std::size_t front_size(std::uint32_t slot) const { return memory_.front_size(slot); }
   /// Counts the volumes that have been posed into the world since this was called last.
   template <class Counter>
-  void count_posed(Counter& counter)
-    requires requires(Body& body) { body.posed(); }
+  void count_posed(Counter& counter) requires requires(Body& body) {
+    body.posed();
+  }
   {
     for (const Body& body : bodies_)
       if (body.posed()) counter.posed(body.posed()->take_posed());
   }
 
  private:
-  static constexpr bool takes_frames = requires(Body& body) { body.posed(); };
+  static constexpr bool takes_frames = requires(Body & body) { body.posed(); };
   static constexpr std::size_t at_once = 2;
   static constexpr std::uint32_t most_pairs = 1u << 30;  // early tests gather at 2 p, an int32
 
