@@ -11,18 +11,21 @@ import matplotlib.colors
 import numpy as np
 
 # Chosen so that lightness alone tells neighbours apart; markers, dashes and hatches do so again.
+# The first three of each group, and FCL's oriented boxes.
+FIRST = dict(color="#1b1b1b", marker="o", linestyle="-", hatch="")
+SECOND = dict(color="#d95f0e", marker="s", linestyle="--", hatch="///")
+THIRD = dict(color="#41a5c4", marker="^", linestyle="-.", hatch="...")
+FCL = dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\")
 STYLES = {
-    "recursive": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "separation-list": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "deferred": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
+    "recursive": FIRST, "separation-list": SECOND, "deferred": THIRD,
     "published": dict(color="#8f8f8f", marker="x", linestyle=":", hatch="xx"),
-    "fcl-obb": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
+    "fcl-obb": FCL,
     "fcl-obbrss": dict(color="#bc9fd1", marker="v", linestyle="-.", hatch="oo"),
     "cgal": dict(color="#3c8d40", marker="P", linestyle=":", hatch="++"),
     "fcl-kios": dict(color="#54336b", marker="d", linestyle=":", hatch="//"),
     # Convex bodies by closest features.
     "gjk": dict(color="#8f8f8f", marker="p", linestyle=":", hatch="xx"),
-    "fcl-gjk": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
+    "fcl-gjk": FCL,
     "libccd-gjk": dict(color="#a6761d", marker="*", linestyle=":", hatch="**"),
     "gjk-coherent": dict(color="#00796b", marker="h", linestyle="-.", hatch="..."),
     "v-clip": dict(color="#c2185b", marker="8", linestyle="--", hatch="++"),
@@ -32,15 +35,13 @@ STYLES = {
     "raise": dict(color="#b8860b", marker="X", linestyle=(0, (3, 1, 1, 1)), hatch="oo"),
     "margins": dict(color="#31a354", marker="v", linestyle=(0, (5, 1)), hatch="\\\\\\"),
     "adaptive": dict(color="#a50f15", marker="*", linestyle="-", hatch="++"),
-    "fcl-world": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
+    "fcl-world": FCL,
     "bullet-world": dict(color="#b0413e", marker="<", linestyle="-.", hatch="--"),
     # Ours beside libraries.
-    "recommended": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "wide, from the roots": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
-    "OPCODE": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
+    "recommended": FIRST, "wide, from the roots": THIRD, "OPCODE": SECOND,
     "OPCODE, coherent": dict(color="#fdae6b", marker="X", linestyle=":", hatch="xx"),
     "PhysX": dict(color="#3c8d40", marker="P", linestyle="--", hatch="++"),
-    "FCL, obb": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
+    "FCL, obb": FCL,
     "FCL, obbrss": dict(color="#bc9fd1", marker="v", linestyle="-.", hatch="oo"),
     "Coal, obb": dict(color="#a50f15", marker="<", linestyle=":", hatch="--"),
     "Coal, obbrss": dict(color="#e58a86", marker=">", linestyle="-.", hatch="||"),
@@ -48,9 +49,7 @@ STYLES = {
     "Bullet": dict(color="#a6761d", marker="*", linestyle=":", hatch="**"),
     "ODE": dict(color="#a4c61a", marker="h", linestyle="-", hatch="OO"),
     # Volumes, where they stand beside each other.
-    "sphere": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "obb": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "aabb": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
+    "sphere": FIRST, "obb": SECOND, "aabb": THIRD,
     "kdop14": dict(color="#a1d99b", marker="v", linestyle=":", hatch="xx"),
     "kdop18": dict(color="#74c476", marker="<", linestyle=":", hatch="xx"),
     "kdop26": dict(color="#238b45", marker=">", linestyle=":", hatch="xx"),
@@ -58,20 +57,18 @@ STYLES = {
     "shell": dict(color="#fdae6b", marker="P", linestyle=":", hatch="++"),
     "slab-box": dict(color="#a50f15", marker="h", linestyle="-", hatch="||"),
     # Where they are compared.
-    "world": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
+    "world": FIRST,
     # Precisions, and tests of two triangles.
-    "exact": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
+    "exact": FIRST,
     "float64": dict(color="#2b7bba", marker="s", linestyle="--", hatch="///"),
     "float32": dict(color="#7fc4dd", marker="^", linestyle="-.", hatch="..."),
     "guigue-devillers": dict(color="#d95f0e", marker="X", linestyle="--", hatch="xx"),
     "moller": dict(color="#a6761d", marker="*", linestyle=":", hatch="**"),
     "bullet": dict(color="#b0413e", marker="<", linestyle="-.", hatch="--"),
     "ode": dict(color="#6f9a37", marker=">", linestyle=":", hatch="||"),
-    "fcl": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
+    "fcl": FCL,
     # Boxes: methods and peers.
-    "blocks": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "hybrid": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "hash": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
+    "blocks": FIRST, "hybrid": SECOND, "hash": THIRD,
     "sweep1": dict(color="#7a5195", marker="D", linestyle=":", hatch="\\\\\\"),
     "sweep2": dict(color="#bc9fd1", marker="v", linestyle="-.", hatch="oo"),
     "sweep3": dict(color="#c43c6b", marker="P", linestyle="--", hatch="++"),
@@ -82,16 +79,13 @@ STYLES = {
     "cgal-1000": dict(color="#8f8f8f", marker="x", linestyle=":", hatch="xx"),
     "fcl-tree": dict(color="#2b7bba", marker=">", linestyle="--", hatch="**"),
     "bullet-dbvt": dict(color="#b8860b", marker="*", linestyle=":", hatch="OO"),
-    # How full a scene is, what is asked, how boxes move.
+    # How full a scene is, which query, how boxes move.
     "interlocked": dict(color="#b0413e", marker="o", linestyle="-", hatch=""),
     "dense": dict(color="#e69f00", marker="^", linestyle="--", hatch="///"),
     "sparse": dict(color="#41a5c4", marker="s", linestyle="-.", hatch="..."),
-    "touching": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
+    "touching": FIRST,
     "contacts": dict(color="#d95f0e", marker="s", linestyle=":", hatch="///"),
-    "distance": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
-    "coherent": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "from scratch": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "drift": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
+    "distance": THIRD, "coherent": SECOND, "from scratch": FIRST, "drift": SECOND,
     "still": dict(color="#41a5c4", marker="^", linestyle=":", hatch="..."),
     "teleport": dict(color="#8f8f8f", marker="x", linestyle="-.", hatch="xx"),
     "part": dict(color="#54336b", marker="^", linestyle="-", hatch="//"),
@@ -106,7 +100,7 @@ DASHES = ["-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)), (0,
 HATCHES = ["///", "...", "xx", "\\\\\\", "++", "oo", "||", "--", "**", "//", "\\\\", "OO", "|/", "-\\"]
 FILLS = ["full", "none", "half"]  # of markers and bars
 TRIES = 200  # of looks for one name
-FAR = 0.22  # colours that are told apart, in the distance below
+FAR = 0.22  # colours that the eye distinguishes, in the distance below
 
 
 @functools.lru_cache(maxsize=None)
