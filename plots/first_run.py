@@ -22,28 +22,21 @@ ONE = ["one body, one freedom", "one body, all freedoms"]
 TOUCHING = "recommended"
 
 
-def between(values):
-    least, most = (f"{value:.2f}" for value in (values.min(), values.max()))
-    return least if least == most else f"{least} to {most}"
-
-
 def talk_lines(record):
     runs = nine_bunnies.read(record)
-    published = nine_bunnies.PUBLISHED.mean()
     yield f"{'Speedup over recursion, nine bunnies, one body moves a step':62}{'separation list':>17}{'deferred':>16}"
-    ratios = [f"{published['recursive'] / published[name]:.2f}" for name in nine_bunnies.LISTS]
-    yield f"{'  published by Li and Chen, in time':62}{ratios[0]:>17}{ratios[1]:>16}"
+    separation_list, deferred = nine_bunnies.SPEEDUPS
+    yield f"{'  published by Li and Chen, in time':62}{separation_list:>17.2f}{deferred:>16.2f}"
     for what, name in (("n_v", "volume tests"), ("time_ns", "time")):
-        means = nine_bunnies.speedups(runs, what).groupby(level=["reading", "density"]).mean()
+        means = nine_bunnies.mean_speedups(runs, what)
         if not set(ONE) <= set(means.index.get_level_values("reading")):
             raise Refused(f"{record}: has no runs in which one body moves")
-        ours = [between(means.loc[ONE][variant]) for variant in nine_bunnies.LISTS]
+        ours = [format(quoting.Interval(means.loc[ONE][variant]), ".2f") for variant in nine_bunnies.LISTS]
         yield f"{'  here, in ' + name:62}{ours[0]:>17}{ours[1]:>16}"
 
 
 def beside_lines(record):
-    rows = records.read(record, needs=["method", "work"])
-    records.wrong_answers(rows)  # of ours none may be
+    rows = records.right(record, needs=["method", "work"])
     rows = rows[rows["query"] == "touching"] if "query" in rows else rows
     rows = rows.assign(us=rows.time_ns / rows.pairs / 1e3)
     time = rows.groupby(["work", "method"], sort=False).us.median().unstack("method")

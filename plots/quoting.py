@@ -5,14 +5,14 @@
     def boxes_precision(record):
         return {"blocks": ..., "rows": [[cell, ...], ...]}
 
-A page is made from its template, plots/texts/<page>.in, in which a number stands as <<function.key:format>>:
+A page is made from its template, plots/texts/<page>.in, in which a number is written as <<function.key:format>>:
 
     `blocks` takes a median of <<boxes_precision.blocks:.2f>> of its time in double.
 
 A value may be a number, a name, a list of them, which is written "1, 2 and 3", an Interval, which is written "1.5 to
 1.6", and "1.6" where both ends are the same when rounded, or the rows of a table. What a sentence says in words is
 claimed where its numbers are computed: claim(raise_is_best, "raise is the fastest"). A number that no record gives
-stands with the reason: <<500 polygons|what the definition sets>>.
+has its reason beside it: <<500 polygons|what the definition sets>>.
 """
 
 import contextlib
@@ -23,6 +23,7 @@ from functools import cache
 from pathlib import Path
 
 from bvlab_plots.refused import Refused
+from bvlab_plots.words import span
 
 ROOT = Path(__file__).resolve().parent.parent
 RECORDS = ROOT / "experiments" / "record"
@@ -91,8 +92,7 @@ class Interval:
         self.least, self.most = min(values), max(values)
 
     def __format__(self, spec):
-        least, most = written(self.least, spec), written(self.most, spec)
-        return least if least == most else f"{least} to {most}"
+        return span(written(self.least, spec), written(self.most, spec))
 
 
 def is_table(value):

@@ -12,7 +12,7 @@ CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], 
 FACES = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
          [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
 
-# A wall of bricks in survey coordinates, each with a mesh where it stands: one frame, poses that do nothing.
+# A wall of bricks in survey coordinates, each with a mesh in its place: one frame, poses that do nothing.
 places = [(x, 0, z) for z in range(4) for x in range(12)]
 bricks = [bvlab.Mesh(CORNERS + place + [388096, 5948996, 35], FACES) for place in places]
 stand = np.zeros((1, len(bricks), 7))

@@ -6,7 +6,6 @@ The one place where tables are put together: every table that parts have, whatev
 import csv
 import json
 import os
-import shutil
 import tempfile
 
 PROGRAM = ["bvlab", "commit", "changes", "compiler", "flags", "libraries"]  # what the counts may depend on
@@ -17,35 +16,29 @@ class Unmergeable(Exception):
     """Why there is no record, in one line."""
 
 
-def header_of(file, path):
-    """The line of the columns, or lines: a name may hold a line break, in quotes."""
-    header = file.readline()
-    while header.count(b'"') % 2:
-        more = file.readline()
-        if not more:
-            break
-        header += more
-    if not header.endswith(b"\n"):
-        raise Unmergeable(f"{path}: has no columns")
-    return header
-
-
 def tables_of(parts, name):
     """The files of tables in the parts; the one that says that all is there is the last."""
     found = {path.name for part in parts for path in part.glob("*.csv")}
     return sorted(found - {f"{name}.csv"}) + [f"{name}.csv"]
 
 
-def rows_of(path):
+def read(path):
+    """Of a table the line of its columns (lines: a name may hold a break, in quotes), those of its rows, and how many rows."""
     with open(path, newline="", encoding="utf-8", errors="surrogateescape") as file:
-        return sum(1 for _ in csv.reader(file)) - 1
+        lines = file.readlines()
+    reader = csv.reader(lines)
+    next(reader, None)
+    header = "".join(lines[:reader.line_num])
+    if not header.endswith("\n"):
+        raise Unmergeable(f"{path}: has no columns")
+    return header, "".join(lines[reader.line_num:]), sum(1 for _ in reader)
 
 
-def written_whole(path, write):
-    """The file appears when `write(file)` is through, or not at all."""
+def written_whole(path, content):
+    """The file appears with all of its bytes, or not at all."""
     with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as file:
         try:
-            write(file)
+            file.write(content)
             file.flush()
             os.fsync(file.fileno())
             os.fchmod(file.fileno(), 0o644)
@@ -57,23 +50,16 @@ def written_whole(path, write):
 
 def merge_table(record, name, parts, rows):
     """Where `rows` is a number, that of a table that has to be there."""
-    paths = [path for part in parts if (path := part / name).is_file()]
-    found = sum(map(rows_of, paths)) if rows is not None else None
-    if found != rows:
+    tables = {path: read(path) for part in parts if (path := part / name).is_file()}
+    found = sum(count for _, _, count in tables.values())
+    if rows not in (None, found):
         raise Unmergeable(f"{name}: the parts hold {found} rows, not {rows}")
-
-    def write(file):
-        header = None
-        for path in paths:
-            with open(path, "rb") as part:
-                own = header_of(part, path)
-                if header not in (None, own):
-                    raise Unmergeable(f"{path}: has other columns than the parts before it")
-                if header is None:
-                    file.write(own)
-                shutil.copyfileobj(part, file)
-            header = own
-    written_whole(record / name, write)
+    columns = next(iter(tables.values()))[0]
+    for path, (header, _, _) in tables.items():
+        if header != columns:
+            raise Unmergeable(f"{path}: has other columns than the parts before it")
+    text = columns + "".join(of_rows for _, of_rows, _ in tables.values())
+    written_whole(record / name, text.encode("utf-8", errors="surrogateescape"))
 
 
 def merged_machine(parts):
@@ -96,6 +82,6 @@ def merge(record, name, count, rows, command):
     definition = (record / "parts" / "definition.toml").read_bytes()
     for file, content in (("machine.json", machine.encode()), ("definition.toml", definition),
                           ("command.txt", command.encode())):
-        written_whole(record / file, lambda out, content=content: out.write(content))
+        written_whole(record / file, content)
     for table in tables_of(parts, name):
         merge_table(record, table, parts, rows if table == f"{name}.csv" else None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What stands below a figure: of what its points and bars are made, and what a reader has to know of it."""
+"""The text below a figure: of what its points and bars are made, and what a reader has to know of it."""
 
 import functools
 import textwrap

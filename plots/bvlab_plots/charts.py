@@ -12,7 +12,7 @@ from matplotlib.ticker import NullLocator
 
 from bvlab_plots import captions, style
 from bvlab_plots.ticks import Scale, numeric_ticks, settle, share_y, spreads
-from bvlab_plots.words import number, plain, scaled, value_text
+from bvlab_plots.words import number, plain, scaled, texts, value_text
 
 GREY = "#8f8f8f"
 
@@ -68,9 +68,9 @@ def declared_grid(figure, names):
 
 def logs(figure, points):
     """Which axes are logarithmic, by the figure or by the data."""
-    asked = figure.log.replace("none", "")
+    named = figure.log.replace("none", "")
     if figure.log:
-        return "x" in asked, "y" in asked
+        return "x" in named, "y" in named
     return points.attrs["x"] is not None and spreads(points.x), (
         spreads(points.middle, 4 if figure.over else 25) or spreads(points[["low", "high"]], 200))
 
@@ -112,10 +112,8 @@ def draw(figure, points):
     drawing, axes = panel_grid(figure, points, points.x.nunique() * len(looks) if named else 0)
     if named:
         names = list(dict.fromkeys(points.x))
-        places = range(len(names)), [name if isinstance(name, str) else number(name) for name in names], False
-        x_label = figure.x_label or (attrs["x"].label() if attrs["x"] else "")
-        if attrs["x"] and attrs["x"].unit() and not figure.x_label:
-            x_label += f" ({attrs['x'].unit()})"
+        places = range(len(names)), texts(names), False
+        x_label = figure.x_label or (attrs["x"].titled() if attrs["x"] else "")
     else:
         log_x = logs(figure, points)[0]
         x_label, x_factor = labelled_unit(attrs["x"], figure.x_label, points.x)
@@ -183,7 +181,7 @@ def draw_lines(points, axes, looks, labels, scale, across, measured):
 
 def draw_named(points, axes, looks, labels, scale, figure, names):
     """Side by side at each name. Bars stand on zero, or, as ratios on a logarithmic axis, on one; where neither is on
-    the axis there are points, or, if it was asked for, bars from where the axis begins. Gives where bars begin."""
+    the axis there are points, or, if the figure says so, bars from where the axis begins. Gives where bars begin."""
     keys = list(looks)
     barred = figure.kind == "bars" and (not scale.log or bool(figure.over) or "y" in figure.log)
     width, base = 0.8 / len(keys), 1 if scale.log else 0
@@ -197,7 +195,7 @@ def draw_named(points, axes, looks, labels, scale, figure, names):
         if barred:
             axis.bar(place, middle - base, width, bottom=base, label=label, **style.bar_style(looks[key]))
             axis.errorbar(place, middle, yerr=[middle - low, high - middle], fmt="none", ecolor="black", elinewidth=0.7)
-            # A bar of no height is told from none.
+            # A bar of no height differs from none.
             for x in place[middle == base] if base == 0 else []:
                 axis.annotate("0", (x, 0), xytext=(0, 1), textcoords="offset points", ha="center", fontsize=6, color=GREY)
         else:
@@ -213,7 +211,7 @@ def draw_named(points, axes, looks, labels, scale, figure, names):
 
 def finish(axes, scale, points, over, places, named, barred):
     """Scales and ticks."""
-    ticks, texts, log_x = places
+    ticks, names, log_x = places
     for axis in axes:
         if scale.log:
             axis.set_yscale("log")
@@ -222,7 +220,7 @@ def finish(axes, scale, points, over, places, named, barred):
         if log_x and not named:
             axis.set_xscale("log")
         if ticks is not None:
-            axis.set_xticks(ticks, texts)
+            axis.set_xticks(ticks, names)
             axis.xaxis.set_minor_locator(NullLocator())
         if over:
             axis.axhline(1, color=GREY, linewidth=0.8, zorder=1)

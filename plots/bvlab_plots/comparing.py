@@ -32,8 +32,9 @@ def verdict(low, high, several):
 
 
 def keyed(rows, keys):
-    """The rows by the text of their settings: 0.1 of one record is 0.1 of another."""
-    return rows.groupby([rows[key].astype(str) for key in keys], sort=False, dropna=False)
+    """{text of the settings: rows}: 0.1 of one record is 0.1 of another."""
+    found = rows.groupby([rows[key].astype(str) for key in keys], sort=False, dropna=False)
+    return {key if isinstance(key, tuple) else (key,): part for key, part in found}
 
 
 def compared(before, after, text=""):
@@ -45,22 +46,18 @@ def compared(before, after, text=""):
         raise Refused(f"'{text}' is known for no row of one of them: --value says what is compared")
     before, after = (rows.assign(compared=value) for rows, value in zip((before, after), values))
     counts = [c for c in SAME if c in before and c in after and c not in text]
-    others = {key if isinstance(key, tuple) else (key,): part for key, part in keyed(after, shared)}
-    lines = []
-    for key, part in keyed(before, shared):
-        key = key if isinstance(key, tuple) else (key,)
-        other = others.pop(key, None)
-        if other is None:
+    others, lines = keyed(after, shared), []
+    for key, part in keyed(before, shared).items():
+        if key not in others:
             lines.append(dict(zip(shared, key), verdict="gone"))
             continue
+        other = others.pop(key)
         mine, theirs = part.compared.dropna(), other.compared.dropna()
         different = [c for c in counts if not same(part[c], other[c])]
         low, middle, high = ratio_of(mine, theirs) if len(mine) and len(theirs) and mine.median() > 0 else (np.nan,) * 3
-        told = verdict(low, high, min(len(mine), len(theirs)) > 1) if np.isfinite(middle) else "not measured"
-        lines.append(dict(zip(shared, key), ratio=middle, low=low, high=high, verdict=told, different=", ".join(different)))
-    for key in others:
-        lines.append(dict(zip(shared, key), verdict="new"))
-    found = pd.DataFrame(lines)
+        judged = verdict(low, high, min(len(mine), len(theirs)) > 1) if np.isfinite(middle) else "not measured"
+        lines.append(dict(zip(shared, key), ratio=middle, low=low, high=high, verdict=judged, different=", ".join(different)))
+    found = pd.DataFrame(lines + [dict(zip(shared, key), verdict="new") for key in others])
     if not {"faster", "slower", "as before", "once", "not measured"} & set(found.verdict):
         raise Refused("no cell is in both records")
     found.attrs.update(shared=shared, text=text)
@@ -68,8 +65,9 @@ def compared(before, after, text=""):
 
 
 def same(one, other):
-    return sorted(set(one.dropna().astype(float))) == sorted(set(other.dropna().astype(float))) if \
-        one.dtype != object and other.dtype != object else set(one.astype(str)) == set(other.astype(str))
+    if one.dtype == object or other.dtype == object:
+        return set(one.astype(str)) == set(other.astype(str))
+    return set(one.dropna().astype(float)) == set(other.dropna().astype(float))
 
 
 def text_of(found, before, after, everything):
@@ -89,8 +87,7 @@ def text_of(found, before, after, everything):
         cell = ", ".join(filter(None, (value_text(c, numeric(found.at[row.Index, c])) for c in varied))) or "all"
         ratio = f"{number(row.ratio):>6} [{number(row.low)}, {number(row.high)}]" if np.isfinite(row.ratio) else "     -"
         lines.append(f"{row.verdict:<12} {ratio:<24} {cell}" + (f"; different: {row.different}" if row.different else ""))
-    told = found.verdict.value_counts()
-    lines.append(", ".join(f"{told[name]} {name}" for name in told.index) +
+    lines.append(", ".join(f"{count} {verdict}" for verdict, count in found.verdict.value_counts().items()) +
                  (f"; {(found.different != '').sum()} different" if (found.different != "").any() else "") +
                  f"; geometric mean {geometric(found.ratio)}")
     return "\n".join(lines) + "\n"

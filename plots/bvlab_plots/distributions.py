@@ -9,7 +9,7 @@ from bvlab_plots import captions, charts, style
 from bvlab_plots.figures import default_value
 from bvlab_plots.points import axis_of, places_of, pooled_in, rows_of, said_of
 from bvlab_plots.ticks import Scale, numeric_ticks, spreads
-from bvlab_plots.words import number
+from bvlab_plots.words import span, texts
 
 
 def values_of(rows, figure):
@@ -30,8 +30,7 @@ def values_of(rows, figure):
 
 
 def count_text(points):
-    least, most = points["count"].min(), points["count"].max()
-    return f"{least:.0f}" if least == most else f"{least:.0f} to {most:.0f}"
+    return span(*(f"{count:.0f}" for count in (points["count"].min(), points["count"].max())))
 
 
 def draw(figure, points):
@@ -55,10 +54,10 @@ def ecdfs(figure, points, label):
         if log:
             axis.set_xscale("log")
         axis.set(xlabel="", ylabel="", ylim=(0, 1.02))
-    ticks, texts, _ = numeric_ticks(points.middle, Scale(points.middle, log))
+    ticks, numbers, _ = numeric_ticks(points.middle, Scale(points.middle, log))
     if log and ticks is not None:
         for axis in axes.values():
-            axis.set_xticks(ticks, texts, minor=False)
+            axis.set_xticks(ticks, numbers, minor=False)
             axis.minorticks_off()
     note = captions.note_of(figure, points, made=f"distribution of {count_text(points)} values a curve")
     return charts.labelled(figure, drawing, axes.values(), label, "share of values", note)
@@ -80,7 +79,7 @@ def boxes(figure, points, label):
         axis.legend_.remove()
         dress(axis, keys, looks, labels)
         axis.set(xlabel="", ylabel="", xticks=range(len(names)))
-        axis.set_xticklabels([name if isinstance(name, str) else number(name) for name in names])
+        axis.set_xticklabels(texts(names))
         axis.grid(axis="x", visible=False)
     note = captions.note_of(figure, points, made=f"boxes: quartiles, whiskers: least to largest, of {count_text(points)} "
                             "values a box")

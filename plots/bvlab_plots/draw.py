@@ -17,16 +17,7 @@ from bvlab_plots import arguments as command_line, figures, kinds, records, styl
 from bvlab_plots.refused import Refused
 
 DEFINITIONS = Path(__file__).resolve().parents[2] / "experiments" / "definitions"
-KEYS = {"x": "a column, several, or an expression of columns", "y": "an expression of columns, or several",
-        "over": "a ratio to this variant in the same cell: name=value, 'best peer', 'best', or record=DIR",
-        "ratio": "to what it is over: cost, or speedup", "series": "what lines or bars are told apart by",
-        "panels": "what has a panel each", "panel_rows": "what has a row of panels each",
-        "kind": ", ".join(figures.KINDS), "value": "of a map", "pool": "columns that go into the interval",
-        "statistic": ", ".join(figures.CHOICES["statistic"]), "interval": ", ".join(figures.CHOICES["interval"]),
-        "fit": "of a scatter: line or power", "clock": "processor or wall", "table": "frames: rows of single frames",
-        "caption": "below the figure, or beside it, as NAME.txt", "x_label": "in place of words for columns", "y_label": "as well",
-        "value_label": "as well", "log": "axes that are logarithmic: none, x, y or xy", "width": "column or page of a paper",
-        "peers": "all: those whose answers differ, too", "name": "of the files"}
+OPTIONS = [key for key in figures.KEYS if key != "table"]  # which is --frames
 OUTPUTS = ["pdf", "png", "tex", "csv"]
 
 
@@ -48,17 +39,15 @@ def arguments_of(words):
     parser.add_argument("--formats", metavar="F,F", help="pdf, png, tex, csv (default: pdf,png; of tables tex,csv)")
     parser.add_argument("--style", metavar="FILE", help="matplotlib's settings (rcParams), a file or a style by its name")
     parser.add_argument("--frames", action="store_true", help="rows of single frames, NAME.frames.csv")
-    for key, text in KEYS.items():
-        if key != "table":
-            parser.add_argument(f"--{key.replace('_', '-')}", help=text.replace("%", "%%"))
-    parser.add_argument("--where", action="append", metavar="NAME=VALUE", help="rows that are drawn; repeatable")
+    for key in OPTIONS:
+        repeatable = {"action": "append", "metavar": "NAME=VALUE"} if key == "where" else {}
+        parser.add_argument(f"--{key.replace('_', '-')}", help=figures.KEYS[key].replace("%", "%%"), **repeatable)
     return parser.parse_args(words)
 
 
 def wanted(arguments, rows):
     """The figures to draw: of the command line, declared, or of each axis; and what is wrong with others."""
-    given = {key: getattr(arguments, key) for key in [*KEYS, "where"]
-             if key != "table" and getattr(arguments, key) is not None}
+    given = {key: getattr(arguments, key) for key in OPTIONS if getattr(arguments, key) is not None}
     if arguments.frames:
         given["table"] = "frames"
     if given:
@@ -95,16 +84,21 @@ def written(figure, found, out, formats):
     return names
 
 
+def figures_of(arguments):
+    """The rows of the record, the figures to draw of them, and what is wrong with others."""
+    rows = kinds.Rows(arguments.record)
+    all_rows = rows.of(figures.Figure(name="", x="", clock=arguments.clock or ""))
+    records.wrong_answers(all_rows)
+    return rows, *wanted(arguments, all_rows)
+
+
 def draw_all(arguments):
     """How many figures were refused."""
     formats = formats_of(arguments.formats) if arguments.formats else []
-    rows = kinds.Rows(arguments.record)
     out = arguments.out or arguments.record / "figures"
     if not arguments.table:
         command_line.require_folder(out)
-    all_rows = rows.of(figures.Figure(name="", x="", clock=arguments.clock or ""))
-    records.wrong_answers(all_rows)
-    wanted_figures, faults = wanted(arguments, all_rows)
+    rows, wanted_figures, faults = figures_of(arguments)
     for fault in faults:
         complain(arguments, fault)
     refused = {}  # what is wrong, and with which figures

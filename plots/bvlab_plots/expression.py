@@ -42,9 +42,7 @@ class Expression:
             self.columns.append(node.id)
         elif isinstance(node, ast.BinOp) and type(node.op) in SIGNS:
             self.check(node.left, rows), self.check(node.right, rows)
-        elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-            self.check(node.operand, rows)
-        elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
+        elif isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.Not)):
             self.check(node.operand, rows)
         elif isinstance(node, ast.BoolOp):
             for each in node.values:
@@ -75,10 +73,6 @@ class Expression:
     def unit(self):
         """What it is measured in: of a time over a number, the time's."""
         units = {unit: power for unit, power in self.dimension(self.tree).items() if power}
-        if not units:
-            return ""
-        if set(units.values()) == {1} and len(units) == 1:
-            return next(iter(units))
         return " ".join(f"{unit}^{power:g}" if power != 1 else unit for unit, power in units.items())
 
     def dimension(self, node):
@@ -99,6 +93,10 @@ class Expression:
         if not isinstance(node.op, (ast.Mult, ast.Div)):
             return left
         return {unit: left.get(unit, 0) + sign * right.get(unit, 0) for unit in {**left, **right}}
+
+    def titled(self):
+        """In words, with the unit."""
+        return self.label() + (f" ({self.unit()})" if self.unit() else "")
 
     def label(self, node=None, inside=False):
         """In words: "time per pair"."""

@@ -4,7 +4,7 @@
 experiments/definitions/README.md says what every key means, with an example of each kind.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import field, make_dataclass
 
 from bvlab_plots.refused import Refused
 
@@ -28,40 +28,28 @@ DEFAULT_VALUES = ["time_ns / pairs", "time_ns / answers", "frame_ns", "ns_per_ca
 MOST_SERIES, MOST_PANELS = 10, 6  # of a figure that nobody declared
 
 
-@dataclass
-class Figure:
-    name: str
-    x: str
-    kind: str = ""
-    y: str = ""
-    value: str = ""
-    over: str = ""
-    ratio: str = ""
-    series: str = ""
-    panels: str = ""
-    panel_rows: str = ""
-    where: list = field(default_factory=list)
-    pool: str = ""
-    statistic: str = ""
-    interval: str = ""
-    fit: str = ""
-    clock: str = ""
-    table: str = ""
-    log: str = ""
-    peers: str = ""
-    width: str = ""
-    caption: str = ""
-    x_label: str = ""
-    y_label: str = ""
-    value_label: str = ""
+# Each key once, and what it says.
+KEYS = {"name": "of the files", "x": "a column, several, or an expression of columns", "kind": ", ".join(KINDS),
+        "y": "an expression of columns, or several", "value": "of a map",
+        "over": "a ratio to this variant in the same cell: name=value, 'best peer', 'best', or record=DIR",
+        "ratio": "to what it is over: cost, or speedup", "series": "what lines or bars are told apart by",
+        "panels": "what has a panel each", "panel_rows": "what has a row of panels each", "where": "rows that are drawn",
+        "pool": "columns that go into the interval", "statistic": ", ".join(CHOICES["statistic"]),
+        "interval": ", ".join(CHOICES["interval"]), "fit": "of a scatter: line or power", "clock": "processor or wall",
+        "table": "frames: rows of single frames", "log": "axes that are logarithmic: none, x, y or xy",
+        "peers": "all: those whose answers differ, too", "width": "column or page of a paper",
+        "caption": "below the figure, or beside it, as NAME.txt", "x_label": "in place of words for columns",
+        "y_label": "as well", "value_label": "as well"}
+Figure = make_dataclass("Figure", ["name", "x", *(
+    (key, list, field(default_factory=list)) if key == "where" else (key, str, "") for key in list(KEYS)[2:])])
 
 
 def figure_from(table):
     """One [[figure]] table, or what the command line says. A Refused has the key that is at fault, if it is one."""
     named = f"figure {table.get('name', '')}: "
     for key, value in table.items():
-        if key not in Figure.__dataclass_fields__:
-            raise Refused(f"{named}unknown key '{key}'; available: {', '.join(Figure.__dataclass_fields__)}", key)
+        if key not in KEYS:
+            raise Refused(f"{named}unknown key '{key}'; available: {', '.join(KEYS)}", key)
         strings = value if key == "where" and isinstance(value, list) else [value]
         if (key == "where") != isinstance(value, list) or not all(isinstance(each, str) for each in strings):
             raise Refused(f"{named}{key} must be {'a list of strings' if key == 'where' else 'a string'}", key)

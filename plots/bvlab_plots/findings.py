@@ -9,8 +9,8 @@ MANY = 1.005  # ratios nearer to 1 than this are called the same
 
 
 def sentence_of(rows):
-    """The variant of ours that is best in most settings, by the record's first measure, and how it stands
-    beside the best of the others. Nothing for a record of one variant."""
+    """The variant of ours that is best in most settings, by the record's first measure, and how it compares
+    with the best of the others. Nothing for a record of one variant."""
     try:
         measure = Expression(figures.default_value(rows), rows)
         frame = rows.assign(measured=measure.of(rows))

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What is drawn of several values, and the interval beside it."""
 
+from functools import partial
+
 import numpy as np
 import pandas as pd
 from scipy import stats
 
-STATISTICS = {"median": np.median, "mean": np.mean, "p99": lambda values: np.quantile(values, 0.99),
-              "worst": np.max, "least": np.min}
-BEFORE = {"median": "quartiles", "mean": "95%"}  # the interval of a statistic where none is asked for
+STATISTICS = {"median": np.median, "mean": np.mean, "p99": partial(np.quantile, q=0.99), "worst": np.max, "least": np.min}
+BEFORE = {"median": "quartiles", "mean": "95%"}  # the interval of a statistic where a figure names none
 MANY = 5  # values, from which on a bootstrap says something
 DRAWS = 2000
 WORDS = {"median": "medians", "mean": "means", "p99": "99th percentiles", "worst": "largest values",
@@ -28,12 +29,7 @@ def bootstrap(values, statistic):
         return values.min(), values.max()
     random = np.random.default_rng(1)
     drawn = values[random.integers(0, len(values), (DRAWS, len(values)))]
-    return tuple(np.quantile(statistic_along(drawn, statistic), [0.025, 0.975]))
-
-
-def statistic_along(drawn, statistic):
-    return np.quantile(drawn, 0.99, axis=1) if statistic == "p99" else {
-        "median": np.median, "mean": np.mean, "worst": np.max, "least": np.min}[statistic](drawn, axis=1)
+    return tuple(np.quantile(STATISTICS[statistic](drawn, axis=1), [0.025, 0.975]))
 
 
 def summary(values, statistic, interval):

@@ -10,91 +10,58 @@ import hashlib
 import matplotlib.colors
 import numpy as np
 
-# Chosen so that lightness alone tells neighbours apart; markers, dashes and hatches do so again.
+
+def look_of(color, marker, linestyle, hatch):
+    return {"color": color, "marker": marker, "linestyle": linestyle, "hatch": hatch}
+
+
+# The first three of each group, and FCL's oriented boxes.
+FIRST = look_of("#1b1b1b", "o", "-", "")
+SECOND = look_of("#d95f0e", "s", "--", "///")
+THIRD = look_of("#41a5c4", "^", "-.", "...")
+FCL = look_of("#7a5195", "D", "--", "\\\\\\")
+# Chosen so that lightness alone distinguishes neighbours; markers, dashes and hatches do so again.
 STYLES = {
-    "recursive": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "separation-list": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "deferred": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
-    "published": dict(color="#8f8f8f", marker="x", linestyle=":", hatch="xx"),
-    "fcl-obb": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
-    "fcl-obbrss": dict(color="#bc9fd1", marker="v", linestyle="-.", hatch="oo"),
-    "cgal": dict(color="#3c8d40", marker="P", linestyle=":", hatch="++"),
-    "fcl-kios": dict(color="#54336b", marker="d", linestyle=":", hatch="//"),
+    "recursive": FIRST, "separation-list": SECOND, "deferred": THIRD, "published": look_of("#8f8f8f", "x", ":", "xx"),
+    "fcl-obb": FCL, "fcl-obbrss": look_of("#bc9fd1", "v", "-.", "oo"), "cgal": look_of("#3c8d40", "P", ":", "++"),
+    "fcl-kios": look_of("#54336b", "d", ":", "//"),
     # Convex bodies by closest features.
-    "gjk": dict(color="#8f8f8f", marker="p", linestyle=":", hatch="xx"),
-    "fcl-gjk": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
-    "libccd-gjk": dict(color="#a6761d", marker="*", linestyle=":", hatch="**"),
-    "gjk-coherent": dict(color="#00796b", marker="h", linestyle="-.", hatch="..."),
-    "v-clip": dict(color="#c2185b", marker="8", linestyle="--", hatch="++"),
-    "recursive-both": dict(color="#6b6b6b", marker="p", linestyle="-", hatch="||"),
-    "witness": dict(color="#00796b", marker="h", linestyle=(0, (1, 1)), hatch="--"),
-    "by-cost": dict(color="#8c6bb1", marker="D", linestyle=":", hatch="xx"),
-    "raise": dict(color="#b8860b", marker="X", linestyle=(0, (3, 1, 1, 1)), hatch="oo"),
-    "margins": dict(color="#31a354", marker="v", linestyle=(0, (5, 1)), hatch="\\\\\\"),
-    "adaptive": dict(color="#a50f15", marker="*", linestyle="-", hatch="++"),
-    "fcl-world": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
-    "bullet-world": dict(color="#b0413e", marker="<", linestyle="-.", hatch="--"),
+    "gjk": look_of("#8f8f8f", "p", ":", "xx"), "fcl-gjk": FCL, "libccd-gjk": look_of("#a6761d", "*", ":", "**"),
+    "gjk-coherent": look_of("#00796b", "h", "-.", "..."), "v-clip": look_of("#c2185b", "8", "--", "++"),
+    "recursive-both": look_of("#6b6b6b", "p", "-", "||"), "witness": look_of("#00796b", "h", (0, (1, 1)), "--"),
+    "by-cost": look_of("#8c6bb1", "D", ":", "xx"), "raise": look_of("#b8860b", "X", (0, (3, 1, 1, 1)), "oo"),
+    "margins": look_of("#31a354", "v", (0, (5, 1)), "\\\\\\"), "adaptive": look_of("#a50f15", "*", "-", "++"), "fcl-world": FCL,
+    "bullet-world": look_of("#b0413e", "<", "-.", "--"),
     # Ours beside libraries.
-    "recommended": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "wide, from the roots": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
-    "OPCODE": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "OPCODE, coherent": dict(color="#fdae6b", marker="X", linestyle=":", hatch="xx"),
-    "PhysX": dict(color="#3c8d40", marker="P", linestyle="--", hatch="++"),
-    "FCL, obb": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
-    "FCL, obbrss": dict(color="#bc9fd1", marker="v", linestyle="-.", hatch="oo"),
-    "Coal, obb": dict(color="#a50f15", marker="<", linestyle=":", hatch="--"),
-    "Coal, obbrss": dict(color="#e58a86", marker=">", linestyle="-.", hatch="||"),
-    "Coal, rss": dict(color="#8f8f8f", marker="p", linestyle=":", hatch="//"),
-    "Bullet": dict(color="#a6761d", marker="*", linestyle=":", hatch="**"),
-    "ODE": dict(color="#a4c61a", marker="h", linestyle="-", hatch="OO"),
+    "recommended": FIRST, "wide, from the roots": THIRD, "OPCODE": SECOND,
+    "OPCODE, coherent": look_of("#fdae6b", "X", ":", "xx"), "PhysX": look_of("#3c8d40", "P", "--", "++"), "FCL, obb": FCL,
+    "FCL, obbrss": look_of("#bc9fd1", "v", "-.", "oo"), "Coal, obb": look_of("#a50f15", "<", ":", "--"),
+    "Coal, obbrss": look_of("#e58a86", ">", "-.", "||"), "Coal, rss": look_of("#8f8f8f", "p", ":", "//"),
+    "Bullet": look_of("#a6761d", "*", ":", "**"), "ODE": look_of("#a4c61a", "h", "-", "OO"),
     # Volumes, where they stand beside each other.
-    "sphere": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "obb": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "aabb": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
-    "kdop14": dict(color="#a1d99b", marker="v", linestyle=":", hatch="xx"),
-    "kdop18": dict(color="#74c476", marker="<", linestyle=":", hatch="xx"),
-    "kdop26": dict(color="#238b45", marker=">", linestyle=":", hatch="xx"),
-    "rss": dict(color="#8c6bb1", marker="D", linestyle="--", hatch="oo"),
-    "shell": dict(color="#fdae6b", marker="P", linestyle=":", hatch="++"),
-    "slab-box": dict(color="#a50f15", marker="h", linestyle="-", hatch="||"),
+    "sphere": FIRST, "obb": SECOND, "aabb": THIRD, "kdop14": look_of("#a1d99b", "v", ":", "xx"),
+    "kdop18": look_of("#74c476", "<", ":", "xx"), "kdop26": look_of("#238b45", ">", ":", "xx"),
+    "rss": look_of("#8c6bb1", "D", "--", "oo"), "shell": look_of("#fdae6b", "P", ":", "++"),
+    "slab-box": look_of("#a50f15", "h", "-", "||"),
     # Where they are compared.
-    "world": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
+    "world": FIRST,
     # Precisions, and tests of two triangles.
-    "exact": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "float64": dict(color="#2b7bba", marker="s", linestyle="--", hatch="///"),
-    "float32": dict(color="#7fc4dd", marker="^", linestyle="-.", hatch="..."),
-    "guigue-devillers": dict(color="#d95f0e", marker="X", linestyle="--", hatch="xx"),
-    "moller": dict(color="#a6761d", marker="*", linestyle=":", hatch="**"),
-    "bullet": dict(color="#b0413e", marker="<", linestyle="-.", hatch="--"),
-    "ode": dict(color="#6f9a37", marker=">", linestyle=":", hatch="||"),
-    "fcl": dict(color="#7a5195", marker="D", linestyle="--", hatch="\\\\\\"),
+    "exact": FIRST, "float64": look_of("#2b7bba", "s", "--", "///"), "float32": look_of("#7fc4dd", "^", "-.", "..."),
+    "guigue-devillers": look_of("#d95f0e", "X", "--", "xx"), "moller": look_of("#a6761d", "*", ":", "**"),
+    "bullet": look_of("#b0413e", "<", "-.", "--"), "ode": look_of("#6f9a37", ">", ":", "||"), "fcl": FCL,
     # Boxes: methods and peers.
-    "blocks": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "hybrid": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "hash": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
-    "sweep1": dict(color="#7a5195", marker="D", linestyle=":", hatch="\\\\\\"),
-    "sweep2": dict(color="#bc9fd1", marker="v", linestyle="-.", hatch="oo"),
-    "sweep3": dict(color="#c43c6b", marker="P", linestyle="--", hatch="++"),
-    "sweep4": dict(color="#3c8d40", marker="X", linestyle="-", hatch="xx"),
-    "sap": dict(color="#a6761d", marker="<", linestyle="--", hatch="--"),
-    "dynamic-tree": dict(color="#54336b", marker="d", linestyle=":", hatch="//"),
-    "sort-and-sweep": dict(color="#b0413e", marker="p", linestyle="-.", hatch="||"),
-    "cgal-1000": dict(color="#8f8f8f", marker="x", linestyle=":", hatch="xx"),
-    "fcl-tree": dict(color="#2b7bba", marker=">", linestyle="--", hatch="**"),
-    "bullet-dbvt": dict(color="#b8860b", marker="*", linestyle=":", hatch="OO"),
-    # How full a scene is, what is asked, how boxes move.
-    "interlocked": dict(color="#b0413e", marker="o", linestyle="-", hatch=""),
-    "dense": dict(color="#e69f00", marker="^", linestyle="--", hatch="///"),
-    "sparse": dict(color="#41a5c4", marker="s", linestyle="-.", hatch="..."),
-    "touching": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "contacts": dict(color="#d95f0e", marker="s", linestyle=":", hatch="///"),
-    "distance": dict(color="#41a5c4", marker="^", linestyle="-.", hatch="..."),
-    "coherent": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "from scratch": dict(color="#1b1b1b", marker="o", linestyle="-", hatch=""),
-    "drift": dict(color="#d95f0e", marker="s", linestyle="--", hatch="///"),
-    "still": dict(color="#41a5c4", marker="^", linestyle=":", hatch="..."),
-    "teleport": dict(color="#8f8f8f", marker="x", linestyle="-.", hatch="xx"),
-    "part": dict(color="#54336b", marker="^", linestyle="-", hatch="//"),
+    "blocks": FIRST, "hybrid": SECOND, "hash": THIRD, "sweep1": look_of("#7a5195", "D", ":", "\\\\\\"),
+    "sweep2": look_of("#bc9fd1", "v", "-.", "oo"), "sweep3": look_of("#c43c6b", "P", "--", "++"),
+    "sweep4": look_of("#3c8d40", "X", "-", "xx"), "sap": look_of("#a6761d", "<", "--", "--"),
+    "dynamic-tree": look_of("#54336b", "d", ":", "//"), "sort-and-sweep": look_of("#b0413e", "p", "-.", "||"),
+    "cgal-1000": look_of("#8f8f8f", "x", ":", "xx"), "fcl-tree": look_of("#2b7bba", ">", "--", "**"),
+    "bullet-dbvt": look_of("#b8860b", "*", ":", "OO"),
+    # How full a scene is, which query, how boxes move.
+    "interlocked": look_of("#b0413e", "o", "-", ""), "dense": look_of("#e69f00", "^", "--", "///"),
+    "sparse": look_of("#41a5c4", "s", "-.", "..."), "touching": FIRST, "contacts": look_of("#d95f0e", "s", ":", "///"),
+    "distance": THIRD, "coherent": SECOND, "from scratch": FIRST, "drift": SECOND,
+    "still": look_of("#41a5c4", "^", ":", "..."), "teleport": look_of("#8f8f8f", "x", "-.", "xx"),
+    "part": look_of("#54336b", "^", "-", "//"),
 }
 
 # What looks of unknown names are put together from; no colour is too light to be seen.
@@ -106,7 +73,7 @@ DASHES = ["-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)), (0,
 HATCHES = ["///", "...", "xx", "\\\\\\", "++", "oo", "||", "--", "**", "//", "\\\\", "OO", "|/", "-\\"]
 FILLS = ["full", "none", "half"]  # of markers and bars
 TRIES = 200  # of looks for one name
-FAR = 0.22  # colours that are told apart, in the distance below
+FAR = 0.22  # colours that the eye distinguishes, in the distance below
 
 
 @functools.lru_cache(maxsize=None)

@@ -7,7 +7,7 @@ from matplotlib.colors import LogNorm, Normalize, to_rgb
 
 from bvlab_plots import captions, charts, style
 from bvlab_plots.ticks import spreads
-from bvlab_plots.words import number, plain, scaled
+from bvlab_plots.words import number, plain, scaled, texts
 
 TIE = 1.05  # times the least: within this a variant is as good
 
@@ -30,16 +30,11 @@ def ink(colour):
     return "black" if 0.3 * red + 0.59 * green + 0.11 * blue > 0.5 else "white"
 
 
-def texts(values):
-    return [value if isinstance(value, str) else number(value) for value in values]
-
-
 def prepared(points, figure):
     """Values in a unit that reads, and labels of both axes."""
     attrs = points.attrs
     unit, factor = scaled(attrs["value"].unit(), points.middle)
-    labels = [given or (f"{e.label()} ({e.unit()})" if e and e.unit() else e.label() if e else "")
-              for e, given in ((attrs["x"], figure.x_label), (attrs["y"], figure.y_label))]
+    labels = [given or (e.titled() if e else "") for e, given in ((attrs["x"], figure.x_label), (attrs["y"], figure.y_label))]
     return points.assign(middle=points.middle * factor), unit, labels
 
 
@@ -87,7 +82,7 @@ def draw(figure, points):
 def draw_winners(drawing, axes, columns, lines, points, unit, figure):
     """Each field in the colour and hatch of its winner; a second one's stripe where that is as good."""
     over = figure.over
-    if over and figure.ratio != "speedup":  # what stands in a field is how many times as little it is
+    if over and figure.ratio != "speedup":  # a field says how many times as little it is
         points = points.assign(ratio=1 / points.ratio)
     best = winners(points)
     looks = style.joint_looks(sorted({*best.key, *(key for keys in best["keys"] for key in keys)}))

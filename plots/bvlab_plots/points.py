@@ -20,10 +20,14 @@ from bvlab_plots.words import is_time, value_text
 RECORD = re.compile(r"^record\s*=\s*(.+)$")
 
 
-def joined(rows, columns, blank=""):
-    """The text of several columns in each row: "dense, 5 degrees"."""
-    texts = [rows[column].map(lambda value, c=column: value_text(c, value)) for column in columns]
-    return [", ".join(filter(None, parts)) or blank for parts in zip(*texts)] if texts else [blank] * len(rows)
+def texts_of(rows, columns):
+    """The texts of several columns in each row."""
+    return list(zip(*(rows[c].map(lambda value, c=c: value_text(c, value)) for c in columns))) or [("",)] * len(rows)
+
+
+def joined(rows, columns):
+    """As one text: "dense, 5 degrees"."""
+    return [", ".join(filter(None, texts)) for texts in texts_of(rows, columns)]
 
 
 def series_keys(rows, columns):
@@ -37,8 +41,7 @@ def series_keys(rows, columns):
         # Variants of the same volume and strategy differ in something else, and are known by their names alone.
         if len(set(keys)) == rows.variant.nunique():
             return keys
-    texts = list(zip(*[rows[c].map(lambda value, c=c: value_text(c, value)) for c in columns])) or [("",)] * len(rows)
-    return [(first, ", ".join(filter(None, rest))) for first, *rest in texts]
+    return [(first, ", ".join(filter(None, rest))) for first, *rest in texts_of(rows, columns)]
 
 
 def axis_of(rows, text, what):
@@ -94,14 +97,10 @@ def rows_of(rows, figure, text):
         if figure.kind != "map":
             rows["value"] = rows.ratio
     rows.attrs.update(attrs)
-    rows = in_each_panel(selected(rows, later), columns_of(rows, panels_text(figure), "panels"))
-    rows = without_blanks(rows, figure)
+    panels = [column for text in (figure.panels, figure.panel_rows) for column in columns_of(rows, text, "panels")]
+    rows = without_blanks(in_each_panel(selected(rows, later), panels), figure)
     rows.attrs.update(attrs)
     return rows, value
-
-
-def panels_text(figure):
-    return ", ".join(filter(None, [figure.panels, figure.panel_rows]))
 
 
 def places_of(rows, figure):
@@ -114,20 +113,20 @@ def places_of(rows, figure):
 
 def pooled_in(rows, figure, apart):
     """What varies in a point and is neither named nor fixed, as {column: how many values}, or (least, most) of them
-    where points differ; refused where `pool` does not name it. Points are told apart by the columns `apart` of a frame."""
-    asked = columns_of(rows, figure.pool, "pool")
-    # What goes into an interval without being asked for; `frame` is also where volumes are compared.
+    where points differ; refused where `pool` does not name it. The columns of the frame `apart` distinguish points."""
+    named = columns_of(rows, figure.pool, "pool")
+    # What goes into an interval though `pool` does not name it; `frame` is also where volumes are compared.
     repeated = ["seed", "frame"] if figure.table == "frames" else ["seed"]
     settings = [c for c in rows.attrs["settings"] if c not in ("repetition", "node", *repeated)]
     keys = [apart[column].to_numpy() for column in apart]
     pooled = {}
     # Those that may vary first: what they determine, as a label does its parameters, varies with them.
-    for column in [c for c in repeated if c in rows] + asked + [c for c in settings if c not in asked] + ["repetition"] * ("repetition" in rows):
+    for column in [c for c in repeated if c in rows] + named + [c for c in settings if c not in named] + ["repetition"] * ("repetition" in rows):
         counts = rows.groupby(keys, sort=False, dropna=False)[column].nunique(dropna=False)
         least, most = int(counts.min()), int(counts.max())
         if most < 2 or column in pooled:
             continue
-        if column not in asked + repeated + ["repetition"]:
+        if column not in named + repeated + ["repetition"]:
             raise Refused(f"axis '{column}' is neither named nor fixed: {most} of its values would be one point; say where = "
                           f"[\"{column}=...\"], or name it in x, series or panels, or say pool = \"{column}\"")
         pooled[column] = most if least == most else (least, most)

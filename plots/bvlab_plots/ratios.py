@@ -80,11 +80,6 @@ def ratios_to(rows, others):
     keys = [c for c in shared if rows[c].nunique() > 1 or others[c].nunique() > 1 or
             str(rows[c].iloc[0]) != str(others[c].iloc[0])]
     left, right = rows[keys].astype(str), others[keys].astype(str).assign(value=others.value)
-    if keys:
-        base = right.groupby(keys).value.median().rename("base").reset_index()
-        base = left.merge(base, how="left", on=keys).base.to_numpy()
-    else:
-        base = right.value.median()
     name = others.attrs["name"]
-    return over_known(rows, pd.Series(base, rows.index), f"in cells that {name} does not have",
+    return over_known(rows, pd.Series(denominators(left, right, keys, False), rows.index), f"in cells that {name} does not have",
                       f"over {name}: no cell is in both records", f"over {name}")

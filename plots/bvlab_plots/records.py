@@ -51,16 +51,14 @@ def read(record, table="", needs=(), clock="wall"):
     rows = read_table(record / (f"{name}.{table}.csv" if table else f"{name}.csv"), names_in(definition))
     if rows.empty:
         raise Refused(f"{name}.csv has no rows")
-    unfinished = unfinished_of(record, definition, rows if not table else [])
+    attrs = dict(record=str(record), machine=provenance.machine_of(record), name=name, kind=kind, definition=definition,
+                 unfinished=unfinished_of(record, definition, rows if not table else []))
     if table:
         settings = list(rows.columns[:list(rows.columns).index("frame")]) if "frame" in rows and table == "frames" else []
         units = {column: words.unit_of(column) for column in rows} if settings else {}
         if settings:
-            rows["peer"] = ""
-            rows = with_variants(rows)
-            rows = in_order(rows, definition, settings)
-        rows.attrs.update(record=str(record), machine=provenance.machine_of(record), name=name, kind=kind,
-                          definition=definition, settings=settings, units=units, clock="", unfinished=unfinished)
+            rows = in_order(with_variants(rows.assign(peer="")), definition, settings)
+        rows.attrs.update(attrs, settings=settings, units=units, clock="")
         return rows
     check_compared(rows, name, kind)
     settings = setting_columns(rows, kind)
@@ -69,9 +67,8 @@ def read(record, table="", needs=(), clock="wall"):
     rows = with_coherence(rows, record / f"{name}.coherence.csv", names_in(definition))
     rows = own_times(rows)
     if clock == "processor" and "wall_per_processor" in rows:
-        longer = pd.to_numeric(rows.wall_per_processor, errors="coerce").fillna(1)
-        corrected = [column for column in CORRECTED if column in rows]
-        rows[corrected] = rows[corrected].div(longer, axis=0)
+        corrected = rows.columns.intersection(CORRECTED)
+        rows[corrected] = rows[corrected].div(pd.to_numeric(rows.wall_per_processor, errors="coerce").fillna(1), axis=0)
     if {"time_ns", "first_ns", "frames", "pairs"} <= set(rows):
         rows["later_ns"] = rows.time_ns - rows.first_ns
         rows["later_pairs"] = rows.pairs * (rows.frames - 1) / rows.frames
@@ -85,8 +82,7 @@ def read(record, table="", needs=(), clock="wall"):
     if missing := [column for column in needs if column not in rows]:
         raise Refused(f"{record}: has no {', '.join(missing)}: it is the record of something else")
     rows = in_order(rows, definition, settings)
-    rows.attrs.update(record=str(record), machine=provenance.machine_of(record), name=name, kind=kind,
-                      definition=definition, settings=settings, units=units, clock=clock, clock_of_frames=clock_of_frames(record), unfinished=unfinished)
+    rows.attrs.update(attrs, settings=settings, units=units, clock=clock, clock_of_frames=clock_of_frames(record))
     return rows
 
 
@@ -159,7 +155,7 @@ def read_toml(path):
 
 
 def read_definition(record):
-    """The definition that stands in a record, as a dictionary."""
+    """The definition in a record, as a dictionary."""
     if not (Path(record) / "definition.toml").is_file():
         raise Refused(f"{record}: no record: it has no definition.toml")
     return read_toml(Path(record) / "definition.toml")
@@ -220,12 +216,12 @@ def setting_columns(rows, kind):
 
 def with_peers(rows, definition, settings):
     """The same column `peer` for every kind, and nothing in settings that a peer does not have."""
-    if "peer" in rows:
-        return without_ours(rows), settings
-    peers = []
-    for key in ("peers", "peers_if_built"):
-        asked = definition.get("parameters", {}).get(key, [])
-        peers += [asked] if isinstance(asked, str) else asked
+    if "peer" in rows:  # which has neither a volume nor a strategy of ours, whatever an older record says
+        ours = rows.columns.intersection(["volume", "tree", "fan_out", "frame", "kernel", "strategy"])
+        rows[ours] = rows[ours].where(rows.peer == "", "")
+        return rows, settings
+    named = [definition.get("parameters", {}).get(key, []) for key in ("peers", "peers_if_built")]
+    peers = [peer for each in named for peer in ([each] if isinstance(each, str) else each)]
     if "source" in rows:
         own = {"bvlab", "batched", "one by one"}
         rows["peer"] = ["" if s in own else rows.test[i] if s == "peer" else s for i, s in rows.source.items()]
@@ -236,13 +232,6 @@ def with_peers(rows, definition, settings):
     else:
         rows["peer"] = ""
     return rows, settings + ["peer"]
-
-
-def without_ours(rows):
-    """A peer has neither a volume nor a strategy of ours, whatever an older record says."""
-    for column in {"volume", "tree", "fan_out", "frame", "kernel", "strategy"} & set(rows):
-        rows[column] = rows[column].where(rows.peer == "", "")
-    return rows
 
 
 def with_coherence(rows, path, names):
@@ -287,30 +276,28 @@ def as_lengths(column, unit):
 
 def with_variants(rows):
     """With a column `variant`, that of the table if it has one."""
-    return rows if "variant" in rows else rows.assign(variant=variant_names(rows))
+    return rows if "variant" in rows else rows.assign(variant=variant_names(rows).where(rows.peer == "", rows.peer))
 
 
 def variant_names(rows):
-    """For each row what was run: "volume strategy", the part alone of which there is more than one, the configuration
-    that chose both, or the peer."""
+    """For each row of ours what was run: "volume strategy", the part alone of which there is more than one, or the
+    configuration that chose both."""
     for column in ("method", "test", "policy"):
         if column in rows:
-            return rows[column].where(rows.peer == "", rows.peer)
+            return rows[column]
     ours = rows[rows.peer == ""]
     parts = [part for part in ("volume", "strategy") if part in rows]
     several = [part for part in parts if ours[part].nunique() > 1] or parts[-1:]
     named = rows[several].agg(" ".join, axis=1) if several else pd.Series("", rows.index)
-    if "configuration" in rows:
-        named = named.where(rows.configuration == "", rows.configuration)
-    return pd.Series(np.where(rows.peer == "", named, rows.peer), rows.index)
+    return named.where(rows.configuration == "", rows.configuration) if "configuration" in rows else named
 
 
 def in_order(rows, definition, settings):
     """Rows are run in random order: here as the definition's lists have them."""
-    lists = [[str(v["name"]) for v in axis.get("value", [])] or list(map(str, axis.get("values", [])))
-             for axis in definition.get("axis", [])]
-    lists += [list(map(str, v)) if isinstance(v, list) else [str(v)] for v in definition.get("parameters", {}).values()]
-    place = {name: i for i, name in enumerate(name for names in lists for name in names)}
+    names = [str(name) for axis in definition.get("axis", []) for name in
+             ([value["name"] for value in axis.get("value", [])] or axis.get("values", []))]
+    names += [str(name) for value in definition.get("parameters", {}).values() for name in (value if isinstance(value, list) else [value])]
+    place = {name: i for i, name in enumerate(names)}
     # Names that the definition leaves open: as in STYLES, and then in the order in which they come first.
     found = [name for column in settings if rows[column].dtype == object for name in dict.fromkeys(rows[column])]
     place = {**{name: len(place) + i for i, name in enumerate(dict.fromkeys([*STYLES, *found]))}, **place}
@@ -322,10 +309,7 @@ def in_order(rows, definition, settings):
 
 def wrong_of(rows):
     """Which rows hold answers that differ from the reference."""
-    wrong = pd.Series(False, rows.index)
-    for column in set(WRONG) & set(rows):
-        wrong |= rows[column].fillna(0) != 0
-    return wrong
+    return rows[rows.columns.intersection(WRONG)].fillna(0).ne(0).any(axis=1)
 
 
 def wrong_answers(rows):
@@ -335,6 +319,13 @@ def wrong_answers(rows):
     if names:
         raise Refused(f"answers of {', '.join(names)} differ from the reference")
     return wrong
+
+
+def right(record, **options):
+    """As `read`; refused where an answer of ours differs from the reference."""
+    rows = read(record, **options)
+    wrong_answers(rows)
+    return rows
 
 
 def say_left_out(names, why):

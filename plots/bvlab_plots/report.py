@@ -9,10 +9,13 @@ that is built, notebooks where tests/run has made them. Without RECORDS those of
 """
 
 import argparse
+import re
+import shutil
 import sys
+from html import unescape
 from pathlib import Path
 
-from bvlab_plots import report_notebooks, report_page, report_scenes
+from bvlab_plots import report_page, report_scenes
 from bvlab_plots.refused import Refused
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -33,11 +36,20 @@ def all_records():
     return found
 
 
+def notebooks(rendered, out):
+    """Copies the pages of notebooks in the folder `rendered`, as tests/run made them, to OUT/notebooks; name, title and file
+    of each."""
+    for page in sorted(Path(rendered).glob("*.html")):
+        (out / "notebooks").mkdir(parents=True, exist_ok=True)
+        shutil.copy(page, out / "notebooks" / page.name)
+        title = re.search(r"<h1[^>]*>(.*?)(<a|</h1>)", page.read_text(), re.DOTALL)
+        yield page.stem, unescape(title[1]).strip() if title else "", f"notebooks/{page.name}"
+
+
 def make(arguments):
     sections = [report_page.section_of(record, arguments.out) for record in arguments.records or all_records()]
     scenes = [] if arguments.no_scenes else report_scenes.make(ROOT / "build" / "release" / "bvlab", arguments.out)
-    notebooks = report_notebooks.make(ROOT / "build" / "notebooks", arguments.out)
-    return report_page.write(sections, scenes, arguments.out, notebooks)
+    return report_page.write(sections, scenes, arguments.out, list(notebooks(ROOT / "build" / "notebooks", arguments.out)))
 
 
 def main(words=None):

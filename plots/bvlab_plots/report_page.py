@@ -6,14 +6,14 @@ import re
 import shutil
 import subprocess
 import sys
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 from urllib.parse import quote
 
 import markdown  # type: ignore[import]
 import pandas as pd
 
-from bvlab_plots import findings, provenance, records, words
+from bvlab_plots import findings, provenance, records, style, words
 
 PLOTS = Path(__file__).resolve().parents[1]
 MOST_ROWS = 1000  # of a table; the record has them all
@@ -22,30 +22,24 @@ COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 MARKS = re.compile(r"[^\w.-]+")
 
 
-@dataclass
-class Section:
-    name: str
-    folder: str
-    description: str
-    figures: list  # files beside the page
+class Section(NamedTuple):
+    record: Path
     rows: pd.DataFrame
-    table: pd.DataFrame
-    machine: dict
-    command: str
-    definition: str
-    results: list  # what the pages of results say of it
-    place: int  # in their story
+    figures: list  # files beside the page
+
+    @property
+    def name(self):
+        return self.rows.attrs["name"]
+
+    @property
+    def folder(self):
+        return self.record.resolve().name
 
 
 def section_of(record, out):
     """Reads a record, and puts its figures beside the page."""
     rows = records.read(record)
-    definition = rows.attrs["definition"]
-    machine = provenance.machine_of(record)
-    return Section(rows.attrs["name"], record.resolve().name, definition.get("description", ""),
-                   figures_of(record, rows.attrs["name"], out), rows, medians(rows), machine,
-                   read_text(record / "command.txt").strip(),
-                   read_text(record / "definition.toml").strip(), paragraphs_on(record), place_in_story(record))
+    return Section(record, rows, figures_of(record, rows.attrs["name"], out))
 
 
 def read_text(path):
@@ -148,7 +142,7 @@ def cell(value):
 
 
 def table_of(section):
-    table, units = section.table, section.rows.attrs["units"]
+    table, units = medians(section.rows), section.rows.attrs["units"]
     heads = "".join(head(column, units.get(column, ""), section.rows.attrs["kind"]) for column in table)
     shown = table.head(MOST_ROWS).astype(object)
     lines = "\n".join(f"<tr>{''.join(map(cell, row))}</tr>" for row in shown.itertuples(index=False))
@@ -174,12 +168,12 @@ def head(column, unit, kind):
 
 
 def facts_of(section):
-    machine = dict(section.machine)
+    machine = dict(section.rows.attrs["machine"])
     by = provenance.made(machine)
     if str(machine.get("memory", "")).endswith(" kB"):
         machine["memory"] = f"{int(machine['memory'].split()[0]) / 1e6:.0f} GB"
     merged = f", merged as <code>{text(by.merged_as)}</code>" if by.merged_as else ""
-    facts = [("Command", f"<code>{text(section.command)}</code>"),
+    facts = [("Command", f"<code>{text(read_text(section.record / 'command.txt').strip())}</code>"),
              ("Commit", f"<code>{text(by.commit)}</code>{' with changes' if by.changes else ''}{merged} (bvlab {text(by.version)})"
               if by.commit else ""), ("Date", text(by.date)),
              ("Machine", text(", ".join(f"{machine[k]}{' cores' if k == 'cores' else ''}" for k in
@@ -188,18 +182,20 @@ def facts_of(section):
              ("Libraries", text(machine.get("libraries", ""))), ("Record", f"<code>{text(section.folder)}</code>")]
     facts = [(name, value) for name, value in facts if value.strip()]
     lines = "".join(f"<dt>{name}</dt><dd>{value}</dd>" for name, value in facts)
-    return f'<dl>{lines}</dl><details><summary>Definition</summary><pre>{text(section.definition)}</pre></details>'
+    definition = text(read_text(section.record / "definition.toml").strip())
+    return f'<dl>{lines}</dl><details><summary>Definition</summary><pre>{definition}</pre></details>'
 
 
 def html_of(section, anchor):
     said, unfinished = findings.sentence_of(section.rows), section.rows.attrs["unfinished"]
+    results = "".join(map(from_markdown, paragraphs_on(section.record)))  # what the pages of results say of it
     figures = "".join(f'<a href="{link(file)}"><img src="{link(file)}" alt="{text(section.name)}: {text(Path(file).stem)}" '
                       'loading="lazy"></a>' for file in section.figures)
     return (f'<section id="{anchor}" class="experiment"><h2><a href="#{anchor}">{text(section.name)}</a></h2>'
-            f'<p class="asks">{text(section.description)}</p>'
+            f'<p class="asks">{text(section.rows.attrs["definition"].get("description", ""))}</p>'
             + (f"<p><strong>Unfinished: {text(unfinished)}.</strong></p>" if unfinished else "")
             + (f'<p class="says">{text(said)}</p>' if said else "")
-            + (f'<div class="results">{"".join(map(from_markdown, section.results))}</div>' if section.results else "")
+            + (f'<div class="results">{results}</div>' if results else "")
             + f'<div class="figures">{figures}</div>{table_of(section)}{facts_of(section)}</section>')
 
 
@@ -212,7 +208,7 @@ def list_of(anchor, title, pages):
 
 def write(sections, scenes, out, notebooks=()):
     """Writes OUT/index.html with what it needs in it, and figures and scenes beside it; says where."""
-    sections = sorted(sections, key=lambda section: (section.place, section.name, section.folder))
+    sections = sorted(sections, key=lambda section: (place_in_story(section.record), section.name, section.folder))
     anchors = [MARKS.sub("-", f"{section.name}-{section.folder}") for section in sections]
     links = "".join(f'<li><a href="#{anchor}">{text(section.name)}</a></li>'
                     for section, anchor in zip(sections, anchors))
@@ -223,9 +219,4 @@ def write(sections, scenes, out, notebooks=()):
     page = (folder / "report.html").read_text()
     page = re.sub(r'<link rel="stylesheet" href="(.*?)">', lambda m: f"<style>\n{(folder / m[1]).read_text()}</style>", page)
     page = re.sub(r'<script src="(.*?)"></script>', lambda m: f"<script>\n{(folder / m[1]).read_text()}</script>", page)
-    page = re.sub(r"<!--(\w+)-->", lambda m: parts[m[1]], page)
-    out.mkdir(parents=True, exist_ok=True)
-    unfinished = out / "index.html.unfinished"
-    unfinished.write_text(page)
-    unfinished.replace(out / "index.html")
-    return out / "index.html"
+    return style.write(out, "index.html", re.sub(r"<!--(\w+)-->", lambda m: parts[m[1]], page))

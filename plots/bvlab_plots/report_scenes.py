@@ -27,27 +27,21 @@ def make(program, out):
     made = []
     for name, description, scene, variant in SCENES:
         file = Path("scenes") / f"{name}.html"
-        with tempfile.TemporaryDirectory() as folder:
-            fault = play(program, Path(folder), name, scene, variant, out / file)
-        if fault:
-            print(f"report: the scene {name} is left out: {fault}", file=sys.stderr)
-        else:
+        try:
+            with tempfile.TemporaryDirectory() as folder:
+                play(program, Path(folder), name, scene, variant, out / file)
             made.append((name, description, file.as_posix()))
+        except subprocess.CalledProcessError as fault:
+            said = fault.stderr.strip().splitlines() or [f"exit {fault.returncode}"]
+            print(f"report: the scene {name} is left out: {said[-1]}", file=sys.stderr)
     return made
 
 
 def play(program, folder, name, scene, variant, page):
-    """One line on what went wrong, or nothing."""
+    def run(*words):
+        subprocess.run([program, *words], capture_output=True, text=True, check=True)
+
     trace = folder / f"{name}.npy"
-    commands = [["scene", *scene, "--out", trace, "--meshes", folder / "meshes"]]
-    fault = run(program, commands[0])
-    if fault:
-        return fault
+    run("scene", *scene, "--out", trace, "--meshes", folder / "meshes")
     meshes = [word for mesh in sorted((folder / "meshes").iterdir()) for word in ("--mesh", mesh)]
-    return run(program, ["replay", *meshes, "--trace", trace, *variant, "--page", page, "--json", folder / "totals.json"])
-
-
-def run(program, words):
-    done = subprocess.run([program, *words], capture_output=True, text=True, check=False)
-    lines = done.stderr.strip().splitlines() or [f"exit {done.returncode}"]
-    return lines[-1] if done.returncode else ""
+    run("replay", *meshes, "--trace", trace, *variant, "--page", page, "--json", folder / "totals.json")

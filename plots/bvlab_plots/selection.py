@@ -106,10 +106,8 @@ def right_only(rows, figure):
 
 def without_blanks(rows, figure):
     """What has no name on an axis of names, as a peer has no volume, has no place there."""
-    blank = pd.Series(False, rows.index)
-    for text in [figure.x] + ([figure.y] if figure.kind == "map" else []):
-        if text in rows and rows[text].dtype == object:
-            blank |= rows[text] == ""
+    axes = [figure.x, figure.y] if figure.kind == "map" else [figure.x]
+    blank = rows[[text for text in axes if text in rows]].eq("").any(axis=1)
     if blank.all():
         raise Refused(f"{figure.x} has no names")
     records.say_left_out(rows[blank].variant, f"which have no {figure.x}, of {figure.name}")
@@ -117,7 +115,7 @@ def without_blanks(rows, figure):
 
 
 def in_each_panel(rows, panels):
-    """What has no value of a panel's column, as a peer has no volume, stands in every panel."""
+    """What has no value of a panel's column, as a peer has no volume, is in every panel."""
     for column in panels:
         blank = rows[column].isin([""]) if rows[column].dtype == object else rows[column].isna()
         others = rows[~blank][column].drop_duplicates()

@@ -8,6 +8,7 @@ from bvlab_plots.figures import default_value
 from bvlab_plots.points import one_value
 from bvlab_plots.refused import Refused
 from bvlab_plots.ticks import Scale
+from bvlab_plots.words import texts
 
 TERMS = {"posing_ns": ("posing $N_u C_u$", "#41a5c4", "..."), "volumes_ns": ("volumes $N_v C_v$", "#1b1b1b", ""),
          "triangles_ns": ("triangles $N_p C_p$", "#d95f0e", "///")}
@@ -70,9 +71,7 @@ def draw(figure, points):
         axis.errorbar(place, middle, yerr=[middle - low, high - middle], fmt="D", markersize=4, color=MEASURED,
                       markerfacecolor="white", elinewidth=0.8, label="measured")
         axis.set_xlim(-0.6, len(names) - 0.4)
-    ticks = range(len(names)), [name if isinstance(name, str) else charts.number(name) for name in names], False
-    scale = Scale(points.middle, False)
-    charts.finish(axes.values(), scale, points, "", ticks, True, True)
+    charts.finish(axes.values(), Scale(points.middle, False), points, "", (range(len(names)), texts(names), False), True, True)
     for axis in axes.values():
         axis.grid(axis="x", visible=False)
     x_label = figure.x_label or (attrs["x"].label() if attrs["x"] else "")

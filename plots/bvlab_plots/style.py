@@ -51,6 +51,8 @@ def settings(given):
             except (OSError, ValueError, KeyError) as fault:
                 raise Refused(f"--style {given}: {fault}".replace("\n", " ")) from None
         yield
+
+
 def subplots(lines, columns, figsize, **keywords):
     """As plt.subplots, for files: whatever backend is set, and whether or not there is a display."""
     figure = Figure(figsize=figsize, layout="constrained")

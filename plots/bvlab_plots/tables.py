@@ -57,7 +57,7 @@ def to_csv(figure, points):
 
 
 def to_latex(figure, points):
-    """A tabular for booktabs: a value with its interval in each cell; what it is made of stands in a comment."""
+    """A tabular for booktabs: a value with its interval in each cell; a comment says what it is made of."""
     label, factor = label_of(figure, points)
     cells = [shortest(m * factor) + (f" [{shortest(lo * factor)}, {shortest(hi * factor)}]" if lo != hi else "")
              for lo, m, hi in zip(points.low, points.middle, points.high)]
@@ -81,8 +81,7 @@ def header(columns, expression, given, points):
     kind = points.attrs["value"].kind
     if given or not expression:
         return given or ", ".join(called(column.strip(), kind) for column in columns.split(","))
-    unit = expression.unit()
-    return expression.label() + (f" ({unit})" if unit else "")
+    return expression.titled()
 
 
 def escaped(text):

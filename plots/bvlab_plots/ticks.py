@@ -37,8 +37,8 @@ class Scale:
 
 
 def numeric_ticks(values, across):
-    """Ticks at the values themselves where they are few."""
-    there = sorted(set(values))
+    """Ticks at the values themselves where they are few. A peer may have none: NaN is in no set of its kind."""
+    there = sorted({value for value in values if not math.isnan(value)})
     if len(there) > 9 and not across.log:
         return None, None, False
     ticks = there

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from bvlab_plots.refused import Refused
+from bvlab_plots.words import span
 
 COUNTS = ["n_u", "n_v", "n_p"]
 LEAST = 6  # rows, of a fit of three numbers
@@ -63,11 +64,6 @@ def of_record(folder, rows):
         return {v: (costs[v]["pose"], costs[v]["batched"], triangle) for v in dict.fromkeys(rows.volume)}, \
             "unit costs measured by bench_unit_costs"
     found, share = fitted(rows)
-    ranges = ", ".join(f"{name} {span([costs[i] for costs in found.values()])}"
-                       for i, name in enumerate(("$C_u$", "$C_v$", "$C_p$")))
+    each = ((name, [costs[i] for costs in found.values()]) for i, name in enumerate(("$C_u$", "$C_v$", "$C_p$")))
+    ranges = ", ".join(f"{name} {span(f'{min(costs):.3g}', f'{max(costs):.3g}')}" for name, costs in each)
     return found, f"unit costs fitted to the rows of this record, each volume by itself ({ranges} ns; R² {share:.2f})"
-
-
-def span(values):
-    least, most = f"{min(values):.3g}", f"{max(values):.3g}"
-    return least if least == most else f"{least} to {most}"

@@ -70,6 +70,16 @@ def number(value):
     return (f"{factor:.3g}·" if abs(factor - 1) > 1e-9 else "") + f"$10^{{{power}}}$"
 
 
+def texts(values):
+    """Values as they stand at an axis: names, and numbers."""
+    return [value if isinstance(value, str) else number(value) for value in values]
+
+
+def span(least, most):
+    """"2 to 8"; "2" where both ends are written alike."""
+    return least if least == most else f"{least} to {most}"
+
+
 def plain(name):
     """A name as it is, in a legend and without formulas; of a file of poses or boxes, that of the file."""
     if name.endswith(".npy"):

@@ -63,20 +63,17 @@ def draw_law(rows, kappa, out):
     rows["predicted"] = law.predicted(rows, kappa)
     seen = law.fitted(rows)
     figure, axes = plt.subplots(1, 3, figsize=(9.2, 3.1))
-    low, high = (f * x for f, x in ((0.8, rows[["predicted", "tests_saved"]].min().min()),
-                                    (1.25, rows[["predicted", "tests_saved"]].max().max())))
+    both = rows[["predicted", "tests_saved"]]
+    low, high = 0.8 * both.min().min(), 1.25 * both.max().max()
     for name in law.LISTS:
         look = style.looks(law.LISTS)[name]
         for part, fill, label in ((seen, look["color"], "fitted"), (~seen, "none", "left out")):
             group = rows[(rows.strategy == name) & part]
-            if not len(group):
-                continue
-            axes[0].plot(group.predicted, group.tests_saved, linestyle="none", marker=look["marker"],
-                         markersize=3.5, markeredgecolor=look["color"], markerfacecolor=fill,
-                         markeredgewidth=0.7, label=f"{name}, {label}")
-            axes[1].plot(1 - group.survival, group.predicted / group.tests_saved, linestyle="none",
-                         marker=look["marker"], markersize=3.5, markeredgecolor=look["color"],
+            drawn = dict(linestyle="none", marker=look["marker"], markersize=3.5, markeredgecolor=look["color"],
                          markerfacecolor=fill, markeredgewidth=0.7)
+            if len(group):
+                axes[0].plot(group.predicted, group.tests_saved, label=f"{name}, {label}", **drawn)
+                axes[1].plot(1 - group.survival, group.predicted / group.tests_saved, **drawn)
     axes[0].plot([low, high], [low, high], color="black", linewidth=0.8)
     axes[0].set(xlabel="speedup in tests, by the law", ylabel="measured", xlim=(low, high), ylim=(low, high),
                 xscale="log", yscale="log")

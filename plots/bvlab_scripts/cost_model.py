@@ -8,30 +8,26 @@ RECORD holds cost-model.csv and unit-costs.json (bench_unit_costs --benchmark_fo
 
 from pathlib import Path
 
-from bvlab_plots import charts, records, style, unit_costs
+from bvlab_plots import charts, records, stacks, style, unit_costs
 from bvlab_plots.arguments import record_arguments
 from bvlab_plots.figures import Figure
 from bvlab_plots.points import points_of
 from bvlab_plots.refused import Refused
-from bvlab_plots.stacks import TERMS
 
 
 def read(record):
     """The rows with the terms of T in ns and their sum, predicted_ns; unit costs of volumes and of triangles."""
-    rows = records.read(record)
-    records.wrong_answers(rows)
+    rows = records.right(record)
     if not (Path(record) / "unit-costs.json").is_file():
         raise Refused(f"{record}: has no unit-costs.json: it is the record of something else")
     costs, triangle = unit_costs.measured(Path(record) / "unit-costs.json")
     records.say_left_out(rows[rows.peer != ""].peer, "which count nothing")
-    attrs, rows = rows.attrs, rows[rows.peer == ""]
-    records.say_left_out(set(rows.volume) - set(costs), "whose unit costs are not in unit-costs.json")
-    rows = rows[rows.volume.isin(costs)].copy()
-    rows["posing_ns"] = rows.n_u * rows.volume.map(lambda v: costs[v]["pose"])
-    rows["volumes_ns"] = rows.n_v * rows.volume.map(lambda v: costs[v]["batched"])
-    rows["triangles_ns"] = rows.n_p * triangle
-    rows["predicted_ns"] = rows[list(TERMS)].sum(axis=1)
-    rows.attrs.update(attrs, units={**attrs["units"], **{name: "ns" for name in [*TERMS, "predicted_ns"]}})
+    records.say_left_out(set(rows[rows.peer == ""].volume) - set(costs), "whose unit costs are not in unit-costs.json")
+    attrs, rows = rows.attrs, rows[rows.volume.isin(costs)]
+    rows.attrs.update(attrs, folder=record)
+    rows, _ = stacks.with_terms(rows)
+    rows["predicted_ns"] = rows[list(stacks.TERMS)].sum(axis=1)
+    rows.attrs["units"]["predicted_ns"] = "ns"
     return rows, costs, triangle
 
 
@@ -49,5 +45,4 @@ def draw_errors(rows, out):
 
 def main():
     arguments = record_arguments(__doc__)
-    rows, _, _ = read(arguments.record)
-    print(draw_errors(rows, arguments.out))
+    print(draw_errors(read(arguments.record)[0], arguments.out))

@@ -63,14 +63,9 @@ def survivals(time):
     return time.index.get_level_values("survival").to_numpy()
 
 
-def chosen(time, threshold):
-    """What the rule takes in each cell: margins where the survival is at least the threshold."""
-    return pd.Series(np.where(survivals(time) >= threshold, time.margins, time[FRONTLESS].min(axis=1)), time.index)
-
-
 def off(time, threshold):
-    """The time of what the rule takes over the fastest strategy's."""
-    return chosen(time, threshold) / time.min(axis=1)
+    """The time of what the rule takes (margins where the survival is at least the threshold) over the fastest strategy's."""
+    return time.margins.where(survivals(time) >= threshold, time[FRONTLESS].min(axis=1)) / time.min(axis=1)
 
 
 def threshold(time):
@@ -82,8 +77,8 @@ def threshold(time):
 
 def thresholds(time):
     """By query and kernel."""
-    found = {at: threshold(part) for at, part in time.groupby(level=["query", "engine"])}
-    return {at: found[at] for at in sorted(found, key=lambda at: QUERIES.index(at[0]))}
+    parts = sorted(time.groupby(level=["query", "engine"]), key=lambda part: QUERIES.index(part[0][0]))
+    return {at: threshold(part) for at, part in parts}
 
 
 def rule_off(time):
@@ -93,8 +88,7 @@ def rule_off(time):
 
 def left_out(record):
     """Times and survival of shapes and motion models that the rule was not fitted on: binary trees of oriented boxes."""
-    rows = records.read(record, needs=["entries"])
-    records.wrong_answers(rows)
+    rows = records.right(record, needs=["entries"])
     rows = rows[(rows.volume == "obb") & (rows.peer == "")]
     seen = rows.mesh.isin(["bunny", "knot", "ChineseDragon-10kv"]) & (rows.motion_model == "all bodies, all freedoms")
     cell = ["query", "mesh", "motion", "motion_model"]

@@ -16,6 +16,7 @@ kappa is fitted; R, c, g and lambda are measured from recursive fronts of one fr
 """
 
 import numpy as np
+import pandas as pd
 
 from bvlab_plots import records
 
@@ -28,8 +29,7 @@ FITTED_MOTION_MODELS = ["all bodies, all freedoms", "one body, one freedom"]
 
 def read(record):
     """One row per trace, volume and strategy: counts, median time, and the coherence of the trace."""
-    rows = records.read(record, needs=["entries"])
-    records.wrong_answers(rows)
+    rows = records.right(record, needs=["entries"])
     records.say_left_out(rows[rows.peer != ""].peer, "which keep no front")
     rows = rows[rows.peer == ""]
     unknown = rows.entries.isna()
@@ -77,7 +77,7 @@ def way_out(persistence, steps):
 
 
 def by_age(rows, defer, kappa):
-    """Of each run since a list was rebuilt, shape (frames, rows): how likely the list still stands in it, and its tests
+    """Of each run since a list was rebuilt, shape (frames, rows): how likely the list is kept until then, and its tests
     over those of the recursion, near pairs only, by the law."""
     near = rows.near_runs.where(rows.near_runs > 0).to_numpy(float)  # NaN where nothing was near
     full = rows.tests.to_numpy() / near
@@ -86,22 +86,22 @@ def by_age(rows, defer, kappa):
     rate = -np.log(np.clip(rows.stillness.to_numpy(), 1e-12, 1))
     persistence = rows.persistence.to_numpy(float)
     states = [np.ones(len(rows))] + [np.zeros(len(rows)) for _ in range(defer)]
-    stands, cost, length = [np.ones(len(rows))], [np.ones(len(rows))], np.ones(len(rows))
+    kept, cost, length = [np.ones(len(rows))], [np.ones(len(rows))], np.ones(len(rows))
     for age in range(1, int(rows.frames.max())):
         alive = sum(states) * (age < rows.frames.to_numpy())
         fresh = (way_out(persistence, age) - way_out(persistence, age - 1)) ** kappa
-        stands.append(alive)
+        kept.append(alive)
         cost.append(once * length / full)
         length = length + gain * fresh
         still = np.exp(-rate * fresh)
         states = [alive * (1 - still)] + [state * still for state in states[:-1]]
-    return np.array(stands), np.array(cost)
+    return np.array(kept), np.array(cost)
 
 
 def list_over_recursion(rows, defer, kappa):
     """Tests of a list over those of the recursion, near pairs only: the mean from one rebuild to the next."""
-    stands, cost = by_age(rows, defer, kappa)
-    return (stands * cost).sum(axis=0) / stands.sum(axis=0)
+    kept, cost = by_age(rows, defer, kappa)
+    return (kept * cost).sum(axis=0) / kept.sum(axis=0)
 
 
 def predicted(rows, kappa):
@@ -124,28 +124,26 @@ def fit_kappa(rows):
     return candidates[int(np.argmin(errors))]
 
 
+def off_by(rows, predicted):
+    """|predicted / measured - 1| of each row."""
+    return (pd.Series(predicted, rows.index) / rows.tests_saved - 1).abs()
+
+
+def in_parts(rows, values):
+    """The values of rows that the fit may see, and of those that are left out of it, where there are any."""
+    seen = fitted(rows)
+    return {label: values[part] for label, part in (("fitted", seen), ("left out", ~seen)) if part.any()}
+
+
 def errors(rows, kappa):
-    """Median and 95th percentile of |predicted / measured - 1|, fitted and left out."""
+    """Median and 95th percentile of |predicted / measured - 1|, and of how many cells, fitted and left out."""
     rows = rows[rows.strategy.isin(LISTS)]
-    off = np.abs(predicted(rows, kappa) / rows.tests_saved - 1)
-    table = {}
-    for label, part in (("fitted", fitted(rows)), ("left out", ~fitted(rows))):
-        if part.any():
-            table[label] = (off[part].median(), off[part].quantile(0.95), int(part.sum()))
-    return table
-
-
-def constant_errors(rows):
-    """The same for the talk's own argument, that a list costs n where recursion costs 2n (a still list
-    rebuilt every other or every third run)."""
-    constant = {"separation-list": 4 / 3, "deferred": 3 / 2}
-    rows = rows[rows.strategy.isin(LISTS)]
-    off = np.abs(rows.strategy.map(constant) / rows.tests_saved - 1)
-    return off.median(), off.quantile(0.95)
+    parts = in_parts(rows, off_by(rows, predicted(rows, kappa)))
+    return {label: (off.median(), off.quantile(0.95), len(off)) for label, off in parts.items()}
 
 
 def crossing(rows, strategy, what):
-    """The survival below which most cells lose: the threshold that misjudges the fewest."""
+    """The survival below which most cells lose: the threshold that misjudges the fewest, and the share that it misjudges."""
     group = rows[rows.strategy == strategy].sort_values("survival")
     wins = (group[what] > 1).to_numpy()
     # Below the threshold wins are misjudged, above it losses.
@@ -154,7 +152,7 @@ def crossing(rows, strategy, what):
     k = int(np.argmin(wrong))
     survival = group.survival.to_numpy()
     at = survival[0] if k == 0 else survival[-1] if k == len(survival) else survival[k - 1:k + 1].mean()
-    return at, wrong[k] / len(group), wins.mean()
+    return at, wrong[k] / len(group)
 
 
 def fit_margins(rows):
@@ -165,12 +163,3 @@ def fit_margins(rows):
         return None
     alpha, log_c = np.polyfit(np.log(group.leaves), -np.log(group.all_saved), 1)
     return np.exp(log_c), alpha
-
-
-def margins_errors(rows, law):
-    """By which factor the fitted line is off, median, fitted and left out."""
-    group = rows[(rows.strategy == "margins") & (rows.leaves > 0)]
-    left = np.minimum(1, law[0] * group.leaves ** law[1])
-    off = np.exp(np.abs(np.log(left * group.all_saved)))
-    return {label: off[part].median() for label, part in
-            (("fitted", fitted(group)), ("left out", ~fitted(group))) if part.any()}

@@ -24,18 +24,15 @@ PUBLISHED = pd.DataFrame(
     columns=["recursive", "separation-list", "deferred"], index=range(1, 11))
 LISTS = ["separation-list", "deferred"]
 BASE = "recursive"
+SPEEDUPS = PUBLISHED[BASE].mean() / PUBLISHED[LISTS].mean()  # as they were published
 
 
 def read(record):
     """One row per (reading, density, seed, variant): median time over repetitions, mean counts."""
-    rows = records.read(record, needs=["reading", "density"])
-    records.wrong_answers(rows)
+    rows = records.right(record, needs=["reading", "density"])
     keys = ["reading", "density", "seed", "variant"]
-    runs = rows.groupby(keys, sort=False).agg(
-        time_ns=("time_ns", "median"), pairs=("pairs", "first"), frames=("frames", "first"),
-        hits=("hits", "first"), n_u=("n_u", "first"), n_v=("n_v", "first"), n_p=("n_p", "first"),
-        front=("front", "first")).reset_index()
-    return runs
+    counts = dict.fromkeys(["pairs", "frames", "hits", "n_u", "n_v", "n_p", "front"], "first")
+    return rows.groupby(keys, sort=False).agg({"time_ns": "median"} | counts).reset_index()
 
 
 def lists_of(runs):
@@ -46,17 +43,13 @@ def lists_of(runs):
 
 def speedups(runs, what="time_ns"):
     """Recursive over each other variant, one row per (reading, density, seed), one column per variant."""
-    wide = runs.pivot_table(index=["reading", "density", "seed"], columns="variant", values=what,
-                            sort=False)
-    return pd.DataFrame({name: wide[BASE] / wide[name] for name in lists_of(runs)})
+    wide = runs.pivot_table(index=["reading", "density", "seed"], columns="variant", values=what, sort=False)
+    return wide[lists_of(runs)].rdiv(wide[BASE], axis=0)
 
 
-def saved_by_cost(rows, price):
-    """What each list saves over recursion where a pair of triangles costs as much as `price` tests of volumes: one row a
-    build, reading, density and seed."""
-    wide = rows.assign(cost=rows.n_v + price * rows.n_p).pivot_table(
-        index=["build", "reading", "density", "seed"], columns="strategy", values="cost", sort=False)
-    return wide[LISTS].rdiv(wide[BASE], axis=0)
+def mean_speedups(runs, what="time_ns"):
+    """Means over seeds: one row per (reading, density)."""
+    return speedups(runs, what).groupby(level=["reading", "density"], sort=False).mean()
 
 
 def percent(ratio):
@@ -71,23 +64,18 @@ def print_table(runs):
     for (reading, density), group in runs.groupby(["reading", "density"], sort=False):
         touching = group.hits.sum() / group.pairs.sum()
         print(f"{reading}; {density} ({100 * touching:.1f}% of the pairs touch)")
-        print("run  " + ", ".join([BASE, *lists_of(group)]) + "; N_u, N_v, N_p per pair and frame (front) of each")
         variants = [BASE, *lists_of(group)]
+        print("run  " + ", ".join(variants) + "; N_u, N_v, N_p per pair and frame (front) of each")
         wide = {name: group[group.variant == name].set_index("seed") for name in variants}
         for seed in wide[BASE].index:
             print(table_line(str(seed), {name: wide[name].loc[seed] for name in variants}))
-        mean = {name: wide[name].drop(columns=["reading", "density", "variant"]).mean()
-                for name in variants}
-        print(table_line("ave", mean), "\n")
+        print(table_line("ave", {name: wide[name].mean(numeric_only=True) for name in variants}), "\n")
 
 
 def table_line(label, of):
     seconds = {name: of[name].time_ns / 1e9 for name in of}
-    counts = []
-    for name in of:
-        pairs = of[name].pairs
-        text = " ".join(f"{of[name][n] / pairs:.1f}" for n in ("n_u", "n_v", "n_p"))
-        counts.append(text if name == "recursive" else f"{text} ({of[name].front:.0f})")
+    counts = [" ".join(f"{row[n] / row.pairs:.1f}" for n in ("n_u", "n_v", "n_p")) +
+              ("" if name == "recursive" else f" ({row.front:.0f})") for name, row in of.items()]
     columns = [f"{label:>3}  {seconds['recursive']:8.4f} s"]
     for name in list(of)[1:]:
         columns.append(f"{seconds[name]:8.4f} s {percent(seconds['recursive'] / seconds[name]):>6}")
@@ -96,10 +84,8 @@ def table_line(label, of):
 
 def nearest_reading(runs):
     """The (reading, density) whose two average speedups are nearest to the published ones."""
-    average = speedups(runs).groupby(level=["reading", "density"], sort=False).mean()
-    target = PUBLISHED.mean()
-    goal = np.log([target[BASE] / target[name] for name in LISTS])
-    distance = ((np.log(average[LISTS]) - goal) ** 2).sum(axis=1)
+    average = mean_speedups(runs)
+    distance = (np.log(average[LISTS] / SPEEDUPS) ** 2).sum(axis=1)
     return distance.idxmin(), average
 
 
@@ -135,10 +121,8 @@ def draw_speedups(axis, tables):
         axis.barh(places, quartiles[:, 1], height=height - 0.02, label=name, **style.bar_style(looks[name]))
         axis.errorbar(quartiles[:, 1], places, fmt="none", ecolor="black", elinewidth=0.8,
                       xerr=[quartiles[:, 1] - quartiles[:, 0], quartiles[:, 2] - quartiles[:, 1]])
-        if name in PUBLISHED:
-            published = PUBLISHED["recursive"].mean() / PUBLISHED[name].mean()
-            axis.axvline(published, linewidth=1.4, label=f"{name}, published time",
-                         **style.line_style(looks[name]))
+        if name in LISTS:
+            axis.axvline(SPEEDUPS[name], linewidth=1.4, label=f"{name}, published time", **style.line_style(looks[name]))
     axis.axvline(1, color="black", linewidth=0.8)
     axis.grid(axis="y", visible=False)
 
@@ -148,7 +132,7 @@ def draw_runs(runs, out):
     (reading, density), _ = nearest_reading(runs)
     ratios = speedups(runs).loc[(reading, density)]
     figure, axes = plt.subplots(1, 2, figsize=(7.2, 2.4), sharey=True)
-    published = pd.DataFrame({name: PUBLISHED["recursive"] / PUBLISHED[name] for name in LISTS})
+    published = PUBLISHED[LISTS].rdiv(PUBLISHED[BASE], axis=0)
     for axis, table, title in ((axes[0], published, "published"),
                                (axes[1], ratios, f"measured: {reading}; {density}")):
         looks, width = style.looks(table.columns), 0.8 / len(table.columns)
@@ -171,16 +155,14 @@ def main():
     runs = read(arguments.record)
     print_table(runs)
     (reading, density), average = nearest_reading(runs)
-    tests = speedups(runs, "n_v").groupby(level=["reading", "density"], sort=False).mean()
+    tests = mean_speedups(runs, "n_v")
     print("Average speedups, list and deferred (published: 1.40 and 1.84), in time | in N_v:")
     for (r, d), row in average.iterrows():
         mark = "   <- nearest in time" if (r, d) == (reading, density) else ""
         saved = tests.loc[(r, d)]
         print(f"  {r + '; ' + d:46} {row['separation-list']:.2f}  {row['deferred']:.2f}  |  "
               f"{saved['separation-list']:.2f}  {saved['deferred']:.2f}{mark}")
-    if arguments.table_only:
-        return
-    out = arguments.out
-    for path in (draw_table(runs, out), draw_runs(runs, out)):
-        print(path)
+    if not arguments.table_only:
+        print(draw_table(runs, arguments.out))
+        print(draw_runs(runs, arguments.out))
 

@@ -81,6 +81,5 @@ def draw(rows, out):
 
 def main():
     arguments = record_arguments(__doc__)
-    rows = read(arguments.record)
-    print(draw(rows, arguments.out))
+    print(draw(read(arguments.record), arguments.out))
 

@@ -11,17 +11,13 @@ import matplotlib.pyplot as plt
 from bvlab_plots import records, style
 from bvlab_plots.arguments import record_arguments
 
-NONE = 3  # where zero stands on the logarithmic axis, in pairs per million
+NONE = 3  # the place of zero on the logarithmic axis, in pairs per million
 
 
 def read(record):
     rows = records.read(record, needs=["set", "test", "false_positives", "false_negatives"])
     rows["wrong"] = (rows.false_positives + rows.false_negatives) / rows.pairs * 1e6
-    return rows, rows.attrs["name"]
-
-
-def name_of(test, source):
-    return test if source == "peer" else f"{test}, {source}"
+    return rows
 
 
 def middle_of(rows):
@@ -44,11 +40,8 @@ def front_of(points):
 
 def draw(middle, out, name):
     sets = list(dict.fromkeys(middle.set))
-    columns = 3
-    lines = int(np.ceil(len(sets) / columns))
-    looks = style.looks(middle.test)
-    figure, axes = plt.subplots(lines, columns, figsize=(7.2, 2.3 * lines), squeeze=False,
-                                sharey=True)
+    lines, looks = -(-len(sets) // 3), style.looks(middle.test)
+    figure, axes = plt.subplots(lines, 3, figsize=(7.2, 2.3 * lines), squeeze=False, sharey=True)
     for axis, which in zip(axes.flat, sets):
         group = middle[middle.set == which]
         front = front_of(zip(group.ns, group.wrong))
@@ -59,7 +52,7 @@ def draw(middle, out, name):
             if row.source == "one by one":
                 marker["markerfacecolor"] = "none"
             axis.plot(row.ns, max(row.wrong, NONE), markersize=5, zorder=2,
-                      label=name_of(row.test, row.source), **marker)
+                      label=row.test if row.source == "peer" else f"{row.test}, {row.source}", **marker)
         axis.set_xscale("log")
         axis.set_yscale("log")
         axis.set_xlim(middle.ns.min() / 2, middle.ns.max() * 2)
@@ -73,10 +66,8 @@ def draw(middle, out, name):
         axis.set_xlabel("ns per call")
     for axis in axes[:, 0]:
         axis.set_ylabel("wrong per million")
-    handles = {}
-    for axis in axes.flat:
-        for handle, label in zip(*axis.get_legend_handles_labels()):
-            handles.setdefault(label, handle)
+    handles, labels = style.labelled(axes.flat)
+    handles = dict(zip(labels, handles))
     known = list(style.STYLES)
     labels = sorted(handles, key=lambda label: known.index(label.split(",")[0]) if label.split(",")[0] in known
                     else len(known))
@@ -88,7 +79,6 @@ def draw(middle, out, name):
 
 def main():
     arguments = record_arguments(__doc__)
-    rows, name = read(arguments.record)
-    middle = middle_of(rows)
-    print(draw(middle, arguments.out, name))
+    rows = read(arguments.record)
+    print(draw(middle_of(rows), arguments.out, rows.attrs["name"]))
 

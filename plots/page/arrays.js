@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arrays that stand in a page as text, and how pairs of bodies are numbered: (0,1) (0,2) ... (1,2) ...
+// Arrays that stand in a page as text; which mesh a body has, and how pairs are numbered: (0,1) (0,2) ... (1,2) ...
 'use strict';
 
 const bytesOf = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
@@ -7,8 +7,11 @@ const floatsOf = text => new Float32Array(bytesOf(text).buffer);
 const doublesOf = text => new Float64Array(bytesOf(text).buffer);
 const wholesOf = text => new Uint32Array(bytesOf(text).buffer);
 
-function pairsOf(objects) {
+function bodiesOf(objects, meshes) {
+  const meshIndexOf = i => i % meshes.length, meshOf = i => meshes[meshIndexOf(i)];
   return {
+    objects, meshes, meshOf, meshIndexOf,
+    triangles: Array.from({ length: objects }, (_, i) => meshOf(i).triangleCount).reduce((a, b) => a + b, 0),
     pairCount: objects * (objects - 1) / 2,
     pairOf: p => {
       let i = 0;

@@ -6,7 +6,7 @@
 // x3d      the <x3d> element, after x3dom has read its scene
 // engine   of engineFrom (engine.js), without meshes as yet
 // A part is an outermost Transform that has triangles: it moves as one, by sensors, interpolators or scripts. In every
-// frame in which one has moved, all are asked; those that touch take the colour, and their own one after that.
+// frame in which one has moved, the engine tests all; those that touch take the colour, and their own one after that.
 //   contact.parts      the Transform elements; their numbers are those of the pairs
 //   contact.touching   [i, j] for each pair that touches, i < j, as of the last frame; `onChange` when it changes
 //   contact.detach()   ends it
@@ -21,8 +21,9 @@ async function bvlabX3d(x3d, engine, { colour = '1 0 0', onChange = () => {}, mo
   const outermost = [...x3d.querySelectorAll('transform')].filter(part => !part.parentElement.closest('transform') && shapesOf(part).length > 0);
   if (outermost.length < 2) throw Error('This scene has fewer than two parts: outermost Transforms that hold shapes.');
 
+  const tooMany = () => Error(`This scene has more than ${mostTriangles.toLocaleString('en')} triangles: too many to ask in every frame here.`);
   const lengthOf = (rows, column) => Math.hypot(rows[0][column], rows[1][column], rows[2][column]) || 1;
-  /** A part where it stands: x y z qw qx qy qz, from its matrix without its scale. */
+  /** The pose of a part: x y z qw qx qy qz, from its matrix without its scale. */
   function poseOf(part) {
     const rows = rowsOf(node(part).getCurrentTransform()), scale = [0, 1, 2].map(k => lengthOf(rows, k));
     const r = rows.map(row => row.slice(0, 3).map((x, k) => x / scale[k]));
@@ -49,8 +50,7 @@ async function bvlabX3d(x3d, engine, { colour = '1 0 0', onChange = () => {}, mo
         if (indices?.length) for (const index of indices) triangles.push(first + index);
         else for (let v = first; v + 2 < vertices.length / 3; v += 3) triangles.push(v, v + 1, v + 2);
       });
-      if (triangles.length > 3 * mostTriangles)
-        throw Error(`This scene has more than ${mostTriangles.toLocaleString('en')} triangles: too many to ask in every frame here.`);
+      if (triangles.length > 3 * mostTriangles) throw tooMany();
     }
     return { vertices: Float64Array.from(vertices), triangles: Uint32Array.from(triangles) };
   }
@@ -60,8 +60,7 @@ async function bvlabX3d(x3d, engine, { colour = '1 0 0', onChange = () => {}, mo
   for (const part of outermost) {
     const mesh = meshOf(part);
     if (mesh.triangles.length === 0) continue;
-    if ((all += mesh.triangles.length / 3) > mostTriangles)
-      throw Error(`This scene has more than ${mostTriangles.toLocaleString('en')} triangles: too many to ask in every frame here.`);
+    if ((all += mesh.triangles.length / 3) > mostTriangles) throw tooMany();
     engine.addMesh(mesh.vertices, mesh.triangles);
     parts.push(part);
   }
@@ -88,9 +87,8 @@ async function bvlabX3d(x3d, engine, { colour = '1 0 0', onChange = () => {}, mo
     before = now;
     engine.setPoses(now);
     engine.play(run);
-    const pairs = [];
+    const pairs = [], hits = engine.touching(run);
     let p = 0;
-    const hits = engine.touching(run);
     for (let i = 0; i < parts.length; ++i) for (let j = i + 1; j < parts.length; ++j) if (hits[p++]) pairs.push([i, j]);
     const changed = pairs.join(';') !== contact.touching.join(';');
     contact.touching = pairs;

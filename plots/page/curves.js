@@ -7,10 +7,9 @@ const curves = (() => {
                  ['N<sub>p</sub>', 'triangle tests'], ['front', 'entries']];
   const count = new Intl.NumberFormat('en');
   const all = kinds.map(([symbol, meaning], k) => {
-    const box = document.createElement('div');
-    box.className = 'curve';
-    box.innerHTML = `<h3><span>${symbol} <small>${meaning}</small></span><output></output></h3><canvas></canvas>`;
-    document.getElementById('curves').append(box);
+    const innerHTML = `<h3><span>${symbol} <small>${meaning}</small></span><output></output></h3><canvas></canvas>`;
+    const box = made('div', { className: 'curve', innerHTML });
+    element('curves').append(box);
     const values = Float64Array.from({ length: data.frames }, (_, f) => data.series[4 * f + k]);
     return { values, most: values.reduce((a, b) => Math.max(a, b), 0) || 1, canvas: box.querySelector('canvas'),
              output: box.querySelector('output'), still: document.createElement('canvas') };
@@ -62,7 +61,7 @@ const curves = (() => {
   }
   const redraw = () => all.forEach(curve => { drawStill(curve), mark(curve); });
   look.onChange(redraw);
-  new ResizeObserver(redraw).observe(document.getElementById('curves'));
+  new ResizeObserver(redraw).observe(element('curves'));
   redraw();
 
   return {

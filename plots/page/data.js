@@ -56,9 +56,7 @@ const data = (() => {
     };
   });
   return {
-    ...read, meshes, ...pairsOf(objects),
-    meshOf: i => meshes[i % meshes.length],
-    meshIndexOf: i => i % meshes.length,
+    ...read, ...bodiesOf(objects, meshes),
     poses: floatsOf(read.poses), series: wholesOf(read.series),
     touching: setsOverTime(read.touching, frames),
     leftOut: Object.values(read.left_out),

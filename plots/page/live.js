@@ -2,12 +2,6 @@
 // The live page: the engine plays what the motion does, or the hand. `live` is for tests and the console.
 'use strict';
 
-const element = id => document.getElementById(id);
-function problem(sentence) {
-  element('problem').textContent = sentence;
-  element('problem').hidden = false;
-}
-
 const live = (() => {
   const colours = ['accent', 'run-1', 'run-2', 'run-3', 'run-4'];
   const whole = new Intl.NumberFormat('en');
@@ -29,7 +23,7 @@ const live = (() => {
   const rotated = (v, q) => times(times(q, [0, ...v]), [q[0], -q[1], -q[2], -q[3]]).slice(1).map(x => x / dot4(q, q));
   const poseOf = i => poses.subarray(7 * i, 7 * i + 7);
   const boxes = data.meshes.map(({ exact }) => {
-    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    const low = Array(3).fill(Infinity), high = Array(3).fill(-Infinity);
     exact.forEach((x, k) => { low[k % 3] = Math.min(low[k % 3], x), high[k % 3] = Math.max(high[k % 3], x); });
     return { centre: low.map((x, k) => (x + high[k]) / 2), radius: Math.hypot(...low.map((x, k) => high[k] - x)) / 2 };
   });
@@ -157,7 +151,6 @@ const live = (() => {
     scene.showLines('nearest', apart ? seen(Array.from(self.engine.nearest(...state.pair))) : []);
   }
 
-  const which = () => document.querySelector('input[name="which"]:checked').value;
   function nodesNow() {
     if (which() === 'level') {
       const level = Number(element('level').value), nodes = state.pair.map(i => volumes.level(data.meshIndexOf(i), level));
@@ -177,8 +170,7 @@ const live = (() => {
     return [[...rest, ...lit].map(nodes => [...nodes]), words];
   }
   function showVolumes() {
-    element('level').disabled = which() !== 'level';
-    element('level-number').textContent = element('level').value;
+    showLevel();
     const some = state.pair !== null && which() !== 'none' && drawn().number !== null;
     const [nodes, words] = some ? nodesNow() : [[], ''];
     scene.showVolumes(some && volumes.drawable ? state.pair : null, nodes.map(each => each.slice(0, volumes.most)));
@@ -235,7 +227,7 @@ const live = (() => {
     state.waiting = null;
     if (state.pair) element('first').value = state.pair[0], element('second').value = state.pair[1];
     watch();
-    // The front is told from the next frame on.
+    // The engine gives the front from the next frame on.
     changed();
   }
 
@@ -333,17 +325,15 @@ const live = (() => {
 
   // Controls of a run
   function select(row, label, values, value, act) {
-    const made = document.createElement('select');
-    made.setAttribute('aria-label', label);
-    made.title = label;
-    for (const each of values) made.append(new Option(typeof each === 'number' ? `fan-out ${each}` : each, each, false, each === value));
-    made.addEventListener('change', () => act(made.value));
-    row.append(made);
+    const menu = made('select', { ariaLabel: label, title: label });
+    for (const each of values) menu.append(new Option(typeof each === 'number' ? `fan-out ${each}` : each, each, false, each === value));
+    menu.addEventListener('change', () => act(menu.value));
+    row.append(menu);
   }
   function controlsOf(run) {
     run.row.replaceChildren();
-    const draws = Object.assign(document.createElement('input'), { type: 'radio', name: 'drawn', checked: run === drawn() });
-    draws.setAttribute('aria-label', draws.title = 'draw its volumes and its front');
+    const title = 'draw its volumes and its front';
+    const draws = made('input', { type: 'radio', name: 'drawn', checked: run === drawn(), title, ariaLabel: title });
     draws.style.accentColor = draws.style.outlineColor = run.colour;
     draws.addEventListener('change', () => { runs.forEach(each => { each.isDrawn = each === run; }), changed(); });
     run.row.append(draws);
@@ -361,8 +351,7 @@ const live = (() => {
     select(run.row, 'kernel', Object.keys(offered), run.kernel, name => change({ kernel: name }));
     select(run.row, 'fan-out', kernel.fanOuts, run.fanOut, fanOut => change({ fanOut: Number(fanOut) }));
     if (run !== runs[0]) {
-      const away = Object.assign(document.createElement('button'), { type: 'button', textContent: '×' });
-      away.setAttribute('aria-label', 'take it away');
+      const away = made('button', { type: 'button', textContent: '×', ariaLabel: 'take it away' });
       away.addEventListener('click', () => {
         if (run.number !== null) self.engine.endRun(run.number);
         runs.splice(runs.indexOf(run), 1);
@@ -387,12 +376,10 @@ const live = (() => {
     const used = runs.map(run => run.colour), colour = colours.map(name => look.colour(name)).find(each => !used.includes(each));
     if (!colour) return;
     const run = { strategy: 'margins', volume: 'sphere', kernel: 'gathered', fanOut: 2, ...what, colour, number: null, past: [], times: [],
-      row: document.createElement('p'), said: document.createElement('small'), numbers: document.createElement('span'),
-      line: document.createElement('span') };
-    run.line.append(...['span', 'span'].map(name => document.createElement(name)));
-    run.line.lastChild.append(document.createElement('i'), document.createElement('output'));
+      row: made('p', { className: 'row run' }), said: made('small'), numbers: made('span'), line: made('span') };
+    run.line.append(made('span'), made('span'));
+    run.line.lastChild.append(made('i'), made('output'));
     element('lines').append(run.line);
-    run.row.className = 'row run';
     element('runs').append(run.row);
     runs.push(run);
     controlsOf(run);
@@ -421,10 +408,8 @@ const live = (() => {
 
   async function begins() {
     document.title = element('title').textContent = `bvlab live · ${data.title}`;
-    const triangles = Array.from({ length: data.objects }, (_, i) => data.meshOf(i).triangleCount).reduce((a, b) => a + b, 0);
-    element('facts').textContent = `${whole.format(data.objects)} bodies, ${whole.format(triangles)} triangles`;
-    for (const text of data.left_out) element('left-out').append(Object.assign(document.createElement('li'), { textContent: text }));
-    element('left-out-section').hidden = data.left_out.length === 0;
+    element('facts').textContent = `${whole.format(data.objects)} bodies, ${whole.format(data.triangles)} triangles`;
+    showLeftOut(data.left_out);
     self.engine = await engineFrom(data.engine);
     data.meshes.forEach(mesh => self.engine.addMesh(mesh.exact, mesh.triangles));
     self.engine.setBodies(data.objects);
@@ -462,8 +447,7 @@ const live = (() => {
     element('look').addEventListener('click', () => scene.lookAt(state.pair));
     for (const id of ['first', 'second'])
       element(id).addEventListener('change', () => choose([Number(element('first').value), Number(element('second').value)]));
-    for (const radio of document.querySelectorAll('input[name="which"]')) radio.addEventListener('change', draw);
-    element('level').addEventListener('input', draw);
+    onWhich(draw);
     addEventListener('keydown', key);
     scene.onClick(body => {
       if (body === null || body === state.waiting) state.waiting = null;

@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Light or dark: as the system says until the button is used; what was chosen is kept.
+// What all pages share. Light or dark: as the system says until the button is used; what was chosen is kept.
 'use strict';
+
+const element = id => document.getElementById(id);
+/** An element of that kind, with properties. */
+const made = (kind, properties) => Object.assign(document.createElement(kind), properties);
+function problem(sentence) {
+  element('problem').textContent = sentence;
+  element('problem').hidden = false;
+}
+/** What a page leaves out, in sentences; no section where that is nothing. */
+function showLeftOut(sentences) {
+  element('left-out').append(...sentences.map(textContent => made('li', { textContent })));
+  element('left-out-section').hidden = sentences.length === 0;
+}
 
 const look = (() => {
   const system = matchMedia('(prefers-color-scheme: dark)');
@@ -14,7 +27,7 @@ const look = (() => {
   };
   apply(stored() ?? (system.matches ? 'dark' : 'light'));
   system.addEventListener('change', () => { if (!stored()) apply(system.matches ? 'dark' : 'light'); });
-  document.getElementById('theme').addEventListener('click', () => {
+  element('theme').addEventListener('click', () => {
     const theme = document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark';
     store(theme);
     apply(theme);

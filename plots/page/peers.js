@@ -4,7 +4,7 @@
 'use strict';
 
 const peers = (() => {
-  const element = id => document.getElementById(id), bodies = Array.from({ length: data.objects }, (_, i) => i);
+  const bodies = Array.from({ length: data.objects }, (_, i) => i);
   const self = { rows: [], done: false }, rounds = 3;
   let PEERS = null;
   const poseOf = (poses, i) => {
@@ -90,7 +90,7 @@ const peers = (() => {
     const row = { name, milliseconds: least, touching: verdicts.reduce((sum, frame) => sum + frame.reduce((a, b) => a + b, 0), 0), differ, verdicts };
     self.rows.push(row);
     const cells = [name, least.toPrecision(3), (1000 * least / data.pairCount).toPrecision(3), row.touching, differ];
-    element('rows').insertRow().append(...cells.map(text => Object.assign(document.createElement('td'), { textContent: text })));
+    element('rows').insertRow().append(...cells.map(textContent => made('td', { textContent })));
   }
 
   async function play() {
@@ -107,6 +107,6 @@ const peers = (() => {
       : 'This page was made without three-mesh-bvh and rapier: experiments/setup gets them from npm.';
     self.done = true;
   }
-  play().catch(error => { element('problem').textContent = error.message, element('problem').hidden = false; });
+  play().catch(error => problem(error.message));
   return self;
 })();

@@ -3,25 +3,18 @@
 'use strict';
 
 (() => {
-  const element = id => document.getElementById(id);
   const framesPerSecond = 30;
   const state = { frame: 0, playing: false, due: 0, pair: null, waiting: null };
   const count = new Intl.NumberFormat('en');
 
   // Words
   document.title = element('title').textContent = `${data.trace} · ${data.volume} · ${data.strategy}`;
-  const triangles = Array.from({ length: data.objects }, (_, i) => data.meshOf(i).triangleCount).reduce((a, b) => a + b, 0);
   element('facts').textContent =
     `${count.format(data.objects)} bodies of ${[...new Set(data.meshes.map(m => m.name))].slice(0, 4).join(', ')}, ` +
-    `${count.format(triangles)} triangles, ${count.format(data.frames)} frames; ${data.query}, built ${data.build}`;
+    `${count.format(data.triangles)} triangles, ${count.format(data.frames)} frames; ${data.query}, built ${data.build}`;
   const swatch = (colour, words) => `<span><i style="background:var(--${colour})"></i>${words}</span>`;
   element('legend').innerHTML = swatch('touching', 'touching');
-  for (const sentence of data.leftOut) {
-    const item = document.createElement('li');
-    item.textContent = sentence;
-    element('left-out').append(item);
-  }
-  element('left-out-section').hidden = data.leftOut.length === 0;
+  showLeftOut(data.leftOut);
 
   // Frames
   const numberOf = f => f * data.stride;
@@ -46,18 +39,15 @@
   const cells = new Map();
   const asMatrix = data.objects <= 16;
   function cell(p) {
-    const [i, j] = data.pairOf(p), button = document.createElement('button');
-    button.type = 'button';
+    const [i, j] = data.pairOf(p), title = `bodies ${i} and ${j}`, button = made('button', { type: 'button', title, ariaLabel: title });
     button.dataset.pair = p;
-    button.title = `bodies ${i} and ${j}`;
-    button.setAttribute('aria-label', button.title);
     if (!asMatrix) button.textContent = `${i}–${j}`;
     button.addEventListener('click', () => choose(state.pair && data.numberOf(...state.pair) === p ? null : [i, j]));
     cells.set(p, button);
     return button;
   }
   function makeMatrix() {
-    const box = element('pairs'), n = data.objects, label = text => Object.assign(document.createElement('span'), { textContent: text });
+    const box = element('pairs'), n = data.objects, label = textContent => made('span', { textContent });
     box.className = 'matrix';
     box.style.gridTemplateColumns = `1.4em repeat(${n - 1}, minmax(0, 1fr))`;
     box.append(label(''));
@@ -120,7 +110,6 @@
   element('look').addEventListener('click', () => scene.lookAt(state.pair));
 
   // Volumes
-  const which = () => document.querySelector('input[name="which"]:checked').value;
   /** The nodes of the pair's two bodies whose volumes are to be drawn, and what they are. */
   function nodesNow() {
     if (!state.pair || which() === 'none') return [[[], []], ''];
@@ -135,8 +124,7 @@
     return [nodes, nodes[0].length ? 'nodes that the front stands on' : 'No front is kept in this frame.'];
   }
   function showVolumes() {
-    element('level').disabled = which() !== 'level';
-    element('level-number').textContent = element('level').value;
+    showLevel();
     let [nodes, words] = nodesNow();
     const full = nodes.map(n => n.length);
     nodes = nodes.map(n => n.slice(0, volumes.most));
@@ -148,8 +136,7 @@
       : full[0] + full[1] === 0 ? words
       : `${words}: ${nodes[0].length} + ${nodes[1].length} volumes (${data.volume})` + (cut ? `, the first of ${full[0]} + ${full[1]}` : '');
   }
-  for (const radio of document.querySelectorAll('input[name="which"]')) radio.addEventListener('change', showVolumes);
-  element('level').addEventListener('input', showVolumes);
+  onWhich(showVolumes);
 
   // Time
   function play(on) {
@@ -165,8 +152,7 @@
   for (const speed of [0.1, 0.25, 0.5, 1, 2, 4])
     element('speed').append(new Option(`${speed}×`, speed, speed === 1, speed === 1));
   addEventListener('keydown', event => {
-    if (event.target.closest('input, select, button') && event.key === ' ') return;
-    if (event.target.closest('input, select')) return;
+    if (event.target.closest('input, select') || (event.target.closest('button') && event.key === ' ')) return;
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
     if (event.key === ' ') play(!state.playing);
     else if (step) pause(state.frame + step);

@@ -9,8 +9,7 @@
   // All words must stand in what an experiment is called, asks, says, or how it is defined.
   const texts = sections.map(section =>
     [...section.querySelectorAll('h2, .asks, .says, .results, dl, pre')].map(part => part.textContent).join(' ').toLowerCase());
-  const found = document.getElementById('found');
-  document.getElementById('search').addEventListener('input', event => {
+  element('search').addEventListener('input', event => {
     const words = event.target.value.toLowerCase().split(/\s+/).filter(Boolean);
     let count = 0;
     sections.forEach((section, i) => {
@@ -18,7 +17,7 @@
       section.hidden = links.get(section.id).hidden = !hit;
       count += hit;
     });
-    found.textContent = words.length ? `${count} of ${sections.length} experiments` : `${count} experiments`;
+    element('found').textContent = words.length ? `${count} of ${sections.length} experiments` : `${count} experiments`;
   });
 
   function sort(button) {

@@ -3,17 +3,14 @@
 'use strict';
 
 const scene = (() => {
-  const canvas = document.getElementById('scene');
-  // Three.js writes an error to the console where it finds no WebGL: asked for beforehand, on a canvas of its own.
+  const canvas = element('scene');
+  // Three.js writes an error to the console where it finds no WebGL: a canvas of its own shows beforehand whether there is any.
   const webgl = document.createElement('canvas').getContext('webgl2') !== null;
   if (!webgl || typeof THREE === 'undefined') {
-    const said = document.createElement('p');
-    said.id = 'no-webgl';
-    said.textContent = (webgl
+    canvas.replaceWith(made('p', { id: 'no-webgl', textContent: (webgl
       ? 'This page was made without three.js, which draws: experiments/setup gets it from npm. The scene is not drawn. '
       : 'This browser shows no 3D here (WebGL 2 is off or missing): the scene is not drawn. ')
-      + 'Curves, pairs and numbers are all there; --x3d writes the scene for other viewers.';
-    canvas.replaceWith(said);
+      + 'Curves, pairs and numbers are all there; --x3d writes the scene for other viewers.' }));
     return new Proxy({}, { get: () => () => {} });
   }
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });

@@ -15,15 +15,11 @@ function posedTriangle({ exact, triangles }, triangle, pose) {
 
 /** Two points, or none where the triangles lie in one plane. */
 function segmentOf(one, other) {
-  const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  const normalOf = t => cross(minus(t[1], t[0]), minus(t[2], t[0]));
-  const normals = [normalOf(one), normalOf(other)], along = cross(...normals);
-  if (dot(along, along) === 0) return null;
+  const normals = [one, other].map(t => cross3(add3(t[1], t[0], -1), add3(t[2], t[0], -1))), along = cross3(...normals);
+  if (dot3(along, along) === 0) return null;
   // The two points in which each triangle meets the other's plane, in their order along both planes.
   const crossings = (t, plane, normal) => {
-    const height = t.map(corner => dot(normal, minus(corner, plane[0]))), found = [];
+    const height = t.map(corner => dot3(normal, add3(corner, plane[0], -1))), found = [];
     for (let k = 0; k < 3; ++k) {
       const l = (k + 1) % 3;
       if (height[k] === 0) found.push(t[k]);
@@ -32,11 +28,10 @@ function segmentOf(one, other) {
         found.push(t[k].map((value, i) => value + r * (t[l][i] - value)));
       }
     }
-    return found.map(at => [dot(along, at), at]).sort((a, b) => a[0] - b[0]);
+    return found.map(at => [dot3(along, at), at]).sort((a, b) => a[0] - b[0]);
   };
   const a = crossings(one, other, normals[1]), b = crossings(other, one, normals[0]);
   if (a.length === 0 || b.length === 0) return null;
-  const last = list => list[list.length - 1];
-  const from = a[0][0] > b[0][0] ? a[0] : b[0], to = last(a)[0] < last(b)[0] ? last(a) : last(b);
+  const from = a[0][0] > b[0][0] ? a[0] : b[0], to = a.at(-1)[0] < b.at(-1)[0] ? a.at(-1) : b.at(-1);
   return [from[1], to[1]];
 }

@@ -167,37 +167,39 @@ const volumes = (() => {
       addHalfSpaces(out, [...sides, slab, slab.map(x => -x)], [...bounds, v[10] + middle, v[10] - middle]);
     },
     'box': (v, out) => {
-      const at = v.slice(0, 3), axes = [v.slice(3, 6), v.slice(6, 9), v.slice(9, 12)];
-      addBox(out, at, axes, v.slice(12, 15));
+      const at = v.slice(0, 3), axes = [v.slice(3, 6), v.slice(6, 9), v.slice(9, 12)], half = v.slice(12, 15);
+      for (let i = 0; i < 3; ++i)
+        for (const sign of [1, -1]) {
+          const [j, k] = [(i + 1) % 3, (i + 2) % 3];
+          const polygon = [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([a, b]) =>
+            add3(add3(add3(at, axes[i], sign * half[i]), axes[j], a * half[j]), axes[k], b * half[k]));
+          addPolygon(out, polygon, axes[i].map(x => sign * x));
+          if (i < 2) addLine(out, polygon, true);
+        }
     },
   };
-  function addBox(out, at, axes, half) {
-    for (let i = 0; i < 3; ++i)
-      for (const sign of [1, -1]) {
-        const [j, k] = [(i + 1) % 3, (i + 2) % 3];
-        const polygon = [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([a, b]) =>
-          add3(add3(add3(at, axes[i], sign * half[i]), axes[j], a * half[j]), axes[k], b * half[k]));
-        addPolygon(out, polygon, axes[i].map(x => sign * x));
-        if (i < 2) addLine(out, polygon, true);
-      }
-  }
 
-  const made = new Map();  // of what turns with its body: shapes, by mesh, node and fineness
+  const nothing = () => ({ corners: [], normals: [], lines: [] });
+  const known = new Map();  // of what turns with its body: shapes, by mesh, node and fineness
   function shapeOf(m, node, fineness) {
     const key = (node * 64 + fineness) * data.meshes.length + m;
-    if (!made.has(key)) {
-      const { numbers, volumes } = data.meshes[m], out = { corners: [], normals: [], lines: [] };
+    if (!known.has(key)) {
+      const { numbers, volumes } = data.meshes[m], out = nothing();
       shapes[kind()](Array.from(volumes.subarray(node * numbers, (node + 1) * numbers)), out, fineness);
-      if (made.size > 4000) made.clear();
-      made.set(key, { corners: Float32Array.from(out.corners), normals: Float32Array.from(out.normals), lines: Float32Array.from(out.lines) });
+      if (known.size > 4000) known.clear();
+      known.set(key, joined([out]));
     }
-    return made.get(key);
+    return known.get(key);
   }
+  /** One shape of several, as arrays to draw. */
   function joined(parts) {
-    const result = new Float32Array(parts.reduce((sum, part) => sum + part.length, 0));
-    let at = 0;
-    for (const part of parts) result.set(part, at), at += part.length;
-    return result;
+    const whole = nothing();
+    for (const name in whole) {
+      whole[name] = new Float32Array(parts.reduce((sum, part) => sum + part[name].length, 0));
+      let at = 0;
+      for (const part of parts) whole[name].set(part[name], at), at += part[name].length;
+    }
+    return whole;
   }
 
   return {
@@ -206,21 +208,20 @@ const volumes = (() => {
     get realigned() { return isKdop(); },
     get most() { return isKdop() ? 256 : 1024; },
     /** After other volumes have come into the data. */
-    forget() { made.clear(); },
+    forget() { known.clear(); },
     /** In the body's own frame; of k-DOPs along the world's axes, when the body is turned by these rows. */
     shape(m, nodes, rows) {
       if (isKdop()) {
         const { numbers, volumes } = data.meshes[m], normals = normalsOf(numbers);
-        const along = realignment(numbers, rows), out = { corners: [], normals: [], lines: [] };
+        const along = realignment(numbers, rows), out = nothing();
         for (const node of nodes) {
           const old = volumes.subarray(node * numbers, (node + 1) * numbers);
           addHalfSpaces(out, normals, along.map(terms => terms.reduce((sum, [weight, from]) => sum + weight * old[from], 0)));
         }
-        return { corners: Float32Array.from(out.corners), normals: Float32Array.from(out.normals), lines: Float32Array.from(out.lines) };
+        return joined([out]);
       }
       const fineness = nodes.length <= 16 ? 10 : nodes.length <= 128 ? 6 : 4;
-      const parts = nodes.map(node => shapeOf(m, node, fineness));
-      return { corners: joined(parts.map(p => p.corners)), normals: joined(parts.map(p => p.normals)), lines: joined(parts.map(p => p.lines)) };
+      return joined(nodes.map(node => shapeOf(m, node, fineness)));
     },
     /** The nodes that many levels below the root, and leaves above them. */
     level(m, level) {
@@ -232,3 +233,14 @@ const volumes = (() => {
     },
   };
 })();
+
+/** What of the pair's volumes is chosen: a level of the trees, the front, or none. */
+const which = () => document.querySelector('input[name="which"]:checked').value;
+function onWhich(act) {
+  for (const radio of document.querySelectorAll('input[name="which"]')) radio.addEventListener('change', act);
+  element('level').addEventListener('input', act);
+}
+function showLevel() {
+  element('level').disabled = which() !== 'level';
+  element('level-number').textContent = element('level').value;
+}

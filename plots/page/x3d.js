@@ -3,12 +3,6 @@
 // into the page, without addresses, scripts and handlers: nothing in it is executed or fetched.
 'use strict';
 
-const element = id => document.getElementById(id);
-function problem(sentence) {
-  element('problem').textContent = sentence;
-  element('problem').hidden = false;
-}
-
 /** VRML 97 as X3D: X_ITE reads it, in a frame of its own without a network (vrml_frame.js). */
 function fromVrml(text, viewer, script) {
   const frame = document.createElement('iframe'), most = 30;
@@ -35,7 +29,7 @@ const page = { contact: null };
   const data = JSON.parse(element('data').textContent);
   document.title = element('title').textContent = `bvlab in an X3D browser · ${data.title}`;
   if (typeof x3dom === 'undefined') return problem('This page was made without x3dom, which shows X3D: experiments/setup gets it from npm.');
-  // It writes what stands in a file into its log as HTML, and a WorldInfo's words are logged.
+  // It writes parts of a file into its log as HTML, and a WorldInfo's words are logged.
   x3dom.debug.doLog = () => {};
   if (!document.createElement('canvas').getContext('webgl')) return problem('This browser shows no 3D here: WebGL is off or missing.');
   if (data.scene.startsWith('#VRML V2.0')) {
@@ -68,7 +62,7 @@ const page = { contact: null };
   if (!scene.querySelector('planesensor, cylindersensor, spheresensor'))
     [...scene.querySelectorAll('transform')].filter(part => !part.parentElement.closest('transform') && part.querySelector('shape'))
       .forEach((part, k) => {
-        const group = document.createElement('group'), sensor = document.createElement('planesensor'), route = document.createElement('route');
+        const [group, sensor, route] = ['group', 'planesensor', 'route'].map(name => document.createElement(name));
         const name = part.getAttribute('DEF') ?? `bvlab-part-${k}`;
         part.setAttribute('DEF', name);
         sensor.setAttribute('DEF', `${name}-sensor`);

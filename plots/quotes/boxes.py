@@ -7,9 +7,11 @@ import numpy as np
 import pandas as pd
 
 from bvlab_plots import records
-from quotes.names import PEERS, called
-from quoting import ALL, Interval, claim, quotes, short
+from quoting import ALL, Interval, at_most, claim, quotes, short
 
+# Peers as text has them.
+PEERS = {"cgal": "CGAL (cutoff 10)", "cgal-1000": "CGAL (cutoff 1000)", "fcl-tree": "FCL's tree", "embree": "Embree",
+         "bullet-dbvt": "Bullet's `btDbvt`", "physx-abp": "PhysX's ABP"}
 SCRATCH = "from scratch"
 WORKS = [SCRATCH, "drift", "still", "teleport"]
 SEEDS = ["hybrid", "hash", "sweep1", "sweep2", "sweep3", "sweep4"]  # what was published
@@ -44,11 +46,6 @@ def boxes_beside_peers(record):
     return {"rows": rows}
 
 
-def peers_of(rows):
-    """Those of a record that have a name in text, in the order of PEERS."""
-    return called(peer for peer in PEERS if peer in set(rows.peer))
-
-
 @quotes("boxes-fast")
 def peers(record):
     rows = fast(record)
@@ -59,7 +56,7 @@ def peers(record):
     claim(set(drift.columns[drift.any()]) == {"bullet-dbvt"}, "in drift Bullet's tree alone is given up")
     claim(given_up["fcl-tree"].all() and (teleport["fcl-tree"] == 2).all(), "FCL's tree is given up after two frames wherever boxes teleport")
     claim(set(given_up.columns[given_up.any()]) == {"fcl-tree", "bullet-dbvt"}, "FCL's tree and Bullet's alone are given up")
-    return {"adjacent": still.overlaps.median(), "peers": peers_of(rows), "frames": rows.frames.max(), "given_up": int(given_up["bullet-dbvt"].sum()),
+    return {"adjacent": still.overlaps.median(), "peers": [name for peer, name in PEERS.items() if peer in set(rows.peer)], "frames": rows.frames.max(), "given_up": int(given_up["bullet-dbvt"].sum()),
             "given_up_drift": int(drift["bullet-dbvt"].sum()), "sets": len(given_up)}
 
 
@@ -78,8 +75,7 @@ def box_references(folder):
 
 @quotes("boxes-displacement")
 def displacement(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
+    rows = records.right(record)
     time = rows[rows.frame_ns > 0].groupby(["method", "coherent", "set", "displacement"]).frame_ns.median()
     over = time["blocks", "on"] / time["blocks", "off"]
     over = over[over >= 0.9]  # where it starts over
@@ -87,24 +83,28 @@ def displacement(record):
     sap = time["sap", "on"]["random", 1e-5] / time["blocks", "on"]["random", 1e-5]
     claim(sap < 0.9, "incremental sweep and prune is faster where many overlap and hardly move")
     there = rows[(rows.set == "random") & (rows.displacement == 1e-5)]
-    return {"others": 2 * (there.overlaps / there.boxes).median(), "over": Interval(over), "most": over.max(), "worst": worst[0], "at": 100 * worst[1], "sap": 100 * (1 - sap)}
+    return {"others": 2 * (there.overlaps / there.boxes).median(), "over": Interval(over), "worst": worst[0], "at": 100 * worst[1], "sap": 100 * (1 - sap)}
 
 
 def by_radix(folder):
     """The rows of a record with times, but for those of methods that sort by comparisons; `blocks` sorts in one way, so its second row is a repetition."""
-    rows = records.read(folder)
-    records.wrong_answers(rows)
+    rows = records.right(folder)
     return rows[(rows.frame_ns > 0) & ((rows.sort != "comparison") | (rows.method == "blocks"))]
 
 
-@quotes(["boxes-figure-3", "boxes-figures-4-5"])
+FIGURES = ["boxes-figure-3", "boxes-figures-4-5"]
+
+
+def of_figures(folders):
+    """Times of what was published, by set, coherence, number of boxes and method; and those from scratch, a column a method."""
+    rows = pd.concat([by_radix(folder) for folder in folders])
+    times = rows[rows.method.isin(SEEDS)].groupby(["set", "coherent", "boxes", "method"]).frame_ns.median().sort_index()
+    return times, times.xs("off", level="coherent").unstack("method")
+
+
+@quotes(FIGURES)
 def published(*folders):
-    def read(folder):
-        rows = by_radix(folder)
-        rows = rows[rows.method.isin(SEEDS)]
-        return rows.groupby(["set", "coherent", "boxes", "method"]).frame_ns.median()
-    times = pd.concat([read(folder) for folder in folders]).sort_index()
-    scratch = times.xs("off", level="coherent").unstack("method")
+    times, scratch = of_figures(folders)
 
     def first_from(name, method, within=1.02):
         """The number of boxes from which on no other method is faster."""
@@ -135,12 +135,14 @@ def published(*folders):
     claim(compared.median() < 0.33, "with a comparison sort, too, coherence saves less than a third in the median")
     both = times.unstack("coherent").dropna()
     both = both[both.index.get_level_values("method").isin(SWEEPS) & (both.index.get_level_values("set") == "adjacent")]
+    left = both["on"] / both["off"]
     return {"random_from": dense, "packed_from": packed, "worst_from": worst_from, "sparse_from": sparse, "adjacent_to": small.index.max(),
             **(scratch.loc["sphere-packed", 50000][["sweep4", "hybrid"]] / 1e6),
-            "compared": 100 * compared.median(), "compared_least": 100 * compared.min(), "compared_most": 100 * compared.max(), "saved": 100 * (1 - (both["on"] / both["off"]).median()), "saved_least": 100 * (1 - (both["on"] / both["off"]).max()), "saved_most": 100 * (1 - (both["on"] / both["off"]).min())}
+            "compared": 100 * compared.median(), "compared_least": 100 * compared.min(), "compared_most": 100 * compared.max(),
+            "saved": 100 * (1 - left.median()), "saved_least": 100 * (1 - left.max()), "saved_most": 100 * (1 - left.min())}
 
 
-# Those in which `blocks` plays the same frames with coherence and without; those of changing boxes are of `auto`, and told elsewhere.
+# Those in which `blocks` plays the same frames with coherence and without; those of changing boxes are of `auto`: see boxes_changes.
 FOLLOWED = ["boxes-fast", "boxes-displacement", "boxes-motions", "boxes-figures-4-5"]
 
 
@@ -174,15 +176,10 @@ def boxes_slowest(*folders):
     return {"most": most, "set": name, "boxes": boxes, "frames": frames, "fast": fast, "fast_set": fast_name, "fast_frames": fast_frames, "record": most_record, "motion": motion, "fast_motion": fast_motion, "tail": Interval(tail), "beside": Interval(beside), "lead": Interval(lead), "peers": Interval(peers)}
 
 
-@quotes(["boxes-figure-3", "boxes-figures-4-5"])
+@quotes(FIGURES)
 def deviations(*folders):
     """What the published figures say and these do not."""
-    def read(folder):
-        rows = by_radix(folder)
-        rows = rows[rows.method.isin(SEEDS)]
-        return rows.groupby(["set", "coherent", "boxes", "method"]).frame_ns.median()
-    times = pd.concat([read(folder) for folder in folders]).sort_index()
-    scratch = times.xs("off", level="coherent").unstack("method")
+    _, scratch = of_figures(folders)
     spread = {name: scratch.loc[name][SWEEPS].max(axis=1) / scratch.loc[name][SWEEPS].min(axis=1) for name in ("random", "sphere-packed", "sphere-sparse")}
     random, packed, adjacent, sparse = (scratch.loc[name] for name in ("random", "sphere-packed", "adjacent", "sphere-sparse"))
     large = adjacent[adjacent.index >= 1e4]
@@ -200,11 +197,10 @@ def deviations(*folders):
     return {"random_spread": Interval(spread["random"]), "packed_spread": Interval(spread["sphere-packed"]),
             "sparse_spread": Interval(spread["sphere-sparse"]), "hash_random": Interval(hash_random), "four": Interval(four),
             "adjacent_hybrid": Interval(adjacent.hybrid / adjacent.min(axis=1)), "adjacent_four": Interval(adjacent.sweep4 / adjacent.min(axis=1)),
-            "adjacent_one": Interval(adjacent.sweep1 / adjacent.min(axis=1)), "sparse_one": Interval(sparse.sweep1 / sparse.hybrid),
-            "most": int(adjacent.index.max()), "rank_four_large": Interval(large.sweep4 / large.hybrid)}
+            "sparse_one": Interval(behind)}
 
 
-@quotes(["boxes-figure-3", "boxes-figures-4-5"])
+@quotes(FIGURES)
 def exponents(*folders):
     """How times grow with the number of boxes: least squares of logarithms, from the largest three sizes."""
     lines, logarithms = [], {1: [], 3: []}
@@ -217,11 +213,9 @@ def exponents(*folders):
         for name, group in rows.groupby("set", sort=False):
             time = group.groupby(["boxes", "method"]).frame_ns.min().unstack()[[*SEEDS, "blocks"]]
             pairs = group.groupby("boxes").overlaps.median()
-            cells = []
-            for values in [pairs, *(time[method].dropna() for method in time)]:
-                cells.append(f"{exponent(values.iloc[-3:]):.2f}")
+            cells = [f"{exponent(values.iloc[-3:]):.2f}" for values in [pairs, *(time[method].dropna() for method in time)]]
+            sizes = pairs.index.to_series().iloc[-3:]
             for power in logarithms:
-                sizes = pairs.index.to_series().iloc[-3:]
                 logarithms[power].append(exponent(sizes * np.log(sizes) ** power))
             lines.append([name, *cells])
     packed = ("random", "sphere-packed")
@@ -230,3 +224,43 @@ def exponents(*folders):
     linear = [line for line in lines if line[0] not in packed]
     return {"rows": lines, "hybrid": Interval([line[2] for line in linear]), "blocks": Interval([line[-1] for line in linear]),
             "log": Interval(logarithms[1][-2:]), "log_cubed": Interval(logarithms[3][-2:])}
+
+
+def changing(record):
+    """Rows of `auto` by set, motion and how it follows; rows of the rivals; and the fastest rival's time by set and motion,
+    told and not ("")."""
+    rows = records.read(record)
+    claim((rows.differing[rows.method == "auto"] == 0).all(), "the list of auto with coherence is that of auto without")
+    rivals = rows[rows.method != "auto"]
+    fastest = rivals[rivals.frame_ns > 0].groupby(["set", "motion", "coherent"]).frame_ns.min().unstack()
+    claim(set(fastest) == {"", "told"}, "rivals find the movers or are told")
+    return rows[rows.method == "auto"].set_index(["set", "motion", "coherent"]), rivals, fastest
+
+
+ALL_MOVE = ["drift", "reverse", "jitter"]
+
+
+@quotes("boxes-changes")
+def boxes_changes(record):
+    auto, rivals, fastest = changing(record)
+    mean, tail, first = auto.frame_ns.unstack(), auto.p99_ns.unstack(), auto.first_ns.unstack()
+    on, late = mean["on"] / mean["off"], tail["on"] / tail["off"]
+    motion = on.index.get_level_values("motion")
+    few = on[motion.isin(["few", "same", "rare"])]
+    beside, told = (mean["on"] / fastest[""]).dropna(), (mean["told"] / fastest["told"]).dropna()
+    untold = (mean["on"] / fastest["told"]).dropna()
+    moving = (fastest[""] / mean["on"])[motion.isin(ALL_MOVE)]
+    abp = rivals[(rivals.method == "physx-abp") & (rivals.coherent == "")].set_index(["set", "motion"]).first_ns
+    wrong = rivals[rivals.differing > 0]
+    claim(len(on) == len(beside) == len(told) == 28, "all cases of the definition are in the record, and rivals in each")
+    claim(set(wrong.method) == {"physx-sap"}, "the pairs of PhysX's SAP alone differ")
+    claim(set(untold.index[untold > 1].get_level_values("motion")) == {"rare"}, "a rival that is told is faster where few boxes move alone")
+    claim((told < 1).all(), "no rival that is told is faster than auto that is told")
+    claim((on <= 1.05).all() and (beside <= 1).all(), "in the mean following costs at most 1.05 of starting over, and no rival is faster")
+    claim((late < 1.055).all(), "the 99th percentile of following is at most 1.06 of starting over's")
+    timed = rivals.frame_ns > 0
+    untimed = rivals[~timed]
+    claim(((untimed.frames == 2) | (untimed.frames == rivals.frames.max())).all(), "rivals without a time ended in the second frame, of their first play or of another")
+    return {"rival_rows": len(rivals), "untimed": len(untimed), "stopped": int((timed & (rivals.frames < rivals.frames.max())).sum()), "later_play": int((untimed.frames > 2).sum()), "cases": len(on), "few": Interval(few), "worst": at_most(on.max()), "beside": Interval(beside), "told": Interval(told), "untold": untold.max(),
+            "latest": at_most(late.max()), "moving": Interval(moving), "first": Interval((abp / first["on"]).dropna()),
+            "sap": wrong.groupby(["set", "motion"]).ngroups}

@@ -46,8 +46,7 @@ def cost(record):
 
 @quotes("distance-error")
 def distance_error(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
+    rows = records.right(record)
     time = rows.groupby(["mesh", "relative_error", "volume"]).time_ns.median()
     saved = time.xs(0, level="relative_error") / time.xs(0.1, level="relative_error")
     small, large = time[time.index.get_level_values("relative_error") <= 0.01], time[time.index.get_level_values("relative_error") >= 0.3]

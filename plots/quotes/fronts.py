@@ -12,6 +12,7 @@ from quoting import Interval, claim, quotes
 SHARES = [(0, 0.5, "below .5"), (0.5, 0.8, ".5 to .8"), (0.8, 0.95, ".8 to .95"), (0.95, 1.01, "above .95")]
 KERNELS = {"gathered, 2": "gathered, binary", "gathered, 16": "gathered, 16", "siblings": "siblings", "mixed": "mixed"}
 SAME = {"recursive": "recursion", "recursive-both": "recursion", ("adaptive", "siblings"): "margins", ("adaptive", "mixed"): "margins"}
+SHORT = {"gathered, 2": "binary", "gathered, 16": "sixteen", "siblings": "siblings", "mixed": "mixed"}  # in keys
 KEPT = [*fronts.LISTS, "margins", "adaptive"]
 MOST = 0.9  # of a front: where motion is slow enough for any front to pay
 HYPOTHESES = 9
@@ -34,7 +35,7 @@ def fastest_of(time, strategies):
 
 
 def called(places):
-    """The most frequent of these kernels and strategies, as text says it, and its share."""
+    """The most frequent of these kernels and strategies, as texts name it, and its share."""
     names = places.map(lambda at: (KERNELS[at[1]], SAME.get((at[0], at[1]), SAME.get(at[0], at[0]))))
     most = names.value_counts(normalize=True)
     return f"{most.index[0][1]}, {most.index[0][0]}", 100 * most.iloc[0]
@@ -94,8 +95,7 @@ def kernels(record):
         for engine in behind.loc[query].dropna().sort_values().index:
             rows.append([query if query not in (row[0] for row in rows) else "", KERNELS[engine], f"{behind.loc[query, engine]:.2f}",
                          f"{100 * first.loc[query, engine]:.0f} %", *(f"{table.loc[query, engine]:.2f}" for table in middle.values())])
-            key = engine.replace("gathered, 2", "binary").replace("gathered, 16", "sixteen")
-            found |= {f"{query}_{key}": middle["high"].loc[query, engine], f"{query}_{key}_roots": behind.loc[query, engine]}
+            found |= {f"{query}_{SHORT[engine]}": middle["high"].loc[query, engine], f"{query}_{SHORT[engine]}_roots": behind.loc[query, engine]}
     return {**found, "rows": rows, "most": MOST}
 
 
@@ -173,12 +173,10 @@ def lists(record):
     best = time[fronts.STRATEGIES].idxmin(axis=1).isin(fronts.LISTS)
     gain = fronts.worth(time, fronts.LISTS)
     found = {}
-    for name in ("gathered, 2", "gathered, 16", "siblings", "mixed"):
-        key = name.replace("gathered, 2", "binary").replace("gathered, 16", "sixteen")
+    for name, key in SHORT.items():
         for query in fronts.QUERIES[:2]:
-            here = (level(gain, "engine") == name) & (level(gain, "query") == query)
-            found[f"{query}_{key}"] = gain[here].max()
-        found[f"best_{key}"] = 100 * best[level(best, "engine") == name].mean()
+            found[f"{query}_{key}"] = gain.xs((query, name), level=("query", "engine")).max()
+        found[f"best_{key}"] = 100 * best.xs(name, level="engine").mean()
     twice = pd.concat([(time["recursive-both"] / time.recursive), (time.adaptive / time.margins)])
     twice = twice[level(twice, "engine").isin(["siblings", "mixed"])]
     more, slower, beside = fronts.kinetic(record.parent / "best-rebuilds")
@@ -192,6 +190,6 @@ def lists(record):
 @quotes("fronts")
 def hypotheses(record):
     judged = list(fronts.judged(fronts.read(record), record))
-    failing = [number for number, holds, _ in judged if not holds]
     claim(len(judged) == HYPOTHESES, "nine hypotheses")
-    return {"rows": [[str(number), "holds" if holds else "fails", why] for number, holds, why in judged], "holding": HYPOTHESES - len(failing), "all": HYPOTHESES}
+    return {"rows": [[str(number), "holds" if holds else "fails", why] for number, holds, why in judged],
+            "holding": sum(holds for _, holds, _ in judged), "all": HYPOTHESES}

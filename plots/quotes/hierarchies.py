@@ -11,7 +11,7 @@ from quoting import Interval, claim, quotes
 PLACES = ["query", "polygons", "density", "motion"]  # what tells one trace from another
 DENSITIES = ["interlocked", "dense", "sparse"]
 TIE = 1.05  # times this near to each other are the same
-MOTIONS = {"5 degrees": "5 degrees", "a tenth of a degree": "a tenth of a degree"}
+MOTIONS = ["5 degrees", "a tenth of a degree"]
 
 
 @cache
@@ -40,7 +40,7 @@ def hierarchies_beside_peers(record):
     def times(query, motion, polygons, what):
         return ", ".join(f"{cells.loc[(query, motion, polygons, density), f'{what}: times faster']:.1f}"
                          for density in DENSITIES)
-    return {"rows": [[f"{query}, {MOTIONS[motion]}" + (" a frame" if (query, motion) == ("touching", "5 degrees") else "")]
+    return {"rows": [[f"{query}, {motion}" + (" a frame" if (query, motion) == ("touching", "5 degrees") else "")]
                      + [times(query, motion, polygons, what) for polygons in (500, 8000) for what in ("recursive", "best")]
                      for query in dict.fromkeys(best["query"]) for motion in MOTIONS]}
 
@@ -54,12 +54,13 @@ def best_of_ours(record):
     name = best["best variant"]
     much = (best.motion == "5 degrees") & (best["query"] != "distance") & (best.density != "sparse")
     little = (best.motion != "5 degrees") & (best["query"] == "touching")
-    boxes = name[much].isin(["obb recursive-both", "rss recursive-both"])
+    both = ["obb recursive-both", "rss recursive-both"]
+    boxes, distances = name[much].isin(both), name[best["query"] == "distance"]
     claim(boxes.mean() > 0.7, "boxes and rectangles, both descended, mostly, where much moves and bodies are near each other")
     alone = (best.motion == "5 degrees") & (best["query"] != "distance") & (best.density == "sparse")
-    claim(not name[alone].isin(["obb recursive-both", "rss recursive-both"]).any(), "neither boxes nor rectangles, both descended, where most pairs are far apart and much moves")
+    claim(not name[alone].isin(both).any(), "neither boxes nor rectangles, both descended, where most pairs are far apart and much moves")
     claim("fcl-obb" not in set(middle[middle["query"] == "distance"].peer), "FCL has no tree of oriented boxes for distances")
-    claim(name[best["query"] == "distance"].str.startswith("rss").mean() > 0.7, "rectangle swept spheres for distances")
+    claim(distances.str.startswith("rss").mean() > 0.7, "rectangle swept spheres for distances")
     claim(name[(best["query"] == "touching") & (best.density == "sparse") & (best.motion == "5 degrees")].str.startswith("sphere").all(),
           "spheres where most pairs are far apart and much moves")
     with_first = (rows.time_ns / rows.pairs).groupby([rows[place] for place in PLACES] + [rows.peer, rows.variant]).median()
@@ -69,15 +70,11 @@ def best_of_ours(record):
     leads = leads[leads >= 30].sort_values(ascending=False)
     leads_first = (theirs_first / ours_first)[leads.index]
     claim((leads_first < leads).all(), "the largest leads shrink with the first frames")
-    sparse = rows[(rows["query"] != "distance") & (rows.density == "sparse") & (rows.variant == "sphere recursive")]
-    contacts = rows[(rows["query"] == "contacts") & (rows.density == "sparse") & (rows.peer == "")]
     return {"variants": ours.variant.nunique(), "recursive": ours[ours.strategy == "recursive"].variant.nunique(),
             "repetitions": rows.repetition.nunique(), "leads": [f"{lead:.1f}" for lead in leads], "leads_first": [f"{lead:.1f}" for lead in leads_first],
-            "much": int(boxes.sum()), "much_cells": int(much.sum()), "distance_rss": int(name[best["query"] == "distance"].str.startswith("rss").sum()), "distances": int((best["query"] == "distance").sum()),
-            "shortest": contacts.later_ns.min() / 1e3,
+            "much": int(boxes.sum()), "much_cells": int(much.sum()), "distance_rss": int(distances.str.startswith("rss").sum()), "distances": len(distances),
             "margins": name[little].str.endswith("margins").sum(), "asked": little.sum(),
-            "shells": name.str.startswith("shell").sum(), "cells": len(name),
-            "roots": Interval(1e3 * sparse.groupby(["query", "polygons", "motion"]).us.median())}
+            "shells": name.str.startswith("shell").sum(), "cells": len(name)}
 
 
 @quotes("closest-features")

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The nine bunnies: what lists save, by what "moving randomly" means."""
 
-import pandas as pd
-
 from bvlab_scripts import nine_bunnies
 from quoting import Interval, claim, quotes
 
@@ -22,8 +20,7 @@ MEASURES = {"n_v": "tests", "time_ns": "time"}
 def saved(record):
     """What each list saves, mean over seeds: one row a reading and density, columns (measure, strategy)."""
     runs = nine_bunnies.read(record)
-    return runs, {what: nine_bunnies.speedups(runs, what).groupby(level=["reading", "density"], sort=False).mean()
-                  for what in MEASURES}
+    return runs, {what: nine_bunnies.mean_speedups(runs, what) for what in MEASURES}
 
 
 @quotes("nine-bunnies")
@@ -42,15 +39,13 @@ def nine_bunnies_table(record):
 @quotes("nine-bunnies")
 def speedups(record):
     runs, means = saved(record)
-    tests = means["n_v"]
+    tests, time = means["n_v"], means["time_ns"]
     passing = [reading for reading in READINGS if "rejecting" not in reading]
-    one = tests.loc[[reading for reading in passing if reading.startswith("one")]]
-    every = tests.loc[[reading for reading in passing if reading.startswith("all")]]
-    published = nine_bunnies.PUBLISHED.mean()
+    moves_one, moves_all = ([reading for reading in passing if reading.startswith(bodies)] for bodies in ("one", "all"))
+    one, every, one_time, every_time = tests.loc[moves_one], tests.loc[moves_all], time.loc[moves_one], time.loc[moves_all]
     claim((one.deferred > one["separation-list"]).all(), "deferring pays where one body moves in a step")
     claim((every.deferred < 1.01 * every["separation-list"]).all(), "deferring saves no more tests where all bodies move")
-    claim((means["time_ns"] < tests).loc[passing[:3]].all(axis=None), "time follows less than N_v")
-    time = means["time_ns"]
+    claim((time < tests).loc[passing[:3]].all(axis=None), "time follows less than N_v")
     deferring = time.deferred / time["separation-list"]
     claim((deferring.loc[passing[:3]] > 1.03).all() and ((deferring.loc[passing[3:]] - 1).abs() < 0.03).all(),
           "in time deferring is better, but where all bodies move in all freedoms it makes no difference")
@@ -58,14 +53,10 @@ def speedups(record):
     refused = tests.loc[["all bodies, all freedoms, rejecting"]]
     claim(all((table.deferred < table["separation-list"]).all() for table in (rejected, refused)),
           "deferring is not better, in time or tests, where all bodies move and moves are rejected")
-    every_time = time.loc[[reading for reading in passing if reading.startswith("all")]]
-    one_time = time.loc[[reading for reading in passing if reading.startswith("one")]]
-    triangles = nine_bunnies.speedups(runs, "n_p").groupby(level=["reading", "density"], sort=False).mean()
-    saved_triangles = triangles.loc[one.index, nine_bunnies.LISTS]
+    saved_triangles = nine_bunnies.mean_speedups(runs, "n_p").loc[one.index, nine_bunnies.LISTS]
     claim((saved_triangles < one[nine_bunnies.LISTS]).all(axis=None), "lists save fewer triangle tests than volume tests where one body moves in a step")
     claim(runs.seed.nunique() == 10, "ten runs")
-    return {"published_list": published["recursive"] / published["separation-list"],
-            "published_deferred": published["recursive"] / published["deferred"],
+    return {"published_list": nine_bunnies.SPEEDUPS["separation-list"], "published_deferred": nine_bunnies.SPEEDUPS["deferred"],
             "list": Interval(one["separation-list"]), "deferred": Interval(one.deferred),
             "every_list": Interval(every["separation-list"]), "every_deferred": Interval(every.deferred),
             "triangles": Interval(saved_triangles.to_numpy().ravel()),
@@ -79,12 +70,10 @@ def each_run(record):
     """In how many runs a list is worth what was published, and in how many it loses."""
     runs = nine_bunnies.read(record)
     time, tests = (nine_bunnies.speedups(runs, what) for what in ("time_ns", "n_v"))
-    published = nine_bunnies.PUBLISHED
-    ratio = {name: published["recursive"].mean() / published[name].mean() for name in nine_bunnies.LISTS}
-    each = {name: published["recursive"] / published[name] for name in nine_bunnies.LISTS}
+    each = nine_bunnies.PUBLISHED[nine_bunnies.LISTS].rdiv(nine_bunnies.PUBLISHED[nine_bunnies.BASE], axis=0)
 
     def reached(table):
-        return (table[nine_bunnies.LISTS] >= pd.Series(ratio).round(2)).all(axis=1).sum()
+        return (table[nine_bunnies.LISTS] >= nine_bunnies.SPEEDUPS.round(2)).all(axis=1).sum()
     claim(reached(time) == 0, "no run reaches both published speedups in time")
     return {"runs": len(time), "time_reached": reached(time), "tests_reached": reached(tests),
             "list_loses": (time["separation-list"] < 1).sum(), "deferred_loses": (time.deferred < 1).sum(),

@@ -5,11 +5,9 @@ from bvlab_plots import records
 from quoting import Interval, claim, quotes
 
 
-
 @quotes("best-rebuilds")
 def best_rebuilds(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
+    rows = records.right(record)
     middle = rows.groupby(["query", "degrees", "strategy"])[["n_v", "best_tests", "time_ns", "later_ns"]].median()
     tests, time = (middle.n_v / middle.best_tests).unstack(), middle.later_ns.unstack()
     price = (middle.time_ns / middle.n_v).unstack()
@@ -34,8 +32,7 @@ def adaptive_beside(*found):
     """`adaptive` over the fastest of the other strategies, with the same volume and seed: medians of repetitions."""
     lines = []
     for record, cell in zip(found, CELLS.values()):
-        rows = records.read(record)
-        records.wrong_answers(rows)
+        rows = records.right(record)
         time = rows.groupby([*cell, *(["seed"] if "seed" in rows else []), "strategy"]).time_ns.median().unstack()
         ratio = time.adaptive / time.drop(columns="adaptive").min(axis=1)
         parts = [(record.name, ratio)]
@@ -50,15 +47,12 @@ def adaptive_beside(*found):
 MOVING = [(1, 5, "all move, 5 degrees"), (1, 0.1, "all move, a tenth of a degree"), (0.1, 5, "a tenth moves, 5 degrees"),
           (0.1, 0.1, "a tenth moves, a tenth of a degree"), (0.01, 5, "one in a hundred, 5 degrees"),
           (0.01, 0.1, "one in a hundred, a tenth of a degree")]
-
-
 PIPELINES = ["fcl-world", "fcl-world-moved", "bullet-world"]
 
 
 @quotes("worlds")
 def worlds(record):
-    rows = records.read(record)
-    records.wrong_answers(rows)
+    rows = records.right(record)
     each = rows.time_ns / (rows.frames - 1) / 1e6
     middle = each.groupby([rows[name] for name in ("objects", "moving", "degrees", "variant")]).median()
 

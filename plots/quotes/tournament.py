@@ -12,19 +12,17 @@ import numpy as np
 import pandas as pd
 
 from bvlab_plots import records
+from quotes.beside import libraries_of as libraries
 from quoting import Interval, claim, quotes, two_digits
 
 OURS = "recommended"
-
-
 PLACES = ["work", "polygons"]
 DRAWS = 1000
 
 
 def read(record):
     """Rows with the time of a pair in the steady state, `ns`, and in the slowest of a hundred frames, `tail_ns`."""
-    rows = records.read(record)
-    records.wrong_answers(rows)  # of ours none may be
+    rows = records.right(record)
     return rows.assign(ns=rows.later_ns / rows.later_pairs, tail_ns=rows.p99_ns / (rows.pairs / rows.frames))
 
 
@@ -78,15 +76,6 @@ def tournament(rows, ours, theirs):
     return pd.DataFrame(lines, columns=[*PLACES, "fastest", "ratio", "low", "high", "differing"])
 
 
-def written(line):
-    return f"{line.ratio:.1f} ({line.low:.1f} to {line.high:.1f})"
-
-
-def libraries(rows):
-    """The methods of other libraries."""
-    return list(dict.fromkeys(rows[rows.peer != ""].method))
-
-
 @cache
 def beside_all(record):
     """`recommended` beside the fastest of all configurations of other libraries, those that keep answers among them."""
@@ -110,7 +99,8 @@ def scenes(record):
             key, mark = (*place, name), "*" if differences(rows, place, name) else ""
             mean_and_tail = (two_digits(float(f"{middle[column][key]:.1e}")) for column in ("ns", "tail_ns") if key in middle.index)
             texts.append(", ".join(mean_and_tail) + mark)
-        lines.append(["" if place[0] == last else place[0], str(place[1]), *texts, written(line) + ("*" if line.differing else "")])
+        lead = f"{line.ratio:.1f} ({line.low:.1f} to {line.high:.1f})" + ("*" if line.differing else "")
+        lines.append(["" if place[0] == last else place[0], str(place[1]), *texts, lead])
         last = place[0]
     claim(set(libraries(rows)) == {"OPCODE", "OPCODE, coherent", "PhysX", "FCL, obb", "Coal, obb", "Coal, obbrss"}, "the libraries are OPCODE, PhysX, FCL and Coal")
     claim((rows.alone != "no").all(), "the rows were timed alone")
@@ -127,35 +117,3 @@ def scenes(record):
     return {"build": Interval(built[OURS]), "build_opcode": Interval(built["OPCODE"]), "build_physx": Interval(built["PhysX"]), "rows": lines, "lead": Interval(beside.ratio), "seeds": rows.seed.nunique(), "repetitions": rows.repetition.nunique(),
             "cells": len(beside), "roots_faster": int((mean[roots] < mean[OURS]).sum()), "roots_most": 100 * (mean[OURS] / mean[roots] - 1).max(), "roots_tails": int((tails[roots] < tails[OURS]).sum()),
             "contact_frames": rows[contacts].frames.max()}
-
-
-@quotes("tournament-peers")
-def tournament_peers(record):
-    """Every library from source in one program: microseconds per pair, later frames, medians of repetitions, means of seeds."""
-    rows = records.read(record)
-    claim((rows.alone != "no").all(), "the rows were timed alone")
-    claim((rows[rows.peer == ""].differing == 0).all(), "answers of ours agree")
-    rows = rows.assign(us=rows.later_ns / rows.later_pairs / 1e3)
-    places = rows[["work", "polygons"]].drop_duplicates().itertuples(index=False, name=None)
-    us = rows.groupby(["work", "polygons", "method", "seed"]).us.median().groupby(["work", "polygons", "method"]).mean().unstack()
-    us = us.loc[list(places), list(rows.method.unique())]
-    libraries = [method for method in us if not method.startswith(("recommended", "wide"))]
-    times = us[libraries].min(axis=1) / us.recommended
-    touching = times[~times.index.get_level_values("work").str.startswith("contacts")]
-    roots = (us[libraries].min(axis=1) / us["wide, from the roots"])[touching.index]
-    contacts = times.drop(touching.index)
-    claim(set(us[libraries].idxmin(axis=1)) <= {"PhysX", "OPCODE, coherent"}, "PhysX or OPCODE's coherent mode is the fastest library")
-    best = us[libraries].idxmin(axis=1)
-    physx = best.index[best == "PhysX"]
-    claim(set(best.drop(physx)) == {"OPCODE, coherent"}, "OPCODE's coherent mode is the fastest library where PhysX is not")
-    rule = rows[rows.method == "recommended"].groupby(["work", "polygons", "seed"])[["volume", "build", "strategy"]].first()
-    claim({*rule.volume} == {"slab-box"} and {*rule.build} == {"on-demand"} and {*rule.strategy} == {"margins", "recursive"},
-          "recommended takes slab-boxes in trees made on demand, with margins or from the roots")
-    lead = times.groupby("work")
-    wrong = rows[rows.differing > 0].groupby("method").differing.max()
-    claim(set(rows[rows.differing > 0].work) == {"contacts, near"} and set(wrong.index) == {"Coal, obb", "Coal, obbrss", "OPCODE", "PhysX"}, "Coal, OPCODE and PhysX differ, in contacts alone")
-    return {"touching": Interval(touching), "five": int((touching >= 5).sum()), "cells": len(touching), "roots": Interval(roots),
-            "contacts": Interval(contacts), "physx": len(physx), "places": len(us), "chosen": len(rule), "margins": int((rule.strategy == "margins").sum()),
-            **{f"lead_{short}": Interval(lead.get_group(work)) for short, work in (("five", "5 degrees"), ("near", "near"), ("contacts", "contacts, near"))},
-            "roots_faster": int((us["wide, from the roots"] < us.recommended).sum()), "coal": int(wrong["Coal, obb"]), "opcode": int(wrong["OPCODE"]), "physx_wrong": int(wrong["PhysX"]), "seeds": rows.seed.nunique(),
-            "repetitions": rows.repetition.nunique()}

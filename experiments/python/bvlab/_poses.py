@@ -12,7 +12,7 @@ from ._bvlab import _real_array
 
 ORDERS = {"wxyz": [0, 1, 2, 3], "xyzw": [3, 0, 1, 2]}
 TOLERANCE = 5e-4  # by which a matrix may miss being a rotation, unless a call says otherwise
-ROUNDING = 8 * np.finfo(float).eps  # what is nearer to a rotation than this is taken as it stands
+ROUNDING = 8 * np.finfo(float).eps  # what is nearer to a rotation than this is taken as it is
 
 
 def poses(positions: ArrayLike, quaternions: ArrayLike | None = None, *,
@@ -59,7 +59,7 @@ def pairs_of(objects: int) -> NDArray[np.uint32]:
 
 
 def _array(given: ArrayLike, name: str, shape: tuple[int | str, ...]) -> NDArray[np.float64]:
-    """float64, finite, of that shape, in which a name stands for any length."""
+    """float64, finite, of that shape, in which a name is any length."""
     axes = [(str(n), -1 if isinstance(n, str) else n) for n in shape]
     array = np.array(_real_array(given, name, axes))  # what is checked is what is kept
     wrong = ~np.isfinite(array).all(axis=tuple(range(2, array.ndim)))

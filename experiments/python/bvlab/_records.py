@@ -40,19 +40,13 @@ def figures(path: str | os.PathLike, **figure: str | list[str]) -> dict[str, mat
     """
     folder = os.fspath(path)
     with _drawing():
-        from bvlab_plots import draw, kinds, records
-        from bvlab_plots import figures as declared
-        keys = sorted({*draw.KEYS, "where"} - {"table"})
-        if unknown := set(figure) - set(keys):
-            raise ValueError(f"{min(unknown)}: unknown; available: {', '.join(keys)}")
+        from bvlab_plots import draw, kinds
+        if unknown := set(figure) - set(draw.OPTIONS):
+            raise ValueError(f"{min(unknown)}: unknown; available: {', '.join(sorted(draw.OPTIONS))}")
         options = [f"--{key.replace('_', '-')}={value}" for key, value in figure.items() if key != "where"]
         where = figure.get("where", [])
         options += [f"--where={each}" for each in ([where] if isinstance(where, str) else where)]
-        arguments = draw.arguments_of([*options, "--", folder])
-        rows = kinds.Rows(arguments.record)
-        all_rows = rows.of(declared.Figure(name="", x="", clock=arguments.clock or ""))
-        records.wrong_answers(all_rows)
-        wanted, faults = draw.wanted(arguments, all_rows)
+        rows, wanted, faults = draw.figures_of(draw.arguments_of([*options, "--", folder]))
         if faults:
             raise ValueError(f"{folder}: {faults[0]}")
         return {each.name: kinds.drawing_of(each, kinds.points_of(rows.of(each), each))
