@@ -131,21 +131,22 @@ class LargestFirst : public NoFront {
   std::vector<PairOfPatches>& queue_;
 };
 
-/// The algorithm, with buffers kept between calls. B is the scalar or batch in which volumes are
-/// tested: a step tests as many pairs as B has lanes, and all steps together no more than the
-/// budget.
-template <class B, BoundingVolume V>
+/// The algorithm, with buffers kept between calls. A step tests up to W pairs at once, and all
+/// steps together no more than the budget.
+template <std::size_t W>
 class Budgeted {
  public:
-  /// `test` decides candidates as in `Touching`. The sizes belong to the bodies' hierarchies.
+  /// `test` decides candidates as in `Touching`. The sizes belong to the bodies' hierarchies, and
+  /// `tests_between` to their volumes.
   template <class Counter>
-  BudgetedAnswer operator()(Body<V>& a, const PatchSizes& sizes_a, Body<V>& b,
-                            const PatchSizes& sizes_b, std::uint64_t budget, TriangleTest test,
-                            Counter& counter) {
+  BudgetedAnswer operator()(TreeBody& a, const PatchSizes& sizes_a, TreeBody& b,
+                            const PatchSizes& sizes_b, TestsBetween<Touching> tests_between,
+                            std::uint64_t budget, TriangleTest test, Counter& counter) {
     queue_.clear();
     Touching query(test);
-    const auto statistics = traverse<B>(a, b, query, counter, workspace_,
+    const auto statistics = traverse<W>(a, b, tests_between(a, b, workspace_), query, workspace_,
                                         LargestFirst(sizes_a, sizes_b, budget, queue_));
+    statistics.count(counter);
     BudgetedAnswer answer;
     answer.tests = statistics.volumes;
     if (query.touching())

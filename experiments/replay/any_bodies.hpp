@@ -46,6 +46,8 @@ class AnyBodies {
   std::size_t size() const { return bodies_.size(); }
   const TriangleMesh& mesh(std::size_t i) const { return bodies_[i]->mesh(); }
   const Vec3<double>& mesh_origin(std::size_t i) const { return bodies_[i]->extent().origin; }
+  TreeBody& operator[](std::size_t i) const { return *bodies_[i]; }
+  TestsBetween<Query> tests_between() const { return tests_between_; }
   void add(const OneOfHierarchies& of_mesh) {
     inside_->add(of_mesh);
     find_bodies();

@@ -7,7 +7,6 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/player.hpp"
 #include "experiments/replay/registry.hpp"
-#include "experiments/replay/replay_budgeted.hpp"
 #include "experiments/replay/strategy_text.hpp"
 #include "experiments/replay/worlds.hpp"
 #include "hierarchies/builds.hpp"
@@ -67,11 +66,6 @@ void check_engine(const Variant& variant) {
                    Kernels::names());
 }
 
-void need_gathered(const Variant& variant, const char* what) {
-  if (variant.kernel != "gathered")
-    throw Unusable("--kernel " + variant.kernel + ": not for " + what + "; there is gathered");
-}
-
 }  // namespace
 
 void set_kernel(Variant& variant, std::string_view kernel) {
@@ -125,13 +119,6 @@ ReplayResult replay(std::span<const TriangleMesh> meshes, const Trace& trace,
   play_entry(name_of(variant.strategy), variant.query)
       .play(volume, std::move(hierarchies), meshes, trace, variant, options, result);
   return result;
-}
-
-BudgetedResult replay_budgeted(std::span<const TriangleMesh> meshes, const Trace& trace,
-                               const Variant& variant, std::uint64_t budget, Count count) {
-  check(variant);
-  need_gathered(variant, "answers within a budget");
-  return volume_entry(variant.volume).budgeted(meshes, trace, variant, budget, count);
 }
 
 std::unique_ptr<WorldEngine> make_world(std::span<const TriangleMesh> meshes, std::size_t objects,

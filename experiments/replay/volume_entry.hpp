@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "experiments/replay/replay.hpp"
-#include "experiments/replay/replay_budgeted.hpp"
 #include "hierarchies/bounding_volume.hpp"
 #include "hierarchies/build/topology.hpp"
 
@@ -37,8 +36,6 @@ struct VolumeEntry {
   /// The gap between each node's volume and the volume around each point, both at rest.
   std::vector<double> (*gaps)(const TriangleMesh&, const Topology&, Fit,
                               std::span<const GapQuestion>);
-  BudgetedResult (*budgeted)(std::span<const TriangleMesh>, const Trace&, const Variant&,
-                             std::uint64_t budget, Count);
   std::string_view drawn_as;  ///< see drawn_volume.hpp
   /// Of these nodes of one mesh's hierarchy, one after the other; hierarchies are of this volume.
   std::vector<float> (*drawn)(const AnyHierarchies&, std::size_t mesh,

@@ -98,7 +98,7 @@ class WideTreesOf final : public WideTrees<Tree> {
 template <class Kernel>
 inline constexpr int kernel_lanes = native_fan_out<float>;
 template <>
-inline constexpr int kernel_lanes<MixedKernel> = BlockTree::fan_out;
+inline constexpr int kernel_lanes<MixedKernel> = TreeInBlocks::fan_out;
 template <class Kernel>
 inline constexpr int most_kernel_lanes = 16;
 template <>

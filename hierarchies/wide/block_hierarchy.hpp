@@ -20,22 +20,22 @@
 #include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/local_mesh.hpp"
 #include "hierarchies/geometry/threads.hpp"
-#include "hierarchies/wide/block_tree.hpp"
+#include "hierarchies/wide/tree_in_blocks.hpp"
 #include "hierarchies/wide/fitting.hpp"
 
 namespace bvlab {
 
 template <BoundingVolume V>
-class BlockHierarchy : public BlockTree {
+class BlockHierarchy : public TreeInBlocks {
  public:
   static_assert(std::is_same_v<typename V::scalar, scalar>);
   static constexpr int fields = sizeof(V) / sizeof(scalar);
 
-  struct alignas(32) Node : BlockTree::Node {
+  struct alignas(32) Node : TreeInBlocks::Node {
     V volume;
   };
   template <std::size_t width>
-  struct alignas(64) Lanes : BlockTree::Lanes<width> {
+  struct alignas(64) Lanes : TreeInBlocks::Lanes<width> {
     std::array<std::array<scalar, width>, fields> volume;
   };
   using Row = Lanes<4>;
@@ -61,7 +61,7 @@ class BlockHierarchy : public BlockTree {
     supports_ = SupportMap(local.mesh(), sphere_.centre, threads);
     const TriangleMesh& mesh = local.mesh();
     nodes_.resize(topology.nodes.size()), node_spheres_.resize(topology.nodes.size());
-    node_heads_ = Heads<BlockTree::Node>(nodes_.data());
+    node_heads_ = Heads<TreeInBlocks::Node>(nodes_.data());
     const OrderedTriangles triangles(mesh, topology.primitives, threads);
     std::vector<Reach> reach(threads.count());
     threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
@@ -90,8 +90,8 @@ class BlockHierarchy : public BlockTree {
     for (Node& node : nodes_)
       if (!node.leaf) node.first = inner_++;
     rows_.resize(inner_ + 1), blocks_.resize(inner_);
-    row_heads_ = Heads<BlockTree::Row>(rows_.data());
-    block_heads_ = Heads<BlockTree::Block>(blocks_.data());
+    row_heads_ = Heads<TreeInBlocks::Row>(rows_.data());
+    block_heads_ = Heads<TreeInBlocks::Block>(blocks_.data());
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       Node& node = nodes_[i];
       if (node.leaf) continue;

@@ -2,7 +2,7 @@
 /// AnyVolume stands for a volume whose type loops do not know: `WidePairs<AnyVolume, F, ...>` is
 /// compiled once and traverses the trees of every volume, in either frame (frame.hpp), each through
 /// pointers to its tests. A step costs a call more than in loops of the volume's own. A tree is
-/// seen as its base, WideTree or BlockTree, whose `calls` are set by `calls_of` (calls_of.hpp)
+/// seen as its base, WideTree or TreeInBlocks, whose `calls` are set by `calls_of` (calls_of.hpp)
 /// before bodies are made of it.
 #pragma once
 
@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "hierarchies/wide/block_tree.hpp"
+#include "hierarchies/wide/tree_in_blocks.hpp"
 #include "hierarchies/wide/wide_tree.hpp"
 #include "traversal/frame.hpp"
 #include "traversal/wide/block_tests.hpp"
@@ -147,13 +147,13 @@ struct BlockCalls {
   using S = SixteenLanes;
   using Change = AnyFrameChange<BlockCalls>;
   struct Four {
-    const BlockTree::Row &a, &b;
+    const TreeInBlocks::Row &a, &b;
     const Change& change;
     std::size_t part;
   };
   struct One {
-    const BlockTree::Node& one;
-    const BlockTree::Block& block;
+    const TreeInBlocks::Node& one;
+    const TreeInBlocks::Block& block;
     const Change& change;
     std::size_t part;
   };
@@ -165,7 +165,7 @@ struct BlockCalls {
   };
 
   const BlockCalls* in_world;
-  std::unique_ptr<PosedTree> (*posed_tree)(const BlockTree&);
+  std::unique_ptr<PosedTree> (*posed_tree)(const TreeInBlocks&);
   void (*put_change)(void* to, const RelativePose&, double reach, double reach_of_lanes);
   Of<Four> four;
   Of<One> one;
@@ -227,7 +227,7 @@ class RelativeFrame<AnyVolume, F>
 template <>
 struct BlockTests<AnyVolume> {
   using S = SixteenLanes;
-  using Tree = BlockTree;
+  using Tree = TreeInBlocks;
   using SiblingTest = CalledTest<BlockCalls>;
   using FrameChange = SiblingTest::FrameChange;
 

@@ -17,7 +17,7 @@
 
 namespace bvlab {
 
-/// Tree is a BlockTree.
+/// Tree is a TreeInBlocks.
 template <class Tree>
 class BlockTriangles {
   using S = SixteenLanes;

@@ -57,7 +57,7 @@ class SiblingsSieve {
   TransformedLeaf<F> leaf_of_a_;
 };
 
-/// Up to four triangles of a leaf of a against up to four of a leaf of b. Tree is a BlockTree.
+/// Up to four triangles of a leaf of a against up to four of a leaf of b. Tree is a TreeInBlocks.
 template <class Tree>
 class BlocksSieve {
   using S = SixteenLanes;

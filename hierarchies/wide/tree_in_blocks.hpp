@@ -20,7 +20,7 @@ namespace bvlab {
 
 struct BlockCalls;
 
-class BlockTree {
+class TreeInBlocks {
  public:
   using scalar = float;  // a lane holds a number and a node alike
   static constexpr int fan_out = 4;
@@ -46,10 +46,10 @@ class BlockTree {
   using Row = Lanes<4>;
   using Block = Lanes<16>;
 
-  BlockTree(const BlockTree&) = delete;
-  BlockTree& operator=(const BlockTree&) = delete;
-  BlockTree(BlockTree&&) = default;
-  BlockTree& operator=(BlockTree&&) = default;
+  TreeInBlocks(const TreeInBlocks&) = delete;
+  TreeInBlocks& operator=(const TreeInBlocks&) = delete;
+  TreeInBlocks(TreeInBlocks&&) = default;
+  TreeInBlocks& operator=(TreeInBlocks&&) = default;
 
   std::size_t size() const { return node_spheres_.size(); }
   const Node& node(std::uint32_t i) const { return node_heads_[i]; }
@@ -82,7 +82,7 @@ class BlockTree {
   const BlockCalls* calls = nullptr;
 
  protected:
-  BlockTree() = default;
+  TreeInBlocks() = default;
 
   // Of what the derived class stores.
   Heads<Node> node_heads_;
