@@ -36,8 +36,8 @@ BudgetedResult replay_budgeted(std::span<const TriangleMesh> meshes, const Trace
   const TriangleTest test = triangle_test(variant.precision);
   auto start = Clock::now();
   const auto hierarchies = volume_entry(variant.volume).hierarchies(meshes, variant);
-  AnyBodies<Touching> bodies(
-      bodies_entry<Touching>(variant.volume).bodies(*hierarchies, trace.objects, frame_of(variant)));
+  AnyBodies<Touching> bodies(bodies_entry<Touching>(variant.volume)
+                                 .bodies(*hierarchies, trace.objects, frame_of(variant)));
   std::vector<PatchSizes> sizes;
   for (std::size_t m = 0; m < meshes.size() && m < bodies.size(); ++m)
     sizes.emplace_back(meshes[m], bodies[m].tree());

@@ -20,8 +20,8 @@
 #include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/local_mesh.hpp"
 #include "hierarchies/geometry/threads.hpp"
-#include "hierarchies/wide/tree_in_blocks.hpp"
 #include "hierarchies/wide/fitting.hpp"
+#include "hierarchies/wide/tree_in_blocks.hpp"
 
 namespace bvlab {
 

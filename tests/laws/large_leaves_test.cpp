@@ -158,8 +158,9 @@ TEST(LargeLeavesWithinABudget, HoldNoMore) {
   for (const auto& [x, touches] : {std::pair(0.0, true), {0.3, true}, {1.9, false}}) {
     bodies.b.move(Pose{Mat3<double>::Identity(), {x, 0, 0}}, Vec3<double>::Zero());
     most_at_once = tested = 0;
-    const auto answer = budgeted(bodies.a, sizes, bodies.b, sizes, tests_between<width<B>(), V, Touching>,
-                                 1000, counted_test, counter);
+    const auto answer =
+        budgeted(bodies.a, sizes, bodies.b, sizes, tests_between<width<B>(), V, Touching>, 1000,
+                 counted_test, counter);
     EXPECT_EQ(answer.verdict, touches ? BudgetVerdict::touching : BudgetVerdict::apart) << x;
     EXPECT_LE(most_at_once, 5000u);
     if (touches) {
