@@ -5,14 +5,12 @@
 //
 // x3d      the <x3d> element, after x3dom has read its scene
 // engine   of engineFrom (engine.js), without meshes as yet
-// A part is an outermost Transform that has triangles: it moves as one, by sensors, interpolators
-// or scripts. In every frame in which one has moved, the engine tests all; those that touch take
-// the colour, and their own one after that.
+// A part is an outermost Transform that has triangles: it moves as one, by sensors, interpolators or scripts. In every
+// frame in which one has moved, the engine tests all; those that touch take the colour, and their own one after that.
 //   contact.parts      the Transform elements; their numbers are those of the pairs
-//   contact.touching   [i, j] for each pair that touches, i < j, as of the last frame; `onChange`
-//   when it changes contact.detach()   ends it
-// It refuses, by an Error whose message is a sentence, a scene without two parts, and one that is
-// too large.
+//   contact.touching   [i, j] for each pair that touches, i < j, as of the last frame; `onChange` when it changes
+//   contact.detach()   ends it
+// It refuses, by an Error whose message is a sentence, a scene without two parts, and one that is too large.
 'use strict';
 
 async function bvlabX3d(x3d, engine, { colour = '1 0 0', onChange = () => {}, mostTriangles = 200000 } = {}) {
@@ -23,8 +21,7 @@ async function bvlabX3d(x3d, engine, { colour = '1 0 0', onChange = () => {}, mo
   const outermost = [...x3d.querySelectorAll('transform')].filter(part => !part.parentElement.closest('transform') && shapesOf(part).length > 0);
   if (outermost.length < 2) throw Error('This scene has fewer than two parts: outermost Transforms that hold shapes.');
 
-  const tooMany = () => Error(`This scene has more than ${
-      mostTriangles.toLocaleString('en')} triangles: too many to ask in every frame here.`);
+  const tooMany = () => Error(`This scene has more than ${mostTriangles.toLocaleString('en')} triangles: too many to ask in every frame here.`);
   const lengthOf = (rows, column) => Math.hypot(rows[0][column], rows[1][column], rows[2][column]) || 1;
   /** The pose of a part: x y z qw qx qy qz, from its matrix without its scale. */
   function poseOf(part) {

@@ -7,9 +7,8 @@ const curves = (() => {
                  ['N<sub>p</sub>', 'triangle tests'], ['front', 'entries']];
   const count = new Intl.NumberFormat('en');
   const all = kinds.map(([symbol, meaning], k) => {
-    const innerHTML = `<h3><span>${symbol} <small>${
-        meaning}</small></span><output></output></h3><canvas></canvas>`;
-    const box = made('div', {className: 'curve', innerHTML});
+    const innerHTML = `<h3><span>${symbol} <small>${meaning}</small></span><output></output></h3><canvas></canvas>`;
+    const box = made('div', { className: 'curve', innerHTML });
     element('curves').append(box);
     const values = Float64Array.from({ length: data.frames }, (_, f) => data.series[4 * f + k]);
     return { values, most: values.reduce((a, b) => Math.max(a, b), 0) || 1, canvas: box.querySelector('canvas'),

@@ -56,10 +56,8 @@ const data = (() => {
     };
   });
   return {
-    ...read,
-    ...bodiesOf(objects, meshes),
-    poses: floatsOf(read.poses),
-    series: wholesOf(read.series),
+    ...read, ...bodiesOf(objects, meshes),
+    poses: floatsOf(read.poses), series: wholesOf(read.series),
     touching: setsOverTime(read.touching, frames),
     leftOut: Object.values(read.left_out),
     keepsFronts: Object.keys(read.fronts).length > 0,

@@ -22,7 +22,7 @@ const live = (() => {
   const dot4 = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
   const rotated = (v, q) => times(times(q, [0, ...v]), [q[0], -q[1], -q[2], -q[3]]).slice(1).map(x => x / dot4(q, q));
   const poseOf = i => poses.subarray(7 * i, 7 * i + 7);
-  const boxes = data.meshes.map(({exact}) => {
+  const boxes = data.meshes.map(({ exact }) => {
     const low = Array(3).fill(Infinity), high = Array(3).fill(-Infinity);
     exact.forEach((x, k) => { low[k % 3] = Math.min(low[k % 3], x), high[k % 3] = Math.max(high[k % 3], x); });
     return { centre: low.map((x, k) => (x + high[k]) / 2), radius: Math.hypot(...low.map((x, k) => high[k] - x)) / 2 };
@@ -325,18 +325,15 @@ const live = (() => {
 
   // Controls of a run
   function select(row, label, values, value, act) {
-    const menu = made('select', {ariaLabel: label, title: label});
-    for (const each of values)
-      menu.append(new Option(
-          typeof each === 'number' ? `fan-out ${each}` : each, each, false, each === value));
+    const menu = made('select', { ariaLabel: label, title: label });
+    for (const each of values) menu.append(new Option(typeof each === 'number' ? `fan-out ${each}` : each, each, false, each === value));
     menu.addEventListener('change', () => act(menu.value));
     row.append(menu);
   }
   function controlsOf(run) {
     run.row.replaceChildren();
     const title = 'draw its volumes and its front';
-    const draws = made(
-        'input', {type: 'radio', name: 'drawn', checked: run === drawn(), title, ariaLabel: title});
+    const draws = made('input', { type: 'radio', name: 'drawn', checked: run === drawn(), title, ariaLabel: title });
     draws.style.accentColor = draws.style.outlineColor = run.colour;
     draws.addEventListener('change', () => { runs.forEach(each => { each.isDrawn = each === run; }), changed(); });
     run.row.append(draws);
@@ -354,7 +351,7 @@ const live = (() => {
     select(run.row, 'kernel', Object.keys(offered), run.kernel, name => change({ kernel: name }));
     select(run.row, 'fan-out', kernel.fanOuts, run.fanOut, fanOut => change({ fanOut: Number(fanOut) }));
     if (run !== runs[0]) {
-      const away = made('button', {type: 'button', textContent: '×', ariaLabel: 'take it away'});
+      const away = made('button', { type: 'button', textContent: '×', ariaLabel: 'take it away' });
       away.addEventListener('click', () => {
         if (run.number !== null) self.engine.endRun(run.number);
         runs.splice(runs.indexOf(run), 1);
@@ -378,21 +375,8 @@ const live = (() => {
   function addRun(what = {}) {
     const used = runs.map(run => run.colour), colour = colours.map(name => look.colour(name)).find(each => !used.includes(each));
     if (!colour) return;
-    const run = {
-      strategy: 'margins',
-      volume: 'sphere',
-      kernel: 'gathered',
-      fanOut: 2,
-      ...what,
-      colour,
-      number: null,
-      past: [],
-      times: [],
-      row: made('p', {className: 'row run'}),
-      said: made('small'),
-      numbers: made('span'),
-      line: made('span')
-    };
+    const run = { strategy: 'margins', volume: 'sphere', kernel: 'gathered', fanOut: 2, ...what, colour, number: null, past: [], times: [],
+      row: made('p', { className: 'row run' }), said: made('small'), numbers: made('span'), line: made('span') };
     run.line.append(made('span'), made('span'));
     run.line.lastChild.append(made('i'), made('output'));
     element('lines').append(run.line);
@@ -424,8 +408,7 @@ const live = (() => {
 
   async function begins() {
     document.title = element('title').textContent = `bvlab live · ${data.title}`;
-    element('facts').textContent =
-        `${whole.format(data.objects)} bodies, ${whole.format(data.triangles)} triangles`;
+    element('facts').textContent = `${whole.format(data.objects)} bodies, ${whole.format(data.triangles)} triangles`;
     showLeftOut(data.left_out);
     self.engine = await engineFrom(data.engine);
     data.meshes.forEach(mesh => self.engine.addMesh(mesh.exact, mesh.triangles));

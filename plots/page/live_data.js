@@ -15,14 +15,8 @@ const data = (() => {
   for (let k = 0; k < viewed.length; ++k)
     viewed[k] = motion[7 * objects * Math.round(Math.floor(k / (7 * objects)) * (frames - 1) / (seen - 1)) + k % (7 * objects)] - (k % 7 < 3 ? motion[k % 7] : 0);
   return {
-    ...read,
-    ...bodiesOf(objects, meshes),
-    motion,
-    motionFrames: frames,
-    frames: 1,
-    poses: new Float32Array(7 * objects),
-    viewed: {poses: viewed, frames: seen},
-    drawn_as: '',
+    ...read, ...bodiesOf(objects, meshes), motion,
+    motionFrames: frames, frames: 1, poses: new Float32Array(7 * objects), viewed: { poses: viewed, frames: seen }, drawn_as: '',
     frameOf: f => motion.subarray(7 * objects * f, 7 * objects * (f + 1)),
   };
 })();

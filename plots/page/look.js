@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What all pages share. Light or dark: as the system says until the button is used; what was chosen
-// is kept.
+// What all pages share. Light or dark: as the system says until the button is used; what was chosen is kept.
 'use strict';
 
 const element = id => document.getElementById(id);
@@ -12,7 +11,7 @@ function problem(sentence) {
 }
 /** What a page leaves out, in sentences; no section where that is nothing. */
 function showLeftOut(sentences) {
-  element('left-out').append(...sentences.map(textContent => made('li', {textContent})));
+  element('left-out').append(...sentences.map(textContent => made('li', { textContent })));
   element('left-out-section').hidden = sentences.length === 0;
 }
 

@@ -4,7 +4,7 @@
 'use strict';
 
 const peers = (() => {
-  const bodies = Array.from({length: data.objects}, (_, i) => i);
+  const bodies = Array.from({ length: data.objects }, (_, i) => i);
   const self = { rows: [], done: false }, rounds = 3;
   let PEERS = null;
   const poseOf = (poses, i) => {
@@ -15,8 +15,7 @@ const peers = (() => {
   function ofPairs(touch) {
     const all = new Uint8Array(data.pairCount);
     let p = 0;
-    for (const i of bodies)
-      for (let j = i + 1; j < bodies.length; ++j) all[p++] = touch(i, j);
+    for (const i of bodies) for (let j = i + 1; j < bodies.length; ++j) all[p++] = touch(i, j);
     return all;
   }
 
@@ -91,7 +90,7 @@ const peers = (() => {
     const row = { name, milliseconds: least, touching: verdicts.reduce((sum, frame) => sum + frame.reduce((a, b) => a + b, 0), 0), differ, verdicts };
     self.rows.push(row);
     const cells = [name, least.toPrecision(3), (1000 * least / data.pairCount).toPrecision(3), row.touching, differ];
-    element('rows').insertRow().append(...cells.map(textContent => made('td', {textContent})));
+    element('rows').insertRow().append(...cells.map(textContent => made('td', { textContent })));
   }
 
   async function play() {

@@ -8,13 +8,10 @@
   const count = new Intl.NumberFormat('en');
 
   // Words
-  document.title = element('title').textContent =
-      `${data.trace} · ${data.volume} · ${data.strategy}`;
+  document.title = element('title').textContent = `${data.trace} · ${data.volume} · ${data.strategy}`;
   element('facts').textContent =
-      `${count.format(data.objects)} bodies of ${
-              [...new Set(data.meshes.map(m => m.name))].slice(0, 4).join(', ')}, ` +
-      `${count.format(data.triangles)} triangles, ${count.format(data.frames)} frames; ${
-          data.query}, built ${data.build}`;
+    `${count.format(data.objects)} bodies of ${[...new Set(data.meshes.map(m => m.name))].slice(0, 4).join(', ')}, ` +
+    `${count.format(data.triangles)} triangles, ${count.format(data.frames)} frames; ${data.query}, built ${data.build}`;
   const swatch = (colour, words) => `<span><i style="background:var(--${colour})"></i>${words}</span>`;
   element('legend').innerHTML = swatch('touching', 'touching');
   showLeftOut(data.leftOut);
@@ -29,10 +26,8 @@
     scene.put(state.frame);
     paint();
     curves.show(state.frame);
-    if (state.pair && (which() === 'front' || volumes.realigned))
-      showVolumes();
-    else
-      scene.placeVolumes(state.pair);
+    if (state.pair && (which() === 'front' || volumes.realigned)) showVolumes();
+    else scene.placeVolumes(state.pair);
   }
   const touchingNow = () => data.touching[state.frame] ?? [];
   function paint() {
@@ -44,8 +39,7 @@
   const cells = new Map();
   const asMatrix = data.objects <= 16;
   function cell(p) {
-    const [i, j] = data.pairOf(p), title = `bodies ${i} and ${j}`,
-              button = made('button', {type: 'button', title, ariaLabel: title});
+    const [i, j] = data.pairOf(p), title = `bodies ${i} and ${j}`, button = made('button', { type: 'button', title, ariaLabel: title });
     button.dataset.pair = p;
     if (!asMatrix) button.textContent = `${i}–${j}`;
     button.addEventListener('click', () => choose(state.pair && data.numberOf(...state.pair) === p ? null : [i, j]));
@@ -53,8 +47,7 @@
     return button;
   }
   function makeMatrix() {
-    const box = element('pairs'), n = data.objects,
-          label = textContent => made('span', {textContent});
+    const box = element('pairs'), n = data.objects, label = textContent => made('span', { textContent });
     box.className = 'matrix';
     box.style.gridTemplateColumns = `1.4em repeat(${n - 1}, minmax(0, 1fr))`;
     box.append(label(''));
@@ -86,10 +79,8 @@
       : data.objects < 2 ? 'There is but one body.'
       : `${count.format(touching.size)} of ${count.format(data.pairCount)} pairs touch. Choose one to see its volumes.`;
   }
-  if (asMatrix && data.objects > 1)
-    makeMatrix();
-  else
-    element('pairs').className = 'list';
+  if (asMatrix && data.objects > 1) makeMatrix();
+  else element('pairs').className = 'list';
 
   function choose(pair) {
     state.pair = pair;
@@ -161,16 +152,11 @@
   for (const speed of [0.1, 0.25, 0.5, 1, 2, 4])
     element('speed').append(new Option(`${speed}×`, speed, speed === 1, speed === 1));
   addEventListener('keydown', event => {
-    if (event.target.closest('input, select') ||
-        (event.target.closest('button') && event.key === ' '))
-      return;
+    if (event.target.closest('input, select') || (event.target.closest('button') && event.key === ' ')) return;
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-    if (event.key === ' ')
-      play(!state.playing);
-    else if (step)
-      pause(state.frame + step);
-    else
-      return;
+    if (event.key === ' ') play(!state.playing);
+    else if (step) pause(state.frame + step);
+    else return;
     event.preventDefault();
   });
 

@@ -17,8 +17,7 @@
       section.hidden = links.get(section.id).hidden = !hit;
       count += hit;
     });
-    element('found').textContent =
-        words.length ? `${count} of ${sections.length} experiments` : `${count} experiments`;
+    element('found').textContent = words.length ? `${count} of ${sections.length} experiments` : `${count} experiments`;
   });
 
   function sort(button) {

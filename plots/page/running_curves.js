@@ -7,9 +7,8 @@ const curves = (() => {
   const kinds = [['N<sub>u</sub>', 'volumes posed'], ['N<sub>v</sub>', 'volume tests'], ['N<sub>p</sub>', 'triangle tests'],
                  ['front', 'pairs kept'], ['hits', ''], ['N<sub>b</sub>', 'body tests'], ['ms', 'time']];
   const boxes = kinds.map(([symbol, meaning]) => {
-    const innerHTML = `<h3><span>${meaning}</span></h3><p>${
-        symbol} <output></output><span></span></p><canvas></canvas>`;
-    const box = made('div', {className: 'curve', innerHTML});
+    const innerHTML = `<h3><span>${meaning}</span></h3><p>${symbol} <output></output><span></span></p><canvas></canvas>`;
+    const box = made('div', { className: 'curve', innerHTML });
     element('curves').append(box);
     return { box, canvas: box.querySelector('canvas'), output: box.querySelector('output'), most: box.querySelector('p span') };
   });

@@ -4,18 +4,13 @@
 
 const scene = (() => {
   const canvas = element('scene');
-  // Three.js writes an error to the console where it finds no WebGL: a canvas of its own shows
-  // beforehand whether there is any.
+  // Three.js writes an error to the console where it finds no WebGL: a canvas of its own shows beforehand whether there is any.
   const webgl = document.createElement('canvas').getContext('webgl2') !== null;
   if (!webgl || typeof THREE === 'undefined') {
-    canvas.replaceWith(made('p', {
-      id: 'no-webgl',
-      textContent:
-          (webgl ?
-               'This page was made without three.js, which draws: experiments/setup gets it from npm. The scene is not drawn. ' :
-               'This browser shows no 3D here (WebGL 2 is off or missing): the scene is not drawn. ') +
-          'Curves, pairs and numbers are all there; --x3d writes the scene for other viewers.'
-    }));
+    canvas.replaceWith(made('p', { id: 'no-webgl', textContent: (webgl
+      ? 'This page was made without three.js, which draws: experiments/setup gets it from npm. The scene is not drawn. '
+      : 'This browser shows no 3D here (WebGL 2 is off or missing): the scene is not drawn. ')
+      + 'Curves, pairs and numbers are all there; --x3d writes the scene for other viewers.' }));
     return new Proxy({}, { get: () => () => {} });
   }
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
@@ -97,8 +92,7 @@ const scene = (() => {
     for (const { name, material } of lines) material.emissive.set(look.colour(name));
     for (const name of names)
       for (const faded of [false, true]) materials[name + faded].color.set(look.colour(name));
-    for (const { name, face, line } of shown)
-      face.color.set(look.colour(name)), line.color.set(look.colour(name));
+    for (const { name, face, line } of shown) face.color.set(look.colour(name)), line.color.set(look.colour(name));
     changed = true;
   }
 
@@ -118,8 +112,7 @@ const scene = (() => {
   /** Bodies of `touching` pairs stand out, and all that are not of the chosen pair fade. */
   function paint(touching, pair) {
     const hit = new Uint8Array(data.objects);
-    for (const p of touching)
-      for (const i of data.pairOf(p)) hit[i] = 1;
+    for (const p of touching) for (const i of data.pairOf(p)) hit[i] = 1;
     bodies.forEach((body, i) => {
       const own = pair ? pair.indexOf(i) : -1, faded = pair !== null && own < 0;
       body.material = materials[(hit[i] ? 'touching' : own >= 0 ? names[2 + own] : 'body') + faded];
@@ -153,14 +146,11 @@ const scene = (() => {
   }
   /** After the bodies have moved: volumes that keep their shape go with them. */
   function placeVolumes(pair) {
-    if (pair)
-      shown.forEach(({group}, side) => {
-        group.position.copy(bodies[pair[side % 2]].position);
-        if (volumes.realigned)
-          group.quaternion.identity();
-        else
-          group.quaternion.copy(bodies[pair[side % 2]].quaternion);
-      });
+    if (pair) shown.forEach(({ group }, side) => {
+      group.position.copy(bodies[pair[side % 2]].position);
+      if (volumes.realigned) group.quaternion.identity();
+      else group.quaternion.copy(bodies[pair[side % 2]].quaternion);
+    });
     changed = true;
   }
 

@@ -15,16 +15,14 @@ function posedTriangle({ exact, triangles }, triangle, pose) {
 
 /** Two points, or none where the triangles lie in one plane. */
 function segmentOf(one, other) {
-  const normals = [one, other].map(t => cross3(add3(t[1], t[0], -1), add3(t[2], t[0], -1))),
-        along = cross3(...normals);
+  const normals = [one, other].map(t => cross3(add3(t[1], t[0], -1), add3(t[2], t[0], -1))), along = cross3(...normals);
   if (dot3(along, along) === 0) return null;
   // The two points in which each triangle meets the other's plane, in their order along both planes.
   const crossings = (t, plane, normal) => {
     const height = t.map(corner => dot3(normal, add3(corner, plane[0], -1))), found = [];
     for (let k = 0; k < 3; ++k) {
       const l = (k + 1) % 3;
-      if (height[k] === 0)
-        found.push(t[k]);
+      if (height[k] === 0) found.push(t[k]);
       else if (height[l] !== 0 && (height[k] > 0) !== (height[l] > 0)) {
         const r = height[k] / (height[k] - height[l]);
         found.push(t[k].map((value, i) => value + r * (t[l][i] - value)));
@@ -34,7 +32,6 @@ function segmentOf(one, other) {
   };
   const a = crossings(one, other, normals[1]), b = crossings(other, one, normals[0]);
   if (a.length === 0 || b.length === 0) return null;
-  const from = a[0][0] > b[0][0] ? a[0] : b[0],
-        to = a.at(-1)[0] < b.at(-1)[0] ? a.at(-1) : b.at(-1);
+  const from = a[0][0] > b[0][0] ? a[0] : b[0], to = a.at(-1)[0] < b.at(-1)[0] ? a.at(-1) : b.at(-1);
   return [from[1], to[1]];
 }

@@ -156,12 +156,10 @@ function realignment(k, rows) {
 const volumes = (() => {
   const kind = () => data.drawn_as, isKdop = () => kind() === 'k-dop';
   const shapes = {
-    'ball': (v, out, fineness) =>
-        addSwept(out, v.slice(0, 3), [1, 0, 0], [0, 1, 0], 0, 0, v[3], fineness),
+    'ball': (v, out, fineness) => addSwept(out, v.slice(0, 3), [1, 0, 0], [0, 1, 0], 0, 0, v[3], fineness),
     'rectangle': (v, out, fineness) =>
-        addSwept(out, v.slice(0, 3), v.slice(3, 6), v.slice(6, 9), v[9], v[10], v[11], fineness),
-    'shell': (v, out, fineness) =>
-        addShell(out, v.slice(0, 3), v.slice(3, 6), v[6], v[7], v[8], fineness),
+      addSwept(out, v.slice(0, 3), v.slice(3, 6), v.slice(6, 9), v[9], v[10], v[11], fineness),
+    'shell': (v, out, fineness) => addShell(out, v.slice(0, 3), v.slice(3, 6), v[6], v[7], v[8], fineness),
     'slab-box': (v, out) => {
       const at = v.slice(0, 3), slab = v.slice(6, 9), middle = dot3(slab, at) + v[9];
       const ways = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], sides = ways.flatMap(way => [way, way.map(x => -x)]);
@@ -169,27 +167,24 @@ const volumes = (() => {
       addHalfSpaces(out, [...sides, slab, slab.map(x => -x)], [...bounds, v[10] + middle, v[10] - middle]);
     },
     'box': (v, out) => {
-      const at = v.slice(0, 3), axes = [v.slice(3, 6), v.slice(6, 9), v.slice(9, 12)],
-            half = v.slice(12, 15);
+      const at = v.slice(0, 3), axes = [v.slice(3, 6), v.slice(6, 9), v.slice(9, 12)], half = v.slice(12, 15);
       for (let i = 0; i < 3; ++i)
         for (const sign of [1, -1]) {
           const [j, k] = [(i + 1) % 3, (i + 2) % 3];
-          const polygon = [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(
-              ([a, b]) => add3(
-                  add3(add3(at, axes[i], sign * half[i]), axes[j], a * half[j]), axes[k],
-                  b * half[k]));
+          const polygon = [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([a, b]) =>
+            add3(add3(add3(at, axes[i], sign * half[i]), axes[j], a * half[j]), axes[k], b * half[k]));
           addPolygon(out, polygon, axes[i].map(x => sign * x));
           if (i < 2) addLine(out, polygon, true);
         }
     },
   };
 
-  const nothing = () => ({corners: [], normals: [], lines: []});
+  const nothing = () => ({ corners: [], normals: [], lines: [] });
   const known = new Map();  // of what turns with its body: shapes, by mesh, node and fineness
   function shapeOf(m, node, fineness) {
     const key = (node * 64 + fineness) * data.meshes.length + m;
     if (!known.has(key)) {
-      const {numbers, volumes} = data.meshes[m], out = nothing();
+      const { numbers, volumes } = data.meshes[m], out = nothing();
       shapes[kind()](Array.from(volumes.subarray(node * numbers, (node + 1) * numbers)), out, fineness);
       if (known.size > 4000) known.clear();
       known.set(key, joined([out]));
@@ -214,10 +209,7 @@ const volumes = (() => {
     get most() { return isKdop() ? 256 : 1024; },
     /** After other volumes have come into the data. */
     forget() { known.clear(); },
-    /**
-       In the body's own frame; of k-DOPs along the world's axes, when the body is turned by these
-       rows.
-     */
+    /** In the body's own frame; of k-DOPs along the world's axes, when the body is turned by these rows. */
     shape(m, nodes, rows) {
       if (isKdop()) {
         const { numbers, volumes } = data.meshes[m], normals = normalsOf(numbers);
@@ -245,8 +237,7 @@ const volumes = (() => {
 /** What of the pair's volumes is chosen: a level of the trees, the front, or none. */
 const which = () => document.querySelector('input[name="which"]:checked').value;
 function onWhich(act) {
-  for (const radio of document.querySelectorAll('input[name="which"]'))
-    radio.addEventListener('change', act);
+  for (const radio of document.querySelectorAll('input[name="which"]')) radio.addEventListener('change', act);
   element('level').addEventListener('input', act);
 }
 function showLevel() {

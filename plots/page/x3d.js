@@ -60,24 +60,20 @@ const page = { contact: null };
 
   // A sensor beside each part, in the plane of x and y, unless the scene has sensors of its own.
   if (!scene.querySelector('planesensor, cylindersensor, spheresensor'))
-    [...scene.querySelectorAll('transform')]
-        .filter(part => !part.parentElement.closest('transform') && part.querySelector('shape'))
-        .forEach((part, k) => {
-          const [group, sensor, route] =
-              ['group', 'planesensor', 'route'].map(name => document.createElement(name));
-          const name = part.getAttribute('DEF') ?? `bvlab-part-${k}`;
-          part.setAttribute('DEF', name);
-          sensor.setAttribute('DEF', `${name}-sensor`);
-          sensor.setAttribute('autoOffset', 'true');
-          sensor.setAttribute('offset', part.getAttribute('translation') ?? '0 0 0');
-          for (const [key, value] of [
-                   ['fromNode', `${name}-sensor`], ['fromField', 'translation_changed'],
-                   ['toNode', name], ['toField', 'set_translation']])
-            route.setAttribute(key, value);
-          part.replaceWith(group);
-          group.append(sensor, part);
-          scene.append(route);
-        });
+    [...scene.querySelectorAll('transform')].filter(part => !part.parentElement.closest('transform') && part.querySelector('shape'))
+      .forEach((part, k) => {
+        const [group, sensor, route] = ['group', 'planesensor', 'route'].map(name => document.createElement(name));
+        const name = part.getAttribute('DEF') ?? `bvlab-part-${k}`;
+        part.setAttribute('DEF', name);
+        sensor.setAttribute('DEF', `${name}-sensor`);
+        sensor.setAttribute('autoOffset', 'true');
+        sensor.setAttribute('offset', part.getAttribute('translation') ?? '0 0 0');
+        for (const [key, value] of [['fromNode', `${name}-sensor`], ['fromField', 'translation_changed'], ['toNode', name], ['toField', 'set_translation']])
+          route.setAttribute(key, value);
+        part.replaceWith(group);
+        group.append(sensor, part);
+        scene.append(route);
+      });
   const x3d = document.createElement('x3d');
   x3d.setAttribute('showLog', 'false');
   x3d.append(scene);
