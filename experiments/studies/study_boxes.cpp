@@ -18,12 +18,11 @@
 #include <set>
 #include <utility>
 
-#include "experiments/files/heap_bytes.hpp"
+#include "experiments/files/memory.hpp"
 #include "experiments/files/npy.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/box_peers.hpp"
 #include "experiments/replay/box_methods.hpp"
-#include "experiments/replay/method_names.hpp"
 #include "experiments/scenes/boxes.hpp"
 #include "experiments/studies/clocks.hpp"
 #include "experiments/studies/statistics.hpp"
@@ -74,7 +73,9 @@ struct Settings {
 bool is_file(const std::string& set) { return set.ends_with(".npy"); }
 
 StudyParameters parameters() {
-  const std::vector<std::string> sets = box_set_names(), methods = method_names();
+  const std::vector<std::string> sets = box_set_names();
+  std::vector<std::string> methods;
+  for (const auto* entry : method_entries()) methods.emplace_back(entry->name);
   StudyParameters all{
       words_parameter("sets", sets, "of boxes", sets),
       wholes_parameter("counts", {10000}, {1, 1e8}, "boxes in a set"),
