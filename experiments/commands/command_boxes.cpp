@@ -7,7 +7,6 @@
 #include "experiments/commands/require_threads.hpp"
 #include "experiments/files/npy.hpp"
 #include "experiments/files/totals.hpp"
-#include "experiments/files/unusable.hpp"
 #include "experiments/replay/replay_boxes.hpp"
 
 namespace bvlab {
@@ -28,12 +27,7 @@ void play(const Arguments& arguments, const Array<T>& trace) {
   const BoxReplayResult result = replay_boxes(frames, arguments.options);
   if (!result.reason.empty() && isatty(STDERR_FILENO))
     std::fprintf(stderr, "%s: %s\n", arguments.options.method.c_str(), result.reason.c_str());
-  if (!arguments.out.empty()) {
-    const std::size_t rows[] = {result.pairs.size(), 3};
-    write_npy<std::uint32_t>(
-        arguments.out, rows,
-        {reinterpret_cast<const std::uint32_t*>(result.pairs.data()), result.pairs.size() * 3});
-  }
+  if (!arguments.out.empty()) write_npy_rows<std::uint32_t, 3>(arguments.out, result.pairs);
   write_totals(totals_of(result, frames, arguments.options), arguments.json);
 }
 

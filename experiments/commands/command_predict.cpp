@@ -8,13 +8,12 @@
 
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/variant_options.hpp"
+#include "experiments/files/joined.hpp"
 #include "experiments/files/totals.hpp"
-#include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
 #include "experiments/replay/coherence.hpp"
 #include "experiments/replay/predict.hpp"
 #include "experiments/replay/registry.hpp"
-#include "experiments/scenes/read_mesh.hpp"
 
 namespace bvlab {
 namespace {
@@ -64,20 +63,12 @@ Totals totals_of(const Arguments& arguments, const Trace& trace, const Coherence
       .set("pairs", trace.pairs())
       .set("volume", arguments.variant.volume)
       .set("query", arguments.variant.query);
-  if (coherence.entries > 0)
-    totals.set("survival",
-               static_cast<double>(coherence.kept) / static_cast<double>(coherence.entries));
-  else
-    totals.set("survival", nullptr);
   const auto names = candidates(rows);
-  const bool is_told = can_tell(rows) && names.size() == 1;
-  if (is_told)
-    totals.set("fastest", names[0]);
-  else
-    totals.set("fastest", nullptr);
-  std::string list;
-  for (const auto& name : names) list += (list.empty() ? "" : ", ") + std::string(name);
-  totals.set("candidates", list)
+  std::optional<std::string_view> fastest;
+  if (can_tell(rows) && names.size() == 1) fastest = names[0];
+  totals.set("survival", coherence.survival())
+      .set("fastest", fastest)
+      .set("candidates", joined(names))
       .set("windows", rows.back().windows)
       .set("verdict", verdict(rows, trace));
   Totals strategies;
@@ -94,16 +85,10 @@ Totals totals_of(const Arguments& arguments, const Trace& trace, const Coherence
 void run(const Arguments& arguments) {
   check(arguments.variant);
   require_fit(arguments.variant);
-  std::vector<NamedFile> read{{"--trace", arguments.trace}};
-  for (const auto& mesh : arguments.meshes) read.push_back({"--mesh", mesh});
   const NamedFile written[] = {
       {"the table", "/dev/stdout"}, {"--csv", arguments.csv}, {"--json", arguments.json}};
-  require_places(read, written);
-  std::vector<TriangleMesh> meshes;
-  for (const auto& file : arguments.meshes) {
-    meshes.push_back(read_mesh(file, {.scale = arguments.scale}));
-    say_if_nothing_is_culled(meshes.back(), file);
-  }
+  require_places(files_read(arguments.trace, arguments.meshes), written);
+  const auto meshes = read_meshes(arguments.meshes, arguments.scale);
   const Trace trace = read_trace(arguments.trace);
   require_finite_corners(trace, arguments.trace, meshes);
   PredictOptions options = options_for(trace.frames);
@@ -138,9 +123,7 @@ void add_predict(CLI::App& app) {
       "one was among them in all 40. To find out which candidate is the fastest, replay them.\n"
       "experiments/replay/predict_coverage repeats this measurement.");
   auto arguments = std::make_shared<Arguments>();
-  command
-      ->add_option("trace,--trace", arguments->trace, "poses: .npy, float64, (frames, objects, 7)")
-      ->required();
+  command->add_option("trace,--trace", arguments->trace, what_poses_are)->required();
   add_mesh_options(*command, arguments->meshes, arguments->scale);
   add_variant_options(
       *command, arguments->variant,

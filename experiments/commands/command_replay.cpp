@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// `bvlab replay`: a motion trace through one variant of the engine.
-#include <algorithm>
 #include <optional>
 #include <string_view>
 
@@ -17,7 +16,6 @@
 #include "experiments/replay/replay_totals.hpp"
 #include "experiments/replay/scene_page.hpp"
 #include "experiments/scenes/pair_files.hpp"
-#include "experiments/scenes/read_mesh.hpp"
 
 namespace bvlab {
 namespace {
@@ -35,18 +33,13 @@ struct Arguments {
 
 void write_answers(const Arguments& arguments, const Trace& trace, const ReplayResult& result) {
   const AnswerKind kind = kind_of_answers(result, arguments.variant.query);
-  if (kind == AnswerKind::yes_or_no) {
-    const std::size_t shape[] = {trace.frames, trace.pairs()};
+  const std::size_t shape[] = {trace.frames, trace.pairs()};
+  if (kind == AnswerKind::yes_or_no)
     write_npy<std::uint8_t>(arguments.out, shape, result.touching);
-  } else if (kind == AnswerKind::number) {
-    const std::size_t shape[] = {trace.frames, trace.pairs()};
+  else if (kind == AnswerKind::number)
     write_npy<double>(arguments.out, shape, result.distances);
-  } else {
-    const std::size_t shape[] = {result.contacts.size(), 5};
-    write_npy<std::uint32_t>(arguments.out, shape,
-                             {reinterpret_cast<const std::uint32_t*>(result.contacts.data()),
-                              result.contacts.size() * 5});
-  }
+  else
+    write_npy_rows<std::uint32_t, 5>(arguments.out, result.contacts);
 }
 
 void write_nearest(const Arguments& arguments, const Trace& trace, const ReplayResult& result) {
@@ -78,8 +71,7 @@ std::string chosen(const Arguments& arguments) {
 
 void check(const Arguments& arguments) {
   check(arguments.variant);
-  std::vector<NamedFile> read{{"--trace", arguments.trace}};
-  for (const auto& mesh : arguments.meshes) read.push_back({"--mesh", mesh});
+  auto read = files_read(arguments.trace, arguments.meshes);
   for (const auto& [option, file] : {std::pair("--pairs", arguments.pairs.pairs),
                                      {"--without", arguments.pairs.without},
                                      {"--groups", arguments.pairs.groups}})
@@ -124,11 +116,7 @@ void run(Arguments arguments) {
     arguments.variant = configured(arguments.variant, *arguments.configuration);
   check(arguments);
   require_threads(arguments.threads);
-  std::vector<TriangleMesh> meshes;
-  for (const auto& file : arguments.meshes) {
-    meshes.push_back(read_mesh(file, {.scale = arguments.scale}));
-    say_if_nothing_is_culled(meshes.back(), file);
-  }
+  const auto meshes = read_meshes(arguments.meshes, arguments.scale);
   Trace trace = read_trace(arguments.trace);
   trace.chosen = chosen_from(read_pair_arrays(arguments.pairs), trace.objects);
   require_finite_corners(trace, arguments.trace, meshes);
@@ -173,8 +161,7 @@ void add_replay(CLI::App& app) {
       "replay", "Answers a query for every pair of bodies in every frame of a trace");
   auto arguments = std::make_shared<Arguments>();
   add_mesh_options(*command, arguments->meshes, arguments->scale);
-  command->add_option("--trace", arguments->trace, "poses: .npy, float64, (frames, objects, 7)")
-      ->required();
+  command->add_option("--trace", arguments->trace, what_poses_are)->required();
   add_variant_options(
       *command, arguments->variant,
       {"volume", "strategy", "build", "leaf_size", "fit", "fan_out", "frame", "kernel"});

@@ -22,12 +22,27 @@
 namespace bvlab {
 namespace {
 
+/// Of all scenes: each has some of them.
 struct Arguments {
   std::vector<std::string> files, names;
-  std::size_t polygons = 500;
-  std::string out, meshes;
+  std::size_t polygons = 500, frames = 500;
+  std::string scene, from, file, out, meshes;
   double scale = 1;
 };
+
+/// Meshes apart from their names.
+struct Bodies {
+  std::vector<std::string> names;
+  std::vector<TriangleMesh> meshes;
+};
+Bodies bodies_of(std::vector<NamedMesh> named) {
+  Bodies bodies;
+  for (auto& [name, mesh] : named) {
+    bodies.names.push_back(std::move(name));
+    bodies.meshes.push_back(std::move(mesh));
+  }
+  return bodies;
+}
 
 template <class S>
 std::string default_meshes() {
@@ -63,25 +78,32 @@ std::vector<std::filesystem::path> places_of_meshes(const std::string& directory
 }
 
 /// Throws Unusable where a mesh would replace one that is read, or the trace.
-void require_places_of_meshes(const std::string& directory, const std::vector<std::string>& names,
-                              std::span<const NamedFile> read, const NamedFile& trace) {
+void require_places_of_meshes(const Arguments& arguments, const Bodies& bodies,
+                              std::span<const NamedFile> read) {
   // In a folder that is still to be made there is nothing to replace.
   std::error_code error;
-  if (!std::filesystem::exists(directory, error)) return;
-  std::vector<NamedFile> written{trace};
-  for (const auto& place : places_of_meshes(directory, names))
+  if (!std::filesystem::exists(arguments.meshes, error)) return;
+  std::vector<NamedFile> written{{"--out", arguments.out}};
+  for (const auto& place : places_of_meshes(arguments.meshes, bodies.names))
     written.push_back({"--meshes", place});
   require_places(read, written);
 }
 
-void write_meshes(const std::string& directory, const std::vector<std::string>& names,
-                  const std::vector<TriangleMesh>& meshes) {
-  if (directory.empty()) return;
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) throw Unusable(directory, "cannot be made: " + error.message());
-  const auto places = places_of_meshes(directory, names);
-  for (std::size_t i = 0; i < meshes.size(); ++i) write_off(places[i], meshes[i]);
+void write(const Arguments& arguments, const Bodies& bodies, const Array<double>& trace) {
+  if (const std::string& directory = arguments.meshes; !directory.empty()) {
+    std::error_code error;
+    std::filesystem::create_directories(directory, error);
+    if (error) throw Unusable(directory, "cannot be made: " + error.message());
+    const auto places = places_of_meshes(directory, bodies.names);
+    for (std::size_t i = 0; i < places.size(); ++i) write_off(places[i], bodies.meshes[i]);
+  }
+  write_npy<double>(arguments.out, trace.shape, trace.data);
+}
+
+/// Throws Unusable where the trace would replace what is read, or cannot be written.
+void require_out(const Arguments& arguments, std::span<const NamedFile> read) {
+  const NamedFile written[] = {{"--out", arguments.out}};
+  require_places(read, written);
 }
 
 template <class S>
@@ -89,23 +111,15 @@ void run(const S& scene, const Arguments& arguments) {
   std::vector<NamedFile> read;
   for (const auto& mesh : arguments.files) read.push_back({"--mesh", mesh});
   if constexpr (requires { scene.trace; }) read.push_back({"--trace", scene.trace});
-  const NamedFile written[] = {{"--out", arguments.out}};
-  require_places(read, written);
+  require_out(arguments, read);
   if constexpr (requires { scene.check(); }) scene.check();
-  std::vector<std::string> names;
-  std::vector<TriangleMesh> meshes;
+  const Bodies bodies = bodies_of(meshes_of(scene, arguments));
+  require_places_of_meshes(arguments, bodies, read);
   std::vector<Extent> extents;
-  for (auto& [name, mesh] : meshes_of(scene, arguments)) {
-    extents.push_back(extent_of(mesh));
-    names.push_back(std::move(name));
-    meshes.push_back(std::move(mesh));
-  }
-  require_places_of_meshes(arguments.meshes, names, read, written[0]);
+  for (const auto& mesh : bodies.meshes) extents.push_back(extent_of(mesh));
   // Trees are made for scenes that ask.
-  const auto touches = HasOwnMeshes<S> ? TouchesAny() : touches_any(meshes, scene.objects);
-  const auto trace = scene.generate(extents, touches);
-  write_meshes(arguments.meshes, names, meshes);
-  write_npy<double>(arguments.out, trace.shape, trace.data);
+  const auto touches = HasOwnMeshes<S> ? TouchesAny() : touches_any(bodies.meshes, scene.objects);
+  write(arguments, bodies, scene.generate(extents, touches));
 }
 
 /// An option of a scene as one of the command line.
@@ -139,19 +153,22 @@ struct Adding {
   }
 };
 
+void add_out_options(CLI::App& command, Arguments& arguments, const std::string& what_is_out,
+                     const std::string& whose) {
+  command.add_option("--out", arguments.out, what_is_out)->required();
+  command.add_option("--meshes", arguments.meshes,
+                     "directory to write the " + whose + "meshes to, as OFF");
+}
+
 template <class S>
 void add(CLI::App& parent) {
   CLI::App* command = parent.add_subcommand(std::string(S::name), std::string(S::description));
   auto scene = std::make_shared<S>();
   auto arguments = std::make_shared<Arguments>();
   scene->visit_options(Adding{*command});
-  command->add_option("--out", arguments->out, "the trace: .npy, float64, (frames, objects, 7)")
-      ->required();
-  command->add_option("--meshes", arguments->meshes, "directory to write the meshes to, as OFF");
-  if constexpr (HasOwnMeshes<S>) {
-    command->callback([scene, arguments] { run(*scene, *arguments); });
-    return;
-  }
+  add_out_options(*command, *arguments, "the trace: .npy, float64, (frames, objects, 7)", "");
+  command->callback([scene, arguments] { run(*scene, *arguments); });
+  if constexpr (HasOwnMeshes<S>) return;
   command->add_option("--mesh", arguments->files, "mesh file; object i is mesh i mod their number");
   add_scale_option(*command, arguments->scale);
   command->add_option("--shape", arguments->names,
@@ -164,17 +181,10 @@ void add(CLI::App& parent) {
   command->footer(
       "A LENGTH is a number, or one followed by `leaf` (radii of the smallest leaf "
       "sphere) or `body` (radii of the largest mesh).");
-  command->callback([scene, arguments] { run(*scene, *arguments); });
 }
 
-struct PublicArguments {
-  std::string scene, from, out, meshes;
-  std::size_t frames = 500;
-};
-
-void run_public(const PublicArguments& arguments) {
-  const NamedFile written[] = {{"--out", arguments.out}};
-  require_places({}, written);
+void run_public(const Arguments& arguments) {
+  require_out(arguments, {});
   require_public_scene(arguments.scene);
   if (is_public_box_scene(arguments.scene)) {
     const auto boxes = public_boxes(arguments.scene, arguments.from, arguments.frames);
@@ -184,21 +194,15 @@ void run_public(const PublicArguments& arguments) {
     return touches_any(meshes, meshes.size());
   };
   auto motion = public_motion(arguments.scene, arguments.from, {arguments.frames, touches});
-  std::vector<std::string> names;
-  std::vector<TriangleMesh> meshes;
-  for (auto& [name, mesh] : motion.meshes) {
-    names.push_back(std::move(name));
-    meshes.push_back(std::move(mesh));
-  }
-  require_places_of_meshes(arguments.meshes, names, {}, written[0]);
-  write_meshes(arguments.meshes, names, meshes);
-  write_npy<double>(arguments.out, motion.trace.shape, motion.trace.data);
+  const Bodies bodies = bodies_of(std::move(motion.meshes));
+  require_places_of_meshes(arguments, bodies, {});
+  write(arguments, bodies, motion.trace);
 }
 
 void add_public(CLI::App& parent) {
   CLI::App* command = parent.add_subcommand(
       "public", "public:NAME: meshes and motions of public repositories, at a fixed commit");
-  auto arguments = std::make_shared<PublicArguments>();
+  auto arguments = std::make_shared<Arguments>();
   command->add_option("name", arguments->scene, "see `bvlab list scenes`")->required();
   command->add_option(
       "--from", arguments->from,
@@ -209,16 +213,9 @@ void add_public(CLI::App& parent) {
                    "number of frames; for boxes, the equal parts of a simulation step")
       ->check(whole_number())
       ->capture_default_str();
-  command->add_option("--out", arguments->out, "the trace of bodies or of boxes, as .npy")
-      ->required();
-  command->add_option("--meshes", arguments->meshes, "directory to write the meshes to, as OFF");
+  add_out_options(*command, *arguments, "the trace of bodies or of boxes, as .npy", "");
   command->callback([arguments] { run_public(*arguments); });
 }
-
-struct FileArguments {
-  std::string file, out, meshes;
-  double scale = 1;
-};
 
 /// A part's name as that of a file: other characters than these could lead elsewhere.
 std::string file_name_of(std::string name) {
@@ -228,36 +225,30 @@ std::string file_name_of(std::string name) {
 }
 
 /// Every part is a body with a mesh of its own; their poses are the one frame of the trace.
-void run_file(const FileArguments& arguments) {
+void run_file(const Arguments& arguments) {
   const NamedFile read[] = {{"file", arguments.file}};
-  const NamedFile written[] = {{"--out", arguments.out}};
-  require_places(read, written);
+  require_out(arguments, read);
   const auto parts = read_parts(arguments.file, {.scale = arguments.scale});
-  std::vector<std::string> names;
-  std::vector<TriangleMesh> meshes;
+  Bodies bodies;
   Array<double> trace{{1, parts.size(), 7}, {}};
   for (const MeshPart& part : parts) {
-    names.push_back(file_name_of(part.name));
-    meshes.push_back(*part.mesh);
+    bodies.names.push_back(file_name_of(part.name));
+    bodies.meshes.push_back(*part.mesh);
     const Eigen::Quaterniond q(part.pose.rotation);
     const Vec3<double>& t = part.pose.translation;
     trace.data.insert(trace.data.end(), {t[0], t[1], t[2], q.w(), q.x(), q.y(), q.z()});
   }
-  require_places_of_meshes(arguments.meshes, names, read, written[0]);
-  write_meshes(arguments.meshes, names, meshes);
-  write_npy<double>(arguments.out, trace.shape, trace.data);
+  require_places_of_meshes(arguments, bodies, read);
+  write(arguments, bodies, trace);
 }
 
 void add_file(CLI::App& parent) {
   CLI::App* command = parent.add_subcommand(
       "file", "the parts of a file (nodes of a DAE, glTF or 3MF, objects of an OBJ) as they stand");
-  auto arguments = std::make_shared<FileArguments>();
+  auto arguments = std::make_shared<Arguments>();
   command->add_option("file", arguments->file, "a mesh file")->required();
   add_scale_option(*command, arguments->scale);
-  command->add_option("--out", arguments->out, "the trace: .npy, float64, (1, parts, 7)")
-      ->required();
-  command->add_option("--meshes", arguments->meshes,
-                      "directory to write the parts' meshes to, as OFF");
+  add_out_options(*command, *arguments, "the trace: .npy, float64, (1, parts, 7)", "parts' ");
   command->callback([arguments] { run_file(*arguments); });
 }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "experiments/commands/commands.hpp"
+#include "experiments/files/memory.hpp"
 #include "experiments/files/npy.hpp"
-#include "experiments/files/peak_bytes.hpp"
 #include "experiments/files/totals.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/triangle_pairs.hpp"

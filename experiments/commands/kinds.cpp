@@ -4,6 +4,7 @@
 #include <string>
 
 #include "experiments/definitions/definition.hpp"
+#include "experiments/files/joined.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/peers.hpp"
 #include "experiments/replay/box_methods.hpp"
@@ -18,34 +19,35 @@
 namespace bvlab {
 namespace {
 
+template <class Entry>
+Named named(const Entry& entry) {
+  return {std::string(entry.name), std::string(entry.description)};
+}
+template <class Entry>
+Named named(const Entry* entry) {
+  return named(*entry);
+}
+
 template <class List>
 std::vector<Named> entries() {
   std::vector<Named> all;
-  List::for_each([&](auto type) {
-    using Type = typename decltype(type)::type;
+  List::for_each([&]<class Type>(std::type_identity<Type>) {
     all.push_back({std::string(Type::name), std::string(Type::description)});
   });
   return all;
 }
 
-template <class Range>
-std::vector<Named> entries_of(const Range& range) {
+/// Of a function that returns a range.
+template <auto range>
+std::vector<Named> entries_of() {
   std::vector<Named> all;
-  for (const auto& each : range)
-    all.push_back({std::string(each.name), std::string(each.description)});
-  return all;
-}
-
-std::vector<Named> methods() {
-  std::vector<Named> all;
-  for (const auto* method : method_entries())
-    all.push_back({std::string(method->name), std::string(method->description)});
+  for (const auto& each : range()) all.push_back(named(each));
   return all;
 }
 
 std::vector<Named> all_scenes() {
   std::vector<Named> all = entries<Scenes>();
-  for (auto& each : entries_of(public_scenes())) all.push_back(std::move(each));
+  for (const auto& each : public_scenes()) all.push_back(named(each));
   return all;
 }
 
@@ -54,13 +56,6 @@ std::vector<Named> all_parameters() {
   for (const auto& each : parameters())
     all.push_back(
         {each.name, each.what + (each.fallback.empty() ? "" : " [" + each.fallback + "]")});
-  return all;
-}
-
-std::vector<Named> studies() {
-  std::vector<Named> all;
-  for (const StudyKind* kind : study_kinds())
-    all.push_back({std::string(kind->name), std::string(kind->description)});
   return all;
 }
 
@@ -79,15 +74,15 @@ constexpr Kind all_kinds[] = {
     {"configurations", configurations},
     {"strategies", strategies},
     {"queries", queries},
-    {"methods", methods},
+    {"methods", entries_of<method_entries>},
     {"scenes", all_scenes},
     {"precisions", entries<Precisions>},
     {"builds", entries<Builds>},
     {"parameters", all_parameters},
-    {"studies", studies},
+    {"studies", entries_of<study_kinds>},
     {"study-parameters", study_parameters},
-    {"meshes", [] { return entries_of(formula_meshes()); }},
-    {"peers", [] { return entries_of(peers()); }},
+    {"meshes", entries_of<formula_meshes>},
+    {"peers", entries_of<peers>},
 };
 
 }  // namespace
@@ -95,12 +90,10 @@ constexpr Kind all_kinds[] = {
 std::span<const Kind> kinds() { return all_kinds; }
 
 const Kind& kind_of(std::string_view name) {
-  std::string names;
-  for (const Kind& kind : all_kinds) {
+  for (const Kind& kind : all_kinds)
     if (kind.name == name) return kind;
-    names += (names.empty() ? "" : ", ") + std::string(kind.name);
-  }
-  throw Unusable("list " + std::string(name) + ": unknown; available: " + names);
+  throw Unusable("list " + std::string(name) +
+                 ": unknown; available: " + joined(all_kinds, &Kind::name));
 }
 
 }  // namespace bvlab

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "experiments/commands/commands.hpp"
+#include "experiments/files/joined.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/recorder/record.hpp"
 #include "experiments/scenes/public/public_scenes.hpp"
@@ -29,11 +30,9 @@ int complain(int exit, const std::string& what) {
 /// What the parser has to say, and the names of the commands where none of them was named.
 std::string shown(const CLI::App& app, const CLI::ParseError& error, const std::string& word) {
   if (!app.get_subcommands().empty()) return error.what();
-  std::string names;
-  for (const auto* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    names += (names.empty() ? "" : ", ") + command->get_name();
+  const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
   return (word.empty() ? "a command is needed" : "no command '" + word + "'") +
-         "; available: " + names;
+         "; available: " + joined(commands, [](const CLI::App* each) { return each->get_name(); });
 }
 
 /// Standard output may be a full disk.

@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "experiments/commands/number.hpp"
+#include "experiments/files/whole_file.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/variant_parameters.hpp"
+#include "experiments/scenes/read_mesh.hpp"
 
 namespace bvlab {
 
@@ -34,6 +36,26 @@ inline void add_mesh_options(CLI::App& command, std::vector<std::string>& files,
                   "scene's nodes are applied, its unit and axes are not")
       ->required();
   add_scale_option(command, scale);
+}
+
+inline constexpr const char* what_poses_are = "poses: .npy, float64, (frames, objects, 7)";
+
+/// The files that such a command reads, with their options.
+inline std::vector<NamedFile> files_read(const std::string& trace,
+                                         const std::vector<std::string>& meshes) {
+  std::vector<NamedFile> files{{"--trace", trace}};
+  for (const auto& mesh : meshes) files.push_back({"--mesh", mesh});
+  return files;
+}
+
+/// The meshes of these files. Says where their size is such that nothing is culled.
+inline std::vector<TriangleMesh> read_meshes(const std::vector<std::string>& files, double scale) {
+  std::vector<TriangleMesh> meshes;
+  for (const auto& file : files) {
+    meshes.push_back(read_mesh(file, {.scale = scale}));
+    say_if_nothing_is_culled(meshes.back(), file);
+  }
+  return meshes;
 }
 
 /// The option of a parameter: "--leaf-size" of "leaf_size".

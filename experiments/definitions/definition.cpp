@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "experiments/definitions/toml.hpp"
-#include "experiments/files/numbers.hpp"
+#include "experiments/files/joined.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/files/whole_file.hpp"
 #include "experiments/replay/variant_parameters.hpp"
@@ -85,22 +85,22 @@ void check_characters(std::string_view text, const std::string& name) {
 /// So that <name>.disagreements.csv is a name for a file.
 constexpr std::size_t longest_name = 200;
 
-/// Reads one definition; every complaint names the file and the line.
-class Reader {
+/// Reads one definition.
+class Reader : TomlReader {
  public:
-  explicit Reader(const std::string& name) : name_(name) {}
+  using TomlReader::TomlReader;
 
   Definition read(const std::string& text) {
-    check_text(text, name_);
+    check_text(text, file_);
     toml::table table;
     try {
-      table = toml::parse(text, name_);
+      table = toml::parse(text, file_);
     } catch (const toml::parse_error& error) {
       fail(error.source(), std::string(error.description()));
     }
     Definition definition;
     definition.text = text;
-    definition.file = name_;
+    definition.file = file_;
     for (auto&& [key, node] : table) {
       if (key == "name")
         definition.name = name(node, "name");
@@ -121,26 +121,21 @@ class Reader {
       else
         fail(key.source(), "unknown key '" + std::string(key.str()) + "'");
     }
-    if (definition.name.empty() || definition.name.find('/') != std::string::npos)
-      throw Unusable(name_, "needs a name (without '/')");
+    require_name(definition.name);
     if (definition.name.size() > longest_name)
-      throw Unusable(name_, "the name is longer than " + std::to_string(longest_name) + " letters");
+      throw Unusable(file_, "the name is longer than " + std::to_string(longest_name) + " letters");
     check_size(definition.axes);
     check_series(definition);
     return definition;
   }
 
  private:
-  [[noreturn]] void fail(const toml::source_region& where, const std::string& what) const {
-    throw Unusable(name_, "line " + std::to_string(where.begin.line) + ": " + what);
-  }
-
   void check_size(const std::vector<Definition::Axis>& axes) const {
     std::size_t cells = 1;
     for (const auto& axis : axes) {
       cells *= axis.values.size();
       if (cells > most_cells)
-        throw Unusable(name_, "axis '" + axis.name + "': the axes up to this one multiply into " +
+        throw Unusable(file_, "axis '" + axis.name + "': the axes up to this one multiply into " +
                                   std::to_string(cells) + " cells; " + std::to_string(most_cells) +
                                   " are the most");
     }
@@ -150,16 +145,12 @@ class Reader {
     for (const auto& [key, value] : definition.series) check_series(key, definition);
   }
   void check_series(const std::string& key, const Definition& definition) const {
-    std::string names;
-    bool known = false;
-    const auto offer = [&](const std::string& name) {
-      known = known || name == key;
-      names += (names.empty() ? "" : ", ") + name;
-    };
+    std::vector<std::string> names;
     for (const auto& axis : definition.axes)
-      if (!axis.is_parameter) offer(axis.name);
-    for (const auto& [name, ignored] : default_parameters()) offer(name);
-    if (!known) throw Unusable(name_, "series: unknown '" + key + "'; available: " + names);
+      if (!axis.is_parameter) names.push_back(axis.name);
+    for (const auto& [name, ignored] : default_parameters()) names.push_back(name);
+    if (std::find(names.begin(), names.end(), key) == names.end())
+      throw Unusable(file_, "series: unknown '" + key + "'; available: " + joined(names));
   }
 
   std::string string(const toml::node& node, const std::string& key) const {
@@ -175,24 +166,16 @@ class Reader {
   }
 
   std::set<std::string> measures(const toml::node& node) const {
+    static const std::set<std::string> all{"best rebuilds", "coherence", "frames", "predictions"};
     const auto* list = node.as_array();
     if (!list) fail(node.source(), "measures must be a list");
     std::set<std::string> result;
     for (auto&& each : *list) {
       const auto name = each.value_exact<std::string>();
-      if (!name || (*name != "coherence" && *name != "best rebuilds" && *name != "frames" &&
-                    *name != "predictions"))
-        fail(each.source(), "measures: there are best rebuilds, coherence, frames, predictions");
+      if (!name || !all.contains(*name)) fail(each.source(), "measures: there are " + joined(all));
       result.insert(*name);
     }
     return result;
-  }
-
-  unsigned repetitions(const toml::node& node) const {
-    const auto value = node.value_exact<std::int64_t>();
-    if (!value || *value < 1 || *value > 1000)
-      fail(node.source(), "repetitions must be a whole number from 1 to 1000");
-    return static_cast<unsigned>(*value);
   }
 
   /// Of meshes also a list, which is written with commas between; `none` is the peer without a
@@ -215,9 +198,7 @@ class Reader {
   }
 
   std::string scalar(const toml::node& node, const std::string& key) const {
-    if (const auto value = node.value_exact<std::string>()) return *value;
-    if (const auto value = node.value_exact<std::int64_t>()) return std::to_string(*value);
-    if (const auto value = node.value_exact<double>()) return text_of(*value);
+    if (auto value = TomlReader::scalar(node)) return *std::move(value);
     fail(node.source(), "'" + key + "' must be a number or a string");
   }
 
@@ -228,17 +209,9 @@ class Reader {
   }
 
   void known(const std::string& parameter, const toml::source_region& where) const {
-    std::string names;
-    for (const auto& [name, value] : default_parameters()) {
-      if (name == parameter) return;
-      names += (names.empty() ? "" : ", ") + name;
-    }
-    fail(where, "unknown parameter '" + parameter + "'; available: " + names);
-  }
-
-  const toml::table& table(const toml::node& node, const char* what) const {
-    if (const auto* table = node.as_table()) return *table;
-    fail(node.source(), std::string(what) + " must be a table");
+    if (!is_parameter(parameter))
+      fail(where, "unknown parameter '" + parameter +
+                      "'; available: " + joined(parameters(), &Parameter::name));
   }
 
   void read_series(const toml::node& node, Definition& definition) const {
@@ -337,8 +310,6 @@ class Reader {
     }
     return axis;
   }
-
-  const std::string& name_;
 };
 
 /// Stands for a value until all axes have set theirs.
@@ -383,27 +354,22 @@ const std::vector<Parameter>& parameters() {
         {"scene", std::string(Scenes::at<0>::name), "how bodies move; see `bvlab list scenes`"},
         {"mesh", "bunny",
          "meshes: NAME[:POLYGONS[:SCALE]] or FILE[:SCALE], a list or separated by commas; object i "
-         "has "
-         "mesh i mod their number"},
+         "has mesh i mod their number"},
         {"polygons", "500", "triangles of each mesh given by name; of a file's, what it has"}};
-    Scenes::for_each(
-        [&]<class S>(std::type_identity<S>) { S{}.visit_options(AddingParameter{all}); });
-    for (const auto& each : std::initializer_list<Parameter>{
-             {"asked_pairs", "",
-              "file of the pairs asked about: `.npy`, uint32 or int64, shape (k, 2)"},
-             {"without_pairs", "", "file of pairs left out, as `asked_pairs`"},
-             {"groups", "",
-              "file of the group of each body: `.npy`, shape (objects,); pairs within one are left "
-              "out"}})
-      all.push_back(each);
+    const AddingParameter add{all};
+    Scenes::for_each([&]<class S>(std::type_identity<S>) { S{}.visit_options(add); });
+    add.add("asked_pairs", "",
+            "file of the pairs asked about: `.npy`, uint32 or int64, shape (k, 2)");
+    add.add("without_pairs", "", "file of pairs left out, as `asked_pairs`");
+    add.add("groups", "",
+            "file of the group of each body: `.npy`, shape (objects,); pairs within one are left "
+            "out");
     visit_parameters(Variant{}, [&](std::string_view name, const auto& value, std::string_view what,
-                                    SetBy) { AddingParameter{all}(name, value, what); });
-    for (const auto& each : std::initializer_list<Parameter>{
-             {"configuration", "",
-              "sets volume, strategy, fan_out, frame, kernel, build, leaf_size and fit, which it "
-              "excludes; see `bvlab list`"},
-             {"peer", "", "another library in place of ours, or none; see `bvlab list peers`"}})
-      all.push_back(each);
+                                    SetBy) { add(name, value, what); });
+    add.add("configuration", "",
+            "sets volume, strategy, fan_out, frame, kernel, build, leaf_size and fit, which it "
+            "excludes; see `bvlab list`");
+    add.add("peer", "", "another library in place of ours, or none; see `bvlab list peers`");
     return all;
   }();
   return all;
@@ -416,6 +382,16 @@ const Settings& default_parameters() {
     return settings;
   }();
   return defaults;
+}
+
+void name_file(const std::string& file, const std::function<void()>& check) {
+  try {
+    check();
+  } catch (const Unusable& fault) {
+    const std::string what = fault.what();
+    if (what.starts_with(file)) throw;
+    throw Unusable(file, what);
+  }
 }
 
 void check_text(const std::string& text, const std::string& name) {

@@ -34,6 +34,7 @@
 // clang-format on
 #pragma once
 
+#include <functional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -64,9 +65,9 @@ struct Definition {
   bool has_series = false;
   std::size_t series_until = static_cast<std::size_t>(-1);  ///< frames of each
   std::set<std::string> measures;                           ///< of every trace, for every volume
-  bool has_figures = false;  ///< see figures_checked.hpp
-  std::string text;  ///< the file as it was
-  std::string file;  ///< for messages
+  bool has_figures = false;                                 ///< see figures_checked.hpp
+  std::string text;                                         ///< the file as it was
+  std::string file;                                         ///< for messages
 };
 
 /// One point of the product: every parameter, and the labels of the axes that are no parameters.
@@ -93,6 +94,10 @@ const Settings& default_parameters();
 /// No experiment has more; what multiplies into more is a slip of the pen, and is refused before
 /// memory runs out.
 inline constexpr std::size_t most_cells = 100000;
+
+/// Calls `check`. What it refuses without naming the file is refused with the file's name: names
+/// are looked up by those who do not know it.
+void name_file(const std::string& file, const std::function<void()>& check);
 
 /// Refuses with Unusable what the parser of TOML does not bear: too many dots, letters beyond ASCII
 /// outside of strings.

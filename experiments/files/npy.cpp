@@ -2,9 +2,8 @@
 #include "experiments/files/npy.hpp"
 
 #include <bit>
-#include <cctype>
-#include <charconv>
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "experiments/files/unusable.hpp"
 
@@ -42,89 +41,47 @@ std::string shown(std::span<const std::size_t> shape) {
   return text + (shape.size() == 1 ? ",)" : ")");
 }
 
-/// Reads the header's dictionary: {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }
-class Dictionary {
- public:
-  Dictionary(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
-
-  Header parse() {
-    Header header;
-    bool seen[3] = {};
-    expect('{');
-    while (!accept('}')) {
-      const std::string key = quoted();
-      expect(':');
-      if (key == "descr")
-        header.type = quoted(), seen[0] = true;
-      else if (key == "fortran_order")
-        header.fortran_order = boolean(), seen[1] = true;
-      else if (key == "shape")
-        header.shape = tuple(), seen[2] = true;
-      else
-        malformed();
-      if (!accept(',')) {
-        expect('}');
-        break;
-      }
+/// The header's dictionary, {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }, as JSON:
+/// other quotes and brackets, words of truth in lower case, and no comma before a bracket.
+std::string as_json(std::string_view text) {
+  std::string json;
+  char quote = '\0';
+  for (const char c : text) {
+    if (quote != '\0' && c != quote) {
+      json += c == '"' || c == '\\' ? std::string{'\\', c} : std::string(1, c);
+    } else if (c == '\'' || c == '"') {
+      quote = quote == '\0' ? c : '\0';
+      json += '"';
+    } else if (c == '}' || c == ')') {
+      const std::size_t last = json.find_last_not_of(" \t\r\n");
+      const bool has_comma = last != json.npos && last > 0 && json[last] == ',';
+      const auto before = has_comma ? json.find_last_not_of(" \t\r\n", last - 1) : json.npos;
+      if (before != json.npos && !std::strchr(",[{", json[before])) json.erase(last);
+      json += c == ')' ? ']' : '}';
+      if (c == '}') break;  // what follows says nothing
+    } else if (c == '[' || c == ']') {
+      json += '?';
+    } else {
+      // What is JSON's word already is none of Python's.
+      const bool begins_truth = c == 'T' || c == 'F' || c == 't' || c == 'f';
+      json += c == '(' ? '[' : begins_truth ? static_cast<char>(c ^ ' ') : c;
     }
-    if (!(seen[0] && seen[1] && seen[2])) malformed();
-    return header;
   }
+  return json;
+}
 
- private:
-  [[noreturn]] void malformed() const { throw Unusable(name_, "malformed .npy header"); }
-  void skip() {
-    while (!rest_.empty() && std::isspace(static_cast<unsigned char>(rest_.front())))
-      rest_.remove_prefix(1);
-  }
-  bool accept(char c) {
-    skip();
-    if (rest_.empty() || rest_.front() != c) return false;
-    rest_.remove_prefix(1);
-    return true;
-  }
-  void expect(char c) {
-    if (!accept(c)) malformed();
-  }
-  std::string quoted() {
-    skip();
-    if (rest_.empty() || (rest_.front() != '\'' && rest_.front() != '"')) malformed();
-    const std::size_t end = rest_.find(rest_.front(), 1);
-    if (end == std::string_view::npos) malformed();
-    std::string text(rest_.substr(1, end - 1));
-    rest_.remove_prefix(end + 1);
-    return text;
-  }
-  bool boolean() {
-    skip();
-    for (const auto& [word, value] : {std::pair("True", true), std::pair("False", false)})
-      if (rest_.starts_with(word)) {
-        rest_.remove_prefix(std::strlen(word));
-        return value;
-      }
-    malformed();
-  }
-  std::vector<std::size_t> tuple() {
-    std::vector<std::size_t> shape;
-    expect('(');
-    while (!accept(')')) {
-      skip();
-      std::size_t length = 0;
-      const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), length);
-      if (error != std::errc{} || shape.size() == 32) malformed();
-      rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
-      shape.push_back(length);
-      if (!accept(',')) {
-        expect(')');
-        break;
-      }
-    }
-    return shape;
-  }
-
-  std::string_view rest_;
-  const std::string& name_;
-};
+Header parse_dictionary(std::string_view text, const std::string& name) {
+  const auto json = nlohmann::json::parse(as_json(text), nullptr, false);
+  const auto has = [&](const char* key) { return json.is_object() && json.contains(key); };
+  bool is_whole = json.size() == 3 && has("descr") && has("fortran_order") && has("shape") &&
+                  json["descr"].is_string() && json["fortran_order"].is_boolean() &&
+                  json["shape"].is_array() && json["shape"].size() <= 32;
+  if (is_whole)
+    for (const auto& length : json["shape"]) is_whole = is_whole && length.is_number_unsigned();
+  if (!is_whole) throw Unusable(name, "malformed .npy header");
+  return {json["descr"].get<std::string>(), json["fortran_order"].get<bool>(),
+          json["shape"].get<std::vector<std::size_t>>(), 0};
+}
 
 Header parse_header(std::string_view bytes, const std::string& name) {
   if (bytes.size() < 10 || bytes.substr(0, 6) != "\x93NUMPY")
@@ -138,7 +95,7 @@ Header parse_header(std::string_view bytes, const std::string& name) {
   std::size_t length = byte(8) | byte(9) << 8;
   if (version > 1) length |= std::size_t{byte(10)} << 16 | std::size_t{byte(11)} << 24;
   if (bytes.size() - start < length) throw Unusable(name, "truncated .npy header");
-  Header header = Dictionary(bytes.substr(start, length), name).parse();
+  Header header = parse_dictionary(bytes.substr(start, length), name);
   header.data_offset = start + length;
   return header;
 }

@@ -2,6 +2,7 @@
 /// NumPy's `.npy` files (format versions 1 to 3), C order, little endian.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -53,6 +54,13 @@ void write_npy(const std::filesystem::path& path, std::span<const std::size_t> s
   const std::string_view parts[] = {
       header, {reinterpret_cast<const char*>(data.data()), data.size_bytes()}};
   write_whole(path, parts);
+}
+
+/// The same of rows of N numbers.
+template <class T, std::size_t N>
+void write_npy_rows(const std::filesystem::path& path, const std::vector<std::array<T, N>>& rows) {
+  const std::size_t shape[] = {rows.size(), N};
+  write_npy<T>(path, shape, {reinterpret_cast<const T*>(rows.data()), rows.size() * N});
 }
 
 /// The same for an array of records; `fields` is their type as NumPy writes it, such as

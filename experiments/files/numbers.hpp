@@ -3,6 +3,7 @@
 #pragma once
 
 #include <charconv>
+#include <concepts>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,12 @@ inline std::string text_of(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
+template <std::integral T>
+std::string text_of(T value) {
+  return std::to_string(value);
+}
+/// Fields of a table may be texts, too.
+inline std::string text_of(std::string_view text) { return std::string(text); }
 
 /// The number that the whole text is; nothing where it is none, or none that T holds.
 template <class T>

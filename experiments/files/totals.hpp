@@ -18,10 +18,13 @@ class Totals {
   Totals& operator=(Totals&&) noexcept;
   ~Totals();
 
-  /// Numbers, text, nothing (null), or an object of its own.
+  /// Numbers, text, or an object of its own; nothing, or an optional without a value (null).
   template <class T>
   Totals& set(const char* key, const T& value) {
-    if constexpr (std::is_same_v<T, Totals>)
+    if constexpr (requires { value.has_value(); }) {
+      if (value) return set(key, *value);
+      set_null(key);
+    } else if constexpr (std::is_same_v<T, Totals>)
       set_object(key, value);
     else if constexpr (std::is_same_v<T, std::nullptr_t>)
       set_null(key);

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "experiments/closest_features/closest_features.hpp"
+#include "experiments/files/joined.hpp"
 #include "experiments/peers/collected.hpp"
 #include "experiments/peers/found.hpp"
 
@@ -31,6 +32,11 @@ std::span<const Peer> closest_features_peers() {
 
 }  // namespace
 
+bool Peer::answers(std::string_view query) const {
+  const std::string padded = " " + std::string(queries) + " ";
+  return padded.find(" " + std::string(query) + " ") != std::string::npos;
+}
+
 std::span<const Peer> peers() {
   static const auto all = collected<Peer>({BVLAB_MESH_PEERS(BVLAB_LISTED) closest_features_peers});
   return all;
@@ -38,11 +44,7 @@ std::span<const Peer> peers() {
 
 std::string_view absent_peer_libraries() { return BVLAB_ABSENT_LIBRARIES; }
 
-std::string peer_names() {
-  std::string names;
-  for (const auto& each : peers()) names += (names.empty() ? "" : ", ") + std::string(each.name);
-  return names;
-}
+std::string peer_names() { return joined(peers(), &Peer::name); }
 
 bool is_absent_peer(std::string_view name) {
   static constexpr std::string_view absent[] = {BVLAB_ABSENT_PEERS};

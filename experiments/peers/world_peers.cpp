@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "experiments/files/joined.hpp"
 #include "experiments/peers/collected.hpp"
 #include "experiments/peers/found.hpp"
 
@@ -34,10 +35,6 @@ bool is_world_peer(std::string_view name) {
                      [&](const WorldPeer& each) { return each.name == name; });
 }
 
-std::string world_peer_names() {
-  std::string names;
-  for (const auto& each : list()) names += (names.empty() ? "" : ", ") + std::string(each.name);
-  return names;
-}
+std::string world_peer_names() { return joined(list(), &WorldPeer::name); }
 
 }  // namespace bvlab

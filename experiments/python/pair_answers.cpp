@@ -2,15 +2,21 @@
 #include "experiments/python/pair_answers.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
+#include <unordered_map>
 
 #include "experiments/replay/any_bodies.hpp"
+#include "experiments/replay/box_methods.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/triangle_test.hpp"
+#include "hierarchies/geometry/scalar.hpp"
 #include "traversal/bodies.hpp"
 #include "traversal/counters.hpp"
 #include "traversal/queries/contacts.hpp"
 #include "traversal/queries/distance.hpp"
+#include "traversal/rotated_mesh_box.hpp"
 
 namespace bvlab {
 namespace {
@@ -47,6 +53,19 @@ class AskedBodies {
   std::optional<Vec3<double>> origin_;
 };
 
+/// Farther out by at least `reach`, or everywhere.
+Box<float> larger(Box<float> box, double reach) {
+  constexpr float most = std::numeric_limits<float>::max();
+  for (int axis = 0; axis < 3; ++axis) {
+    // One rounding of the difference, which the step to the next float makes good.
+    box.lo[axis] =
+        std::max(rounded_down<float>(std::nextafter(box.lo[axis] - reach, -HUGE_VAL)), -most);
+    box.hi[axis] =
+        std::min(rounded_up<float>(std::nextafter(box.hi[axis] + reach, HUGE_VAL)), most);
+  }
+  return box;
+}
+
 /// A variant whose loops are found by the volume's name: the answers are the same whatever is
 /// asked.
 Variant gathered(Variant variant) {
@@ -63,6 +82,10 @@ struct PairAnswers::Engine {
   Engine(std::span<const TriangleMesh> meshes, std::size_t objects, const Variant& variant)
       : meshes(meshes), objects(objects), variant(gathered(variant)) {}
 
+  const TriangleMesh& mesh(std::size_t object) const {
+    return object < objects ? meshes[object % meshes.size()] : *added[object - objects];
+  }
+
   template <class Query>
   AskedBodies<Query>& of(std::optional<AskedBodies<Query>>& bodies) {
     if (!hierarchies) {
@@ -73,7 +96,7 @@ struct PairAnswers::Engine {
     }
     if (!bodies) bodies.emplace(*of_first, variant.volume, objects, frame_of(variant));
     while (bodies->size() < objects + added.size())
-      bodies->add(hierarchies->of(*added[bodies->size() - objects]));
+      bodies->add(hierarchies->of(mesh(bodies->size())));
     return *bodies;
   }
 
@@ -85,6 +108,12 @@ struct PairAnswers::Engine {
   const AnyHierarchies* of_first = nullptr;  // those of `meshes`
   std::optional<AskedBodies<Contacts>> for_contacts;
   std::optional<AskedBodies<Distance>> for_distances;
+  // The boxes of meshes, each once, and which of them each object has.
+  std::vector<RotatedMeshBox> boxes;
+  std::unordered_map<const TriangleMesh*, std::size_t> known_boxes;
+  std::vector<std::size_t> box_of;
+  const std::unique_ptr<AnyMethod<float>> method =
+      make_method<float>("auto", {.coherence = Coherence::off});
 };
 
 PairAnswers::PairAnswers(std::span<const TriangleMesh> meshes, std::size_t objects,
@@ -94,6 +123,34 @@ PairAnswers::~PairAnswers() = default;
 
 void PairAnswers::add(const TriangleMesh& mesh) { engine_->added.push_back(&mesh); }
 std::size_t PairAnswers::size() const { return engine_->objects + engine_->added.size(); }
+
+std::vector<ObjectPair> PairAnswers::near(std::span<const Pose> poses,
+                                          std::span<const std::uint8_t> present, double distance) {
+  while (engine_->box_of.size() < size()) {
+    const TriangleMesh& mesh = engine_->mesh(engine_->box_of.size());
+    const auto [at, fresh] = engine_->known_boxes.try_emplace(&mesh, engine_->boxes.size());
+    if (fresh) engine_->boxes.emplace_back(mesh);
+    engine_->box_of.push_back(at->second);
+  }
+  std::vector<Box<float>> boxes;
+  std::vector<std::uint32_t> objects;  // whose each is
+  Vec3<double> origin = Vec3<double>::Zero();
+  for (std::uint32_t i = 0; i < size(); ++i) {
+    if (!present[i]) continue;
+    const RotatedMeshBox& of_mesh = engine_->boxes[engine_->box_of[i]];
+    // Relative to the first body: what boxes lose by being float makes them larger.
+    if (boxes.empty()) origin = of_mesh.mesh_origin(poses[i]);
+    // Half of the largest number and more are too large for floats.
+    const double reach = std::min(distance, std::numeric_limits<double>::max()) / 2;
+    boxes.push_back(larger(of_mesh(poses[i], origin), reach));
+    objects.push_back(i);
+  }
+  std::vector<ObjectPair> found;
+  for (const Pair& pair : engine_->method->overlapping(boxes))
+    found.push_back({objects[pair.i], objects[pair.j]});
+  std::sort(found.begin(), found.end(), before);
+  return found;
+}
 
 std::vector<std::array<std::uint32_t, 4>> PairAnswers::contacts(std::span<const ObjectPair> pairs,
                                                                 std::span<const Pose> poses) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// Contacts and distances of some pairs of bodies, each from the roots of its trees: what a World
-/// is asked beside which pairs touch.
+/// What a World answers beside which pairs touch: which pairs can be near each other, and the
+/// contacts and distances of some, each from the roots of its trees.
 #pragma once
 
 #include <array>
@@ -15,6 +15,11 @@
 
 namespace bvlab {
 
+/// The order in which pairs are listed.
+inline bool before(const ObjectPair& a, const ObjectPair& b) {
+  return a.i != b.i ? a.i < b.i : a.j < b.j;
+}
+
 class PairAnswers {
  public:
   /// Object i uses mesh i mod meshes.size(); the meshes must outlive this. Of the variant, volume,
@@ -25,6 +30,11 @@ class PairAnswers {
   /// Adds an object of that mesh, which must outlive this, by the next number.
   void add(const TriangleMesh& mesh);
   std::size_t size() const;
+
+  /// The pairs that can be within a distance of each other, which may be infinite: those whose
+  /// boxes, made larger by half of it on every side, meet. i < j, sorted; of the present alone.
+  std::vector<ObjectPair> near(std::span<const Pose> poses, std::span<const std::uint8_t> present,
+                               double distance);
 
   /// Object i, object j, triangle of i, triangle of j: pair by pair, sorted in each. `poses` has
   /// one for each object.

@@ -179,14 +179,12 @@ py::dict predicted(const py::object& given_meshes, const py::object& given_poses
     strategies[py::str(std::string(row.strategy))] =
         py::dict("n_v"_a = row.n_v, "n_p"_a = row.n_p, "seconds"_a = row.seconds,
                  "seconds_low"_a = row.low, "seconds_high"_a = row.high);
-  py::object survival = py::none();
-  if (sums.entries > 0)
-    survival = py::float_(static_cast<double>(sums.kept) / static_cast<double>(sums.entries));
   py::list names;
   for (const auto name : candidates(rows)) names.append(std::string(name));
   const bool is_told = can_tell(rows) && names.size() == 1;
   return py::dict("fastest"_a = is_told ? py::object(names[0]) : py::object(py::none()),
-                  "candidates"_a = names, "survival"_a = survival, "strategies"_a = strategies);
+                  "candidates"_a = names, "survival"_a = sums.survival(),
+                  "strategies"_a = strategies);
 }
 
 py::object total(const Result& result, const char* key) {
@@ -348,18 +346,15 @@ bvlab.methods() has the names. ValueError: NaN, infinity, lo > hi, another shape
          const std::optional<std::string>& frame, const std::string& build, std::uint32_t leaf_size,
          const std::string& fit, double relative_error, std::optional<std::size_t> stride,
          std::optional<std::size_t> window) {
-        const VariantWords words{volume,
-                                 {},
-                                 query,
-                                 fan_out,
-                                 frame,
-                                 {},
-                                 {},
-                                 build,
-                                 leaf_size,
-                                 fit,
-                                 default_variant().precision,
-                                 relative_error};
+        const VariantWords words{.volume = volume,
+                                 .query = query,
+                                 .fan_out = fan_out,
+                                 .frame = frame,
+                                 .build = build,
+                                 .leaf_size = leaf_size,
+                                 .fit = fit,
+                                 .precision = default_variant().precision,
+                                 .relative_error = relative_error};
         return predicted(meshes, poses, words, stride, window);
       },
       "meshes"_a, "poses"_a, py::kw_only(), "volume"_a = d.volume, "query"_a = d.query,

@@ -18,12 +18,12 @@ namespace py = pybind11;
 /// As in Python's signatures, one name after the other. What a configuration sets is None where it
 /// was not said: one that says the default is refused beside a configuration, too.
 struct VariantWords {
-  std::optional<std::string> volume, strategy;
+  std::optional<std::string> volume{}, strategy{};
   std::string query;
-  std::optional<std::uint32_t> fan_out;
-  std::optional<std::string> frame, kernel, configuration, build;
-  std::optional<std::uint32_t> leaf_size;
-  std::optional<std::string> fit;
+  std::optional<std::uint32_t> fan_out{};
+  std::optional<std::string> frame{}, kernel{}, configuration{}, build{};
+  std::optional<std::uint32_t> leaf_size{};
+  std::optional<std::string> fit{};
   std::string precision;
   double relative_error;
 

@@ -15,7 +15,6 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/python/meshes.hpp"
 #include "experiments/python/module.hpp"
-#include "experiments/python/near_within.hpp"
 #include "experiments/python/pair_answers.hpp"
 #include "experiments/python/pair_arrays.hpp"
 #include "experiments/python/signals.hpp"
@@ -330,9 +329,7 @@ class PyWorld : public MadeByCalls {
   std::vector<ObjectPair> touching_pairs() {
     const auto all = engine_->touching();
     std::vector<ObjectPair> pairs(all.begin(), all.end());
-    std::sort(pairs.begin(), pairs.end(), [](const ObjectPair& a, const ObjectPair& b) {
-      return a.i != b.i ? a.i < b.i : a.j < b.j;
-    });
+    std::sort(pairs.begin(), pairs.end(), before);
     return pairs;
   }
 
@@ -342,9 +339,7 @@ class PyWorld : public MadeByCalls {
     std::vector<NearestPair> nearest;  ///< where asked for
   };
   Within within(double below, bool nearest) {
-    if (!near_) near_.emplace(meshes_.span(), first_);
-    for (std::size_t i = near_->size(); i < objects(); ++i) near_->add(*added_[i - first_].of.mesh);
-    auto near = near_->pairs(stands_, present_, below);
+    auto near = answers().near(stands_, present_, below);
     std::erase_if(near, [&](const ObjectPair& pair) { return !chosen_(pair); });
     const auto all = answers().distances(near, stands_);
     const auto mesh = [&](std::uint32_t i) -> const TriangleMesh& { return *of(i).mesh; };
@@ -374,7 +369,6 @@ class PyWorld : public MadeByCalls {
   std::atomic<std::thread::id> at_work_{};  // whose turn it is
   std::unique_ptr<WorldEngine> engine_;
   std::optional<PairAnswers> answers_;
-  std::optional<NearWithin> near_;
   int threads_ = 1;
   PairChoice choice_;
   PairFilter chosen_;

@@ -3,14 +3,12 @@
 
 #include <sys/utsname.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <thread>
 
 #include "build_facts.hpp"
@@ -24,11 +22,10 @@ namespace {
 
 constexpr char unfinished_file[] = "unfinished.json";
 
+/// Empty where the file cannot be read.
 std::string contents(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 std::string quoted(const std::string& field) {
@@ -68,19 +65,15 @@ std::pair<std::vector<Row>, bool> parse_csv(std::string_view text) {
   return {std::move(rows), !inside && row.empty() && field.empty()};
 }
 
-std::string after_colon(const std::string& file, const std::string& key) {
+/// What the line of that key says, without quotes: "key : value" or KEY="value".
+std::string value_in(const std::string& file, const std::string& key) {
   std::ifstream lines(file);
   for (std::string line; std::getline(lines, line);)
-    if (line.starts_with(key))
-      if (const auto colon = line.find(':'); colon != line.npos)
-        return line.substr(line.find_first_not_of(" \t", colon + 1));
-  return "unknown";
-}
-
-std::string system_name() {
-  std::ifstream lines("/etc/os-release");
-  for (std::string line; std::getline(lines, line);)
-    if (line.starts_with("PRETTY_NAME=")) return line.substr(13, line.size() - 14);
+    if (const auto at = line.find_first_of(":="); line.starts_with(key) && at != line.npos) {
+      const auto begin = line.find_first_not_of(" \t\"", at + 1);
+      if (begin == line.npos) break;
+      return line.substr(begin, line.find_last_not_of('"') + 1 - begin);
+    }
   return "unknown";
 }
 
@@ -143,10 +136,10 @@ nlohmann::ordered_json machine() {
   utsname kernel{};
   uname(&kernel);
   nlohmann::ordered_json json = {{"node", node_name()},
-                                 {"processor", after_colon("/proc/cpuinfo", "model name")},
+                                 {"processor", value_in("/proc/cpuinfo", "model name")},
                                  {"cores", std::thread::hardware_concurrency()},
-                                 {"memory", after_colon("/proc/meminfo", "MemTotal")},
-                                 {"system", system_name()},
+                                 {"memory", value_in("/proc/meminfo", "MemTotal")},
+                                 {"system", value_in("/etc/os-release", "PRETTY_NAME")},
                                  {"kernel", kernel.release},
                                  {"compiler", build_facts::compiler},
                                  {"flags", build_facts::flags},

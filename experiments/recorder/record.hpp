@@ -10,11 +10,18 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/files/numbers.hpp"
 #include "experiments/recorder/record_lock.hpp"
 
 namespace bvlab {
 
 using Row = std::vector<std::string>;
+
+/// Adds fields to a row: texts as they are, numbers with the digits that give them again.
+template <class... Fields>
+void add_to(Row& row, const Fields&... fields) {
+  (row.push_back(text_of(fields)), ...);
+}
 
 /// A CSV file with named columns.
 class Table {

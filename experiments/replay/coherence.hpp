@@ -27,6 +27,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "experiments/replay/replay.hpp"
@@ -78,6 +79,12 @@ struct CoherenceSums {
   double motion_gap = 0;            ///< sum of motions as shares of the gap
   std::array<StepSums, 4> steps;    ///< by Step
   std::array<TwoRunSums, 6> two;    ///< by place in two_runs
+
+  /// The share of a front that the next frame finds again; nothing where no pair was near another.
+  std::optional<double> survival() const {
+    if (entries == 0) return std::nullopt;
+    return static_cast<double>(kept) / static_cast<double>(entries);
+  }
 };
 
 /// For the variant's volume, query, build and leaf size; its strategy does not matter. The size of

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/replay/configurations.hpp"
 
-#include <algorithm>
 #include <iomanip>
-#include <limits>
 #include <numbers>
 #include <sstream>
 #include <utility>
 
+#include "experiments/files/joined.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/player.hpp"
 #include "experiments/replay/registry.hpp"
@@ -206,16 +205,13 @@ void refuse_beside_configuration(std::string_view parameter) {
 }
 
 Variant configured(Variant variant, std::string_view configuration) {
-  std::string names;
-  for (const auto& each : list) {
+  for (const auto& each : list)
     if (each.name == configuration) {
       each.set(variant);
       return variant;
     }
-    names += (names.empty() ? "" : ", ") + std::string(each.name);
-  }
   throw Unusable("--configuration " + std::string(configuration) +
-                 ": unknown; available: " + names);
+                 ": unknown; available: " + joined(list, &Configuration::name));
 }
 
 Chosen configured(Variant variant, std::string_view configuration,

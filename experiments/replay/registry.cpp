@@ -3,16 +3,11 @@
 
 #include <algorithm>
 
+#include "experiments/files/joined.hpp"
 #include "experiments/files/unusable.hpp"
 
 namespace bvlab {
 namespace {
-
-std::string text_of(const std::vector<Named>& all) {
-  std::string text;
-  for (const auto& each : all) text += (text.empty() ? "" : ", ") + each.name;
-  return text;
-}
 
 /// Those that were not named before, in order.
 void add(std::vector<Named>& all, std::string_view name, std::string_view description) {
@@ -21,7 +16,7 @@ void add(std::vector<Named>& all, std::string_view name, std::string_view descri
 
 [[noreturn]] void refuse(const char* option, std::string_view name, const std::vector<Named>& all) {
   throw Unusable(std::string(option) + " " + std::string(name) +
-                 ": unknown; available: " + text_of(all));
+                 ": unknown; available: " + joined(all, &Named::name));
 }
 
 }  // namespace
@@ -111,7 +106,7 @@ const WideEntry& wide_entry(std::string_view volume, std::string_view query) {
   if (!volume_exists)
     throw Unusable("--volume " + std::string(volume) +
                    ": the kernel siblings does not take it; there is " +
-                   text_of(wide_volumes("siblings")));
+                   joined(wide_volumes("siblings"), &Named::name));
   refuse("--query", query, queries());
 }
 

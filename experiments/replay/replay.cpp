@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/files/joined.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/player.hpp"
 #include "experiments/replay/registry.hpp"
@@ -35,12 +36,10 @@ void check_gathered(const Variant& variant) {
 }
 
 void check_wide(const Variant& variant) {
-  std::string volumes;
-  for (const auto& each : wide_volumes(variant.kernel))
-    volumes += (volumes.empty() ? "" : ", ") + each.name;
   if (wide_fan_out(variant.volume, variant.kernel) == 0)
     throw Unusable("--volume " + variant.volume + ": the kernel " + variant.kernel +
-                   " does not take it; there is " + volumes);
+                   " does not take it; there is " +
+                   joined(wide_volumes(variant.kernel), &Named::name));
   if (!wide_entry(variant.volume, variant.query).play)
     throw Unusable("--query " + variant.query + ": not with --kernel " + variant.kernel +
                    ", which culls by whether volumes are disjoint; use --kernel gathered");

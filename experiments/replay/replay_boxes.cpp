@@ -5,7 +5,7 @@
 #include <chrono>
 #include <type_traits>
 
-#include "experiments/files/peak_bytes.hpp"
+#include "experiments/files/memory.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/replay/box_methods.hpp"
 #include "hierarchies/geometry/scalar.hpp"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "experiments/files/peak_bytes.hpp"
+#include "experiments/files/memory.hpp"
 #include "experiments/replay/topology_of.hpp"
 #include "experiments/replay/variant_parameters.hpp"
 
@@ -67,18 +67,11 @@ void set_variant(Totals& totals, const Variant& variant) {
 
 template <class Result>
 void set_counts(Totals& totals, Count count, const Result& result) {
-  if constexpr (requires { result.n_b; }) {
-    if (count == Count::on)
-      totals.set("n_b", result.n_b);
-    else
-      totals.set("n_b", nullptr);
-  }
-  for (const auto& [key, value] :
-       {std::pair{"n_u", result.n_u}, {"n_v", result.n_v}, {"n_p", result.n_p}})
-    if (count == Count::on)
-      totals.set(key, value);
-    else
-      totals.set(key, nullptr);
+  const auto set = [&](const char* key, std::uint64_t value) {
+    totals.set(key, count == Count::on ? std::optional(value) : std::nullopt);
+  };
+  if constexpr (requires { result.n_b; }) set("n_b", result.n_b);
+  set("n_u", result.n_u), set("n_v", result.n_v), set("n_p", result.n_p);
 }
 
 }  // namespace
@@ -90,11 +83,9 @@ Totals totals_of(const ReplayResult& result, std::span<const TriangleMesh> meshe
   set_counts(totals, options.count, result);
   totals.set("front", result.front);
   set_variant(totals, variant);
-  totals.set("threads", options.threads).set("broad_phase", result.near ? "on" : "off");
-  if (result.near)
-    totals.set("near", *result.near);
-  else
-    totals.set("near", nullptr);
+  totals.set("threads", options.threads)
+      .set("broad_phase", result.near ? "on" : "off")
+      .set("near", result.near);
   if (result.nodes > 0)
     totals.set("nodes_made", Totals().set("done", result.nodes_made).set("of", result.nodes));
   else

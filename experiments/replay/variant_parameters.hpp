@@ -4,8 +4,6 @@
 /// configuration excludes.
 #pragma once
 
-#include <concepts>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -43,12 +41,6 @@ void visit_parameters(V&& variant, Visit&& visit) {
         "frame in which volumes are compared: world or body; see `bvlab list frames`",
         configuration);
   visit("kernel", variant.kernel, "how lanes are filled; see `bvlab list kernels`", configuration);
-}
-
-inline std::string text_of(const std::string& value) { return value; }
-template <std::unsigned_integral T>
-std::string text_of(T value) {
-  return std::to_string(value);
 }
 
 /// The names of the parameters that a configuration sets.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <set>
 
+#include "experiments/files/joined.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "hierarchies/geometry/scalar.hpp"
@@ -68,25 +69,36 @@ std::vector<Box<float>> adjacent(std::size_t count, Maker& make) {
   return boxes;
 }
 
+using Corner = std::array<double, 3>;
+
+/// The box of these points.
+Box<float> box_of(std::initializer_list<Corner> points) {
+  Box<float> box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [least, most] =
+        std::minmax_element(points.begin(), points.end(),
+                            [&](const Corner& a, const Corner& b) { return a[axis] < b[axis]; });
+    box.lo[axis] = rounded_down<float>((*least)[axis]);
+    box.hi[axis] = rounded_up<float>((*most)[axis]);
+  }
+  return box;
+}
+
+std::vector<Corner> corners_of(const TriangleMesh& mesh) {
+  std::vector<Corner> corners;
+  for (const auto& v : mesh.vertices) corners.push_back({v[0], v[1], v[2]});
+  return corners;
+}
+
 /// The boxes of a mesh's triangles: neighbours share corners, so each touches a dozen others.
 std::vector<Box<float>> triangles(std::size_t count) {
   const TriangleMesh mesh = named_mesh("bunny", std::max<std::size_t>(count, 4)).mesh;
+  const auto at = corners_of(mesh);
   std::vector<Box<float>> boxes;
-  for (const auto& corners : mesh.triangles) {
-    Box<float> box;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto [least, most] =
-          std::minmax({mesh.vertices[corners[0]][axis], mesh.vertices[corners[1]][axis],
-                       mesh.vertices[corners[2]][axis]});
-      box.lo[axis] = rounded_down<float>(least), box.hi[axis] = rounded_up<float>(most);
-    }
-    boxes.push_back(box);
-  }
+  for (const auto& [i, j, k] : mesh.triangles) boxes.push_back(box_of({at[i], at[j], at[k]}));
   if (boxes.size() > count) boxes.resize(count);
   return boxes;
 }
-
-using Corner = std::array<double, 3>;
 
 /// The boxes of a mesh's edges, each as it sweeps from where its corners are to where they go.
 std::vector<Box<float>> swept_edges(const std::vector<Corner>& from, const std::vector<Corner>& to,
@@ -98,15 +110,7 @@ std::vector<Box<float>> swept_edges(const std::vector<Corner>& from, const std::
       edges.insert({low, high});
     }
   std::vector<Box<float>> boxes;
-  for (const auto& [a, b] : edges) {
-    Box<float> box;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto [least, most] =
-          std::minmax({from[a][axis], from[b][axis], to[a][axis], to[b][axis]});
-      box.lo[axis] = rounded_down<float>(least), box.hi[axis] = rounded_up<float>(most);
-    }
-    boxes.push_back(box);
-  }
+  for (const auto& [a, b] : edges) boxes.push_back(box_of({from[a], from[b], to[a], to[b]}));
   return boxes;
 }
 
@@ -119,8 +123,8 @@ double wave(double x) {
 
 std::vector<Box<float>> swept_bunny(std::size_t count) {
   const TriangleMesh mesh = named_mesh("bunny", std::max<std::size_t>(2 * count / 3, 4)).mesh;
-  std::vector<Corner> from, to;
-  for (const auto& v : mesh.vertices) from.push_back({v[0], v[1], v[2]});
+  const std::vector<Corner> from = corners_of(mesh);
+  std::vector<Corner> to;
   double length = 0, size = 0;
   for (const auto& t : mesh.triangles)
     for (int axis = 0; axis < 3; ++axis) {
@@ -243,9 +247,7 @@ std::vector<Box<float>> make_box_set(const std::string& name, std::size_t count,
       c[2] *= 0.3f * c[2];
       return make.around(c, make.edges(0.5f * spacing));
     }
-    std::string known;
-    for (const auto& set : box_set_names()) known += (known.empty() ? "" : ", ") + set;
-    throw Unusable("set " + name + ": unknown; available: " + known);
+    throw Unusable("set " + name + ": unknown; available: " + joined(box_set_names()));
   };
   std::vector<Box<float>> boxes;
   boxes.reserve(count);

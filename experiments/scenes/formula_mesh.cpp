@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "experiments/files/joined.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/circle.hpp"
 
@@ -286,12 +287,7 @@ constexpr FormulaMesh list[] = {
 
 std::span<const FormulaMesh> formula_meshes() { return list; }
 
-std::string formula_mesh_names() {
-  std::string names;
-  for (const FormulaMesh& entry : list)
-    names += (names.empty() ? "" : ", ") + std::string(entry.name);
-  return names;
-}
+std::string formula_mesh_names() { return joined(list, &FormulaMesh::name); }
 
 TriangleMesh formula_mesh(std::string_view name, std::size_t polygons) {
   if (polygons == 0 || polygons > most_polygons)

@@ -8,10 +8,9 @@
 
 #include "experiments/files/numbers.hpp"
 #include "experiments/files/unusable.hpp"
-#include "experiments/scenes/convex_hull.hpp"
+#include "experiments/scenes/cgal_meshes.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/read_mesh.hpp"
-#include "experiments/scenes/simplify_mesh.hpp"
 #include "experiments/scenes/text_scanner.hpp"
 
 namespace bvlab {

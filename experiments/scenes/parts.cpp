@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "experiments/scenes/places.hpp"
-#include "experiments/scenes/random.hpp"
 
 namespace bvlab {
 namespace {
@@ -156,12 +155,11 @@ class Building {
     add_box("wall", {{low[0], joined(low[1] + thickness), joined(floor)},
                      {low[0] + thickness, joined_below(high[1]), joined_below(ceiling)},
                      {1, drawn(2, 9), drawn(2, 7)}});
-    add_round("column", {2, low + Point(2, 2, 0), joined(floor), joined_below(ceiling), 0.15,
-                         drawn(8, 48)});
+    add_round("column",
+              {2, low + Point(2, 2, 0), joined(floor), joined_below(ceiling), 0.15, drawn(8, 48)});
     for (const int axis : {0, 1})
       add_round("pipe", {axis, low + Point(1 + 0.5 * axis, 1.5 - 0.5 * axis, 2.6 - 0.3 * axis),
-                         joined(low[axis]), high[axis], random_.uniform(0.03, 0.12),
-                         drawn(8, 64)});
+                         joined(low[axis]), high[axis], random_.uniform(0.03, 0.12), drawn(8, 64)});
     for (int k = 0; k < 6; ++k) add("bolt", bolt(low, k));
   }
 
@@ -186,9 +184,7 @@ void Parts::check() const {
   need(joints == "flush" || joints == "overlap" || joints == "apart" || joints == "mixed",
        "joints: must be flush, overlap, apart or mixed");
   need(objects <= std::size_t{1} << 20, "objects: more than 2^20 parts");
-  std::size_t entries = 0;
-  need(!__builtin_mul_overflow(frames, objects, &entries) && entries <= (std::size_t{1} << 32),
-       "frames, objects: more than 2^32 poses");
+  need_few_poses(frames, objects);
 }
 
 std::vector<NamedMesh> Parts::own_meshes() const {

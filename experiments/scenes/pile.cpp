@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "experiments/scenes/places.hpp"
-#include "experiments/scenes/random.hpp"
 
 namespace bvlab {
 namespace {
@@ -209,9 +208,7 @@ class Simulation {
 
 void Pile::check() const {
   need(core > 0 && core <= 1, "core: must be above 0 and at most 1");
-  std::size_t entries = 0;
-  need(!__builtin_mul_overflow(frames, objects, &entries) && entries <= (std::size_t{1} << 32),
-       "frames, objects: more than 2^32 poses");
+  need_few_poses(frames, objects);
 }
 
 Array<double> Pile::generate(std::span<const Extent> meshes, const TouchesAny&) const {

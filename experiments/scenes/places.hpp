@@ -10,6 +10,7 @@
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/extent.hpp"
+#include "experiments/scenes/random.hpp"
 #include "hierarchies/geometry/pose.hpp"
 
 namespace bvlab {
@@ -58,6 +59,21 @@ inline void append(std::vector<double>& trace, const Place& place, const Extent&
 /// Throws Unusable where what an option needs is not so.
 inline void need(bool fulfilled, const std::string& what) {
   if (!fulfilled) throw Unusable(what);
+}
+
+/// The same where a trace would be too long.
+inline void need_few_poses(std::size_t frames, std::size_t objects) {
+  std::size_t entries = 0;
+  need(!__builtin_mul_overflow(frames, objects, &entries) && entries <= (std::size_t{1} << 32),
+       "frames, objects: more than 2^32 poses");
+}
+
+/// Anywhere in a cube about the origin, at any attitude.
+inline Place anywhere(Random& random, double half_side) {
+  Place place;
+  for (int d = 0; d < 3; ++d) place.centre[d] = random.uniform(-half_side, half_side);
+  place.attitude = random.rotation();
+  return place;
 }
 
 }  // namespace bvlab

@@ -7,7 +7,6 @@
 
 #include "experiments/scenes/circle.hpp"
 #include "experiments/scenes/places.hpp"
-#include "experiments/scenes/random.hpp"
 
 namespace bvlab {
 namespace {
@@ -77,12 +76,7 @@ class Search {
            (place.centre - end_place(1).centre).norm() < apart;
   }
 
-  Place anywhere() {
-    Place place;
-    for (int d = 0; d < 3; ++d) place.centre[d] = random_.uniform(-half_side_, half_side_);
-    place.attitude = random_.rotation();
-    return place;
-  }
+  Place anywhere() { return bvlab::anywhere(random_, half_side_); }
 
   /// One run of steps; whether the goal has been reached.
   bool grow(const Place& goal, Array<double>& trace) {
@@ -158,9 +152,7 @@ class Search {
 void Planner::check() const {
   need(objects > 0, "objects: there must be a robot");
   need(degrees >= 0 && degrees <= 180, "degrees: must be 0 to 180");
-  std::size_t entries = 0;
-  need(!__builtin_mul_overflow(frames, objects, &entries) && entries <= (std::size_t{1} << 32),
-       "frames, objects: more than 2^32 poses");
+  need_few_poses(frames, objects);
 }
 
 Array<double> Planner::generate(std::span<const Extent> meshes, const TouchesAny& touches) const {

@@ -9,7 +9,6 @@
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/circle.hpp"
 #include "experiments/scenes/places.hpp"
-#include "experiments/scenes/random.hpp"
 
 namespace bvlab {
 namespace {
@@ -153,12 +152,7 @@ class Walk {
     poses_[object] = stood;
   }
 
-  Place anywhere() {
-    Place place;
-    for (int d = 0; d < 3; ++d) place.centre[d] = random_.uniform(-half_side_, half_side_);
-    place.attitude = random_.rotation();
-    return place;
-  }
+  Place anywhere() { return bvlab::anywhere(random_, half_side_); }
 
   const Extent& mesh_of(std::size_t object) const { return meshes_[object % meshes_.size()]; }
   Pose pose_of(std::size_t object) const {
@@ -194,9 +188,7 @@ void RandomWalk::check() const {
   need(degrees >= 0 && degrees <= 180, "degrees: must be 0 to 180");
   need(persistence >= 0 && persistence <= 1, "persistence: must be 0 to 1");
   need(teleport >= 0 && teleport <= 1, "teleport: must be 0 to 1");
-  std::size_t entries = 0;
-  need(!__builtin_mul_overflow(frames, objects, &entries) && entries <= (std::size_t{1} << 32),
-       "frames, objects: more than 2^32 poses");
+  need_few_poses(frames, objects);
 }
 
 Array<double> RandomWalk::generate(std::span<const Extent> meshes,

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Replaces what CGAL does where it is absent.
 #include "experiments/files/unusable.hpp"
-#include "experiments/scenes/convex_hull.hpp"
-#include "experiments/scenes/simplify_mesh.hpp"
+#include "experiments/scenes/cgal_meshes.hpp"
 
 namespace bvlab {
 

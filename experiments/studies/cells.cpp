@@ -103,42 +103,56 @@ bool has_own_meshes(const std::string& scene) {
   return own;
 }
 
-/// Some scenes bring their meshes: a record says how many, and the most triangles of one.
-void set_meshes_of_scenes(std::vector<Cell>& cells) {
+std::string most_triangles(std::span<const TriangleMesh> meshes) {
+  std::size_t most = 0;
+  for (const auto& each : meshes) most = std::max(most, each.triangles.size());
+  return std::to_string(most);
+}
+
+/// Replaces parameters of each cell by those that `found(cell)` says, once for cells of the same
+/// `key(cell)`. An empty key leaves a cell as it is.
+template <class Key, class Found>
+void fill(std::vector<Cell>& cells, const Key& key, const Found& found) {
   std::map<std::string, Settings> known;
   for (auto& cell : cells) {
-    if (!has_own_meshes(cell["scene"])) continue;
-    auto& said = known[trace_key(cell)];
-    if (said.empty()) {
-      const auto meshes = prepared(cell).meshes;
-      std::size_t most = 0;
-      for (const auto& each : meshes) most = std::max(most, each.triangles.size());
-      said = {{"mesh", cell["scene"]},
-              {"objects", std::to_string(meshes.size())},
-              {"polygons", std::to_string(most)}};
-    }
+    const std::string of = key(cell);
+    if (of.empty()) continue;
+    auto& held = known[of];
+    if (held.empty()) held = found(cell);
     for (auto& [name, value] : cell.parameters)
-      for (const auto& [key, text] : said)
-        if (name == key) value = text;
+      for (const auto& [known_name, text] : held)
+        if (name == known_name) value = text;
   }
+}
+
+/// Some scenes bring their meshes: a record says how many, and the most triangles of one.
+void set_meshes_of_scenes(std::vector<Cell>& cells) {
+  const auto key = [](const Cell& cell) {
+    return has_own_meshes(cell["scene"]) ? trace_key(cell) : "";
+  };
+  fill(cells, key, [](const Cell& cell) -> Settings {
+    const auto meshes = prepared(cell).meshes;
+    return {{"mesh", cell["scene"]},
+            {"objects", std::to_string(meshes.size())},
+            {"polygons", most_triangles(meshes)}};
+  });
 }
 
 /// Of a recorded motion that is taken whole, a record says how long it is and how many bodies it
 /// has.
 void set_lengths_of_recordings(std::vector<Cell>& cells) {
-  std::map<std::string, Settings> known;
-  for (auto& cell : cells) {
-    if (cell["scene"] != Recorded::name || (cell["objects"] != "0" && cell["frames"] != "0"))
-      continue;
-    auto& held = known[cell["trace"]];
-    if (held.empty()) {
-      const Trace trace = read_trace(cell["trace"]);
-      held = {{"objects", std::to_string(trace.objects)}, {"frames", std::to_string(trace.frames)}};
-    }
-    for (auto& [name, value] : cell.parameters)
-      for (const auto& [key, text] : held)
-        if (name == key && value == "0") value = text;
-  }
+  const auto key = [](const Cell& cell) {
+    const bool is_whole =
+        cell["scene"] == Recorded::name && (cell["objects"] == "0" || cell["frames"] == "0");
+    return is_whole ? cell["objects"] + "/" + cell["frames"] + "/" + cell["trace"] : "";
+  };
+  fill(cells, key, [](const Cell& cell) -> Settings {
+    const Trace trace = read_trace(cell["trace"]);
+    const auto length = [&](const char* name, std::size_t held) {
+      return Setting{name, cell[name] == "0" ? std::to_string(held) : cell[name]};
+    };
+    return {length("objects", trace.objects), length("frames", trace.frames)};
+  });
 }
 
 /// As the cell's parameters say before they are spelled out: a configuration's replace them.
@@ -167,19 +181,12 @@ void set_recommended_of_motions(std::vector<Cell>& cells) {
 /// Of a mesh from a file a record says what it has, and not what a mesh by name would have had: the
 /// most triangles of those in the list.
 void set_polygons_of_files(std::vector<Cell>& cells) {
-  std::map<std::string, std::string> known;
-  for (auto& cell : cells) {
-    const std::string& mesh = cell["mesh"];
-    if (!names_files(mesh) || has_own_meshes(cell["scene"])) continue;
-    auto& polygons = known[mesh];
-    if (polygons.empty()) {
-      std::size_t most = 0;
-      for (const auto& each : meshes_of(cell)) most = std::max(most, each.triangles.size());
-      polygons = std::to_string(most);
-    }
-    for (auto& [name, value] : cell.parameters)
-      if (name == "polygons") value = polygons;
-  }
+  const auto key = [](const Cell& cell) {
+    return names_files(cell["mesh"]) && !has_own_meshes(cell["scene"]) ? cell["mesh"] : "";
+  };
+  fill(cells, key, [](const Cell& cell) -> Settings {
+    return {{"polygons", most_triangles(meshes_of(cell))}};
+  });
 }
 
 }  // namespace
@@ -201,6 +208,14 @@ Variant variant_of(const Cell& cell) {
       value = number<T>(std::string(name), cell[name]);
   });
   if (is_native) variant.fan_out = native_fan_out(cell);
+  return variant;
+}
+
+Variant reference_for(const std::string& query) {
+  Variant variant;
+  variant.query = query;
+  variant.volume = name_or_first(variant.volume, volumes());
+  variant.strategy = name_or_first(variant.strategy, strategies());
   return variant;
 }
 

@@ -27,6 +27,10 @@ bool is_of_variant(const std::string& name);
 /// Of a cell of `cells_with_answers`, in which a configuration is spelled out.
 Variant variant_of(const Cell& cell);
 
+/// What the answers to a query are compared with: the engine's default variant, with the first
+/// volume and strategy of a build that lacks those of the default.
+Variant reference_for(const std::string& query);
+
 /// By the cell's peer, or by us. Where a configuration chooses by the motion, the choice is part of
 /// what comes before the first frame, and so of `build_seconds`.
 ReplayResult answered(const Prepared& ready, const Cell& cell, const ReplayOptions& options);

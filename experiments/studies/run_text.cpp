@@ -47,9 +47,6 @@ std::filesystem::path in_record(const RunRequest& request, const Extends& extend
 [[noreturn]] void refuse_parts(const RunRequest& request) {
   throw Unusable(request.file, "a study has no parts: it is run as a whole");
 }
-[[noreturn]] void refuse_counts(const RunRequest& request) {
-  throw Unusable(request.file, "a study measures what its kind says: --counts is for experiments");
-}
 
 /// Nothing where it is an experiment.
 std::optional<StudyDefinition> checked_study(const RunRequest& request) {
@@ -58,7 +55,9 @@ std::optional<StudyDefinition> checked_study(const RunRequest& request) {
   check(*study);
   if (study->has_figures) check_figures(request.text, request.file);
   if (!request.part.empty()) refuse_parts(request);
-  if (request.options.measured == Measured::counts) refuse_counts(request);
+  if (request.options.measured == Measured::counts)
+    throw Unusable(request.file,
+                   "a study measures what its kind says: --counts is for experiments");
   return study;
 }
 

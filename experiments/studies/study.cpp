@@ -6,6 +6,7 @@
 
 #include "experiments/definitions/definition.hpp"
 #include "experiments/definitions/toml.hpp"
+#include "experiments/files/joined.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/scenes/named_mesh.hpp"
 #include "experiments/studies/figures_checked.hpp"
@@ -18,23 +19,10 @@ const StudyKind* const kinds[] = {&studies::boxes,     &studies::distance,  &stu
                                   &studies::tightness, &studies::triangles, &studies::worlds};
 
 const StudyKind& kind_of(const StudyDefinition& definition) {
-  std::string names;
-  for (const auto* kind : kinds) {
+  for (const auto* kind : kinds)
     if (kind->name == definition.kind) return *kind;
-    names += (names.empty() ? "" : ", ") + std::string(kind->name);
-  }
-  throw Unusable(definition.file, "unknown kind '" + definition.kind + "'; available: " + names);
-}
-
-[[noreturn]] void fail(const std::string& file, const toml::node& node, const std::string& what) {
-  throw Unusable(file, "line " + std::to_string(node.source().begin.line) + ": " + what);
-}
-
-std::string scalar(const std::string& file, const toml::node& node) {
-  if (const auto value = node.value_exact<std::string>()) return *value;
-  if (const auto value = node.value_exact<std::int64_t>()) return std::to_string(*value);
-  if (const auto value = node.value_exact<double>()) return text_of(*value);
-  fail(file, node, "must be a number, a string or a list of them");
+  throw Unusable(definition.file, "unknown kind '" + definition.kind +
+                                      "'; available: " + joined(kinds, &StudyKind::name));
 }
 
 const StudyParameter* find(const StudyParameters& all, const std::string& key) {
@@ -46,11 +34,48 @@ const StudyParameter* find(const StudyParameters& all, const std::string& key) {
 const StudyParameter& parameter_named(const std::string& key, const StudyParameters& all,
                                       const StudyDefinition& definition) {
   if (const StudyParameter* parameter = find(all, key)) return *parameter;
-  std::string names;
-  for (const auto& each : all) names += (names.empty() ? "" : ", ") + each.name;
   throw Unusable(definition.file, "unknown parameter '" + key + "' of kind " + definition.kind +
-                                      "; available: " + names);
+                                      "; available: " + joined(all, &StudyParameter::name));
 }
+
+class Reader : TomlReader {
+ public:
+  using TomlReader::TomlReader;
+
+  StudyDefinition read(const toml::table& from) const {
+    StudyDefinition definition;
+    definition.file = file_;
+    definition.kind = word(*from.get("kind"));
+    for (auto&& [key, node] : from) {
+      if (key == "name")
+        definition.name = word(node);
+      else if (key == "repetitions")
+        definition.repetitions = repetitions(node);
+      else if (key == "parameters")
+        for (auto&& [name, value] : table(node, "parameters"))
+          definition.parameters[std::string(name.str())] = words(value);
+      else if (key == "figure")
+        definition.has_figures = true;
+      else if (key != "kind" && key != "description")
+        fail(node.source(), "unknown key '" + std::string(key.str()) + "' of a study");
+    }
+    require_name(definition.name);
+    return definition;
+  }
+
+ private:
+  std::string word(const toml::node& node) const {
+    if (auto value = scalar(node)) return *std::move(value);
+    fail(node.source(), "must be a number, a string or a list of them");
+  }
+  std::vector<std::string> words(const toml::node& node) const {
+    const auto* list = node.as_array();
+    if (!list) return {word(node)};
+    std::vector<std::string> all;
+    for (auto&& each : *list) all.push_back(word(each));
+    return all;
+  }
+};
 
 }  // namespace
 
@@ -94,37 +119,9 @@ std::optional<StudyDefinition> study_from(const std::string& text, const std::st
   } catch (const toml::parse_error&) {
     return {};  // the other reader says what is wrong
   }
-  const auto* kind = table.get("kind");
-  if (!kind) return {};
-  StudyDefinition definition;
-  definition.file = file, definition.text = text;
-  definition.kind = scalar(file, *kind);
-  for (auto&& [key, node] : table) {
-    if (key == "name") {
-      definition.name = scalar(file, node);
-    } else if (key == "repetitions") {
-      const auto value = node.value_exact<std::int64_t>();
-      if (!value || *value < 1 || *value > 1000)
-        fail(file, node, "repetitions must be a whole number from 1 to 1000");
-      definition.repetitions = static_cast<unsigned>(*value);
-    } else if (key == "parameters") {
-      const auto* parameters = node.as_table();
-      if (!parameters) fail(file, node, "parameters must be a table");
-      for (auto&& [name, value] : *parameters) {
-        auto& list = definition.parameters[std::string(name.str())];
-        if (const auto* array = value.as_array())
-          for (auto&& each : *array) list.push_back(scalar(file, each));
-        else
-          list.push_back(scalar(file, value));
-      }
-    } else if (key == "figure") {
-      definition.has_figures = true;
-    } else if (key != "kind" && key != "description") {
-      fail(file, node, "unknown key '" + std::string(key.str()) + "' of a study");
-    }
-  }
-  if (definition.name.empty() || definition.name.find('/') != std::string::npos)
-    throw Unusable(file, "needs a name (without '/')");
+  if (!table.get("kind")) return {};
+  StudyDefinition definition = Reader(file).read(table);
+  definition.text = text;
   return definition;
 }
 
@@ -133,15 +130,7 @@ void check(const StudyDefinition& definition) {
   const StudyParameters all = kind.parameters();
   for (const auto& [key, values] : definition.parameters)
     parameter_named(key, all, definition).check(values, definition.file);
-  if (!kind.check) return;
-  try {
-    kind.check(definition);
-  } catch (const Unusable& fault) {
-    // Names are refused by those who look them up, and they don't know the file.
-    const std::string what = fault.what();
-    if (what.starts_with(definition.file)) throw;
-    throw Unusable(definition.file, what);
-  }
+  if (kind.check) name_file(definition.file, [&] { kind.check(definition); });
 }
 
 void check_extends(const StudyDefinition& held, const StudyDefinition& definition) {
@@ -162,7 +151,8 @@ StudyRecord::StudyRecord(const StudyDefinition& definition, const std::filesyste
                          Row columns, const Progress& progress)
     : table_(folder / (definition.name + ".csv"), std::move(columns)),
       folder_(folder),
-      progress_(progress) {
+      progress_(progress),
+      repetitions_(definition.repetitions) {
   if (!definition.has_figures) return;
   check_figures(definition.text, definition.file, [&](const std::filesystem::path& to) {
     Table(to / (definition.name + ".csv"), table_.columns()).save();

@@ -11,10 +11,13 @@
 ///     [[figure]]                  # what plots/draw shows of it: see ../definitions/README.md
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <optional>
+#include <random>
 #include <span>
 #include <string>
 #include <string_view>
@@ -45,6 +48,13 @@ class StudyDefinition {
   bool has_figures = false;
 };
 
+/// 0, 1, ... up to `count`.
+inline std::vector<std::size_t> numbers_below(std::size_t count) {
+  std::vector<std::size_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+  return numbers;
+}
+
 /// What a study has to work with: rows are saved as they are finished, and what a broken run has
 /// finished is not done again.
 class StudyRecord {
@@ -52,17 +62,41 @@ class StudyRecord {
   StudyRecord(const StudyDefinition& definition, const std::filesystem::path& folder, Row columns,
               const Progress& progress);
 
-  /// Calls measure(part), which adds rows that begin with key(part), for each part that has none
-  /// yet.
+  /// Calls measure(part), which adds rows, for each part of which there are none yet. They begin
+  /// with key(part), a row or a text.
   template <class Parts, class Key, class Measure>
   void each(const Parts& parts, const Key& key, const Measure& measure) {
-    std::size_t done = 0;
-    for (const auto& part : parts) {
-      if (!table_.has(key(part))) measure(part);
+    for (std::size_t done = 0; const auto& part : parts) {
+      key_ = Row{std::invoke(key, part)};
+      if (!table_.has(key_)) measure(part);
       save(++done, std::size(parts));
     }
   }
-  void add(Row row) { table_.add(std::move(row)); }
+  /// The same for parts that have a name alone.
+  template <class Measure>
+  void each(const std::vector<std::string>& names, const Measure& measure) {
+    each(names, std::identity(), measure);
+  }
+  /// Calls measure(k, repetition) for each k below `count` in every repetition, each time in an
+  /// order that is drawn anew.
+  template <class Measure>
+  void interleave(std::size_t count, const Measure& measure) {
+    auto order = numbers_below(count);
+    for (unsigned repetition = 0; repetition < repetitions_; ++repetition) {
+      shuffle(order);
+      for (const std::size_t k : order) measure(k, repetition);
+    }
+  }
+  void shuffle(std::vector<std::size_t>& order) {
+    std::shuffle(order.begin(), order.end(), random_);
+  }
+  /// Adds a row of the part that is measured.
+  template <class... Fields>
+  void add(const Fields&... fields) {
+    Row row = key_;
+    add_to(row, fields...);
+    table_.add(std::move(row));
+  }
 
  private:
   void save(std::size_t done, std::size_t all);
@@ -70,13 +104,14 @@ class StudyRecord {
   Table table_;
   std::filesystem::path folder_;
   Progress progress_;
+  unsigned repetitions_;
+  std::mt19937_64 random_{20260101};
+  Row key_;
 };
 
 /// The mesh of that name, NAME or NAME:POLYGONS, with as many triangles as `polygons` says. Throws
 /// Unusable where the name is of several.
 TriangleMesh mesh_of(const StudyDefinition& definition, const std::string& name);
-/// What rows of a part begin with that has a name alone.
-inline Row row_of(const std::string& name) { return {name}; }
 
 /// The definition in the text if it has a kind (nothing if not: an experiment). Throws Unusable.
 std::optional<StudyDefinition> study_from(const std::string& text, const std::string& file);

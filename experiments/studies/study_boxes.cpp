@@ -14,21 +14,18 @@
 /// holds after its last frame.
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
-#include <random>
 #include <set>
 #include <utility>
 
-#include "experiments/files/heap_bytes.hpp"
+#include "experiments/files/memory.hpp"
 #include "experiments/files/npy.hpp"
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/box_peers.hpp"
 #include "experiments/replay/box_methods.hpp"
-#include "experiments/replay/method_names.hpp"
 #include "experiments/scenes/boxes.hpp"
 #include "experiments/studies/clocks.hpp"
-#include "experiments/studies/percentile.hpp"
+#include "experiments/studies/statistics.hpp"
 #include "experiments/studies/study.hpp"
 
 namespace bvlab {
@@ -44,9 +41,7 @@ struct Case {
   std::size_t count;
   double displacement;
   unsigned seed;
-  Row key() const {
-    return {set, std::to_string(count), motion, text_of(displacement), std::to_string(seed)};
-  }
+  Row key() const { return {set, text_of(count), motion, text_of(displacement), text_of(seed)}; }
 };
 struct Variant {
   std::string method, coherent, changes, sort;
@@ -78,7 +73,9 @@ struct Settings {
 bool is_file(const std::string& set) { return set.ends_with(".npy"); }
 
 StudyParameters parameters() {
-  const std::vector<std::string> sets = box_set_names(), methods = method_names();
+  const std::vector<std::string> sets = box_set_names();
+  std::vector<std::string> methods;
+  for (const auto* entry : method_entries()) methods.emplace_back(entry->name);
   StudyParameters all{
       words_parameter("sets", sets, "of boxes", sets),
       wholes_parameter("counts", {10000}, {1, 1e8}, "boxes in a set"),
@@ -93,11 +90,12 @@ StudyParameters parameters() {
       wholes_parameter("threads", {1}, {1, 1024}, "of methods"),
       words_parameter("peers", {}, "other libraries", box_peer_names()),
       words_parameter("peers_if_built", {}, "peers that a build may not have"),
-      word_parameter("reference", "", "method or peer that the others are compared with; the last"),
-      whole_parameter("frames", 10, {1, 1e6}, "frames, the start included"),
-      whole_parameter("steady_from", 1, {1, 1e6}, "frame from which times are taken"),
-      whole_parameter("plays", 1, {1, 1000}, "runs, of which each frame's fastest counts"),
-      number_parameter("seconds_a_frame", 1, {0}, "limit at which a variant is given up")};
+      one(words_parameter("reference", {},
+                          "method or peer that the others are compared with; the last")),
+      one(wholes_parameter("frames", {10}, {1, 1e6}, "frames, the start included")),
+      one(wholes_parameter("steady_from", {1}, {1, 1e6}, "frame from which times are taken")),
+      one(wholes_parameter("plays", {1}, {1, 1000}, "runs, of which each frame's fastest counts")),
+      one(numbers_parameter("seconds_a_frame", {1}, {0}, "limit at which a variant is given up"))};
   all[0].takes_files = true;
   return all;
 }
@@ -145,13 +143,6 @@ Settings settings_of(const StudyDefinition& definition) {
 }
 void check_settings(const StudyDefinition& definition) { settings_of(definition); }
 
-double processor_ns() { return 1e9 * processor_seconds(); }
-double wall_ns() { return 1e9 * wall_seconds(); }
-double mean(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0 : sum / static_cast<double>(values.size());
-}
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -208,9 +199,10 @@ Outcome play(const Variant& variant, const Frames& frames, const Settings& setti
   const std::size_t heap = heap_bytes();
   Player player(variant);
   for (std::size_t f = 0; f < frames.boxes.size(); ++f) {
-    const double start_wall = wall_ns(), start = processor_ns();
+    const double start_wall = wall_seconds(), start = processor_seconds();
     const auto pairs = player.overlapping(frames.boxes[f], frames.moved[f]);
-    const double ns = processor_ns() - start, took = wall_ns() - start_wall;
+    const double ns = 1e9 * (processor_seconds() - start),
+                 took = 1e9 * (wall_seconds() - start_wall);
     outcome.answers.push_back(answer_of(pairs));
     outcome.ns.push_back(ns), outcome.wall.push_back(took);
     if (f > 0 && f >= settings.steady_from) events.push_back(static_cast<double>(player.events()));
@@ -242,7 +234,7 @@ void sum_up(Outcome& outcome, const Settings& settings) {
   outcome.frame_ns = mean(later), outcome.middle_ns = median(later);
   outcome.p99_ns = percentile(later, 0.99);
   outcome.worst_ns = later.empty() ? 0 : *std::max_element(later.begin(), later.end());
-  outcome.wall_ns = mean({outcome.wall.begin() + from, outcome.wall.end()});
+  outcome.wall_ns = mean(std::span(outcome.wall).subspan(static_cast<std::size_t>(from)));
 }
 
 class BoxStudy {
@@ -251,7 +243,7 @@ class BoxStudy {
       : settings_(settings_of(definition)), repetitions_(definition.repetitions), record_(record) {}
 
   void run() {
-    record_.each(settings_.cases, std::mem_fn(&Case::key), [&](const Case& c) { run_case(c); });
+    record_.each(settings_.cases, &Case::key, [&](const Case& c) { run_case(c); });
   }
 
  private:
@@ -269,15 +261,14 @@ class BoxStudy {
       for (std::size_t k = 0; k < outcomes.size(); ++k)
         if (outcomes[k]) {
           sum_up(*outcomes[k], settings_);
-          add_row(c, k, repetition, frames, *outcomes[k], reference);
+          add_row(settings_.variants[k], repetition, frames, *outcomes[k], reference);
         }
     }
   }
   /// What the others are compared with comes first.
   std::vector<std::size_t> drawn_order(bool reference_first) {
-    std::vector<std::size_t> order(settings_.variants.size());
-    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-    std::shuffle(order.begin(), order.end(), random_);
+    auto order = numbers_below(settings_.variants.size());
+    record_.shuffle(order);
     if (reference_first)
       std::swap(*std::find(order.begin(), order.end(), settings_.reference), order[0]);
     return order;
@@ -325,30 +316,23 @@ class BoxStudy {
     return std::to_string(k) + " " + c.set + " " + c.motion;
   }
 
-  void add_row(const Case& c, std::size_t k, unsigned repetition, const Frames& frames,
-               const Outcome& outcome, const std::vector<Answer>& reference) {
+  void add_row(const Variant& v, unsigned repetition, const Frames& frames, const Outcome& outcome,
+               const std::vector<Answer>& reference) {
     std::size_t differing = 0;
     for (std::size_t f = 0; f < outcome.answers.size(); ++f)
       differing += f < reference.size() && outcome.answers[f] != reference[f];
-    const Variant& v = settings_.variants[k];
-    const auto whole = [](double value) { return std::to_string(std::llround(value)); };
-    Row row = c.key();
-    for (auto& field :
-         {std::to_string(frames.boxes[0].size()), v.method, v.coherent, v.changes, v.sort,
-          std::to_string(v.threads), std::to_string(repetition),
-          std::to_string(outcome.answers.size()), std::to_string(outcome.answers.back().pairs),
-          whole(outcome.events), std::to_string(differing), whole(outcome.first_ns),
-          whole(outcome.frame_ns), whole(outcome.middle_ns), whole(outcome.p99_ns),
-          whole(outcome.worst_ns), whole(outcome.wall_ns), std::to_string(outcome.bytes)})
-      row.push_back(field);
-    record_.add(std::move(row));
+    const auto whole = [](double value) { return std::llround(value); };
+    record_.add(frames.boxes[0].size(), v.method, v.coherent, v.changes, v.sort, v.threads,
+                repetition, outcome.answers.size(), outcome.answers.back().pairs,
+                whole(outcome.events), differing, whole(outcome.first_ns), whole(outcome.frame_ns),
+                whole(outcome.middle_ns), whole(outcome.p99_ns), whole(outcome.worst_ns),
+                whole(outcome.wall_ns), outcome.bytes);
   }
 
   Settings settings_;
   unsigned repetitions_;
   StudyRecord& record_;
   std::set<std::string> slow_;
-  std::mt19937 random_{20260101};
 };
 
 void run(const StudyDefinition& definition, StudyRecord& record) {

@@ -3,7 +3,6 @@
 /// the same traces. The truth is the distance at relative error 0.
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/replay.hpp"
@@ -19,35 +18,30 @@ StudyParameters parameters() {
   const NumberBounds lengths{0, 1e6};
   return {numbers_parameter("relative_errors", {0, 0.01, 0.1, 0.5}, {0}, "that are promised"),
           words_parameter("strategies", {"recursive"}, "see `bvlab list strategies`"),
-          number_parameter("side", 4, {1e-6, 1e6}, "of the cube, in radii of the body"),
+          one(numbers_parameter("side", {4}, {1e-6, 1e6}, "of the cube, in radii of the body")),
           words_parameter("mesh", {"bunny"}, "meshes, NAME or NAME:POLYGONS: a scene for each"),
-          whole_parameter("polygons", 5000, {1, most_polygons}, "triangles of each mesh"),
-          whole_parameter("objects", 9, {1, 1000}, "bodies"),
-          whole_parameter("frames", 50, {1, 1e6}, "frames, the start included"),
-          whole_parameter("seed", 1, seeds, "of the random numbers"),
-          number_parameter("step", 0.1, lengths, "length of a step, in radii of the body"),
-          number_parameter("degrees", 20, {0, 180}, "angle of a step")};
+          one(wholes_parameter("polygons", {5000}, {1, most_polygons}, "triangles of each mesh")),
+          one(wholes_parameter("objects", {9}, {1, 1000}, "bodies")),
+          one(wholes_parameter("frames", {50}, {1, 1e6}, "frames, the start included")),
+          one(wholes_parameter("seed", {1}, seeds, "of the random numbers")),
+          one(numbers_parameter("step", {0.1}, lengths, "length of a step, in radii of the body")),
+          one(numbers_parameter("degrees", {20}, {0, 180}, "angle of a step"))};
 }
 
-struct Settings {
-  std::vector<double> errors;
-  std::vector<std::string> strategies;
-};
-
-Settings settings_of(const StudyDefinition& definition) {
-  Settings settings;
-  settings.errors = definition.numbers("relative_errors");
-  settings.strategies = definition.words("strategies");
-  for (const auto& strategy : settings.strategies)
-    for (const double error : settings.errors) {
-      Variant variant;
+/// Of every strategy, each relative error.
+std::vector<Variant> variants_of(const StudyDefinition& definition) {
+  std::vector<Variant> variants;
+  for (const auto& strategy : definition.words("strategies"))
+    for (const double error : definition.numbers("relative_errors")) {
+      Variant& variant = variants.emplace_back();
       variant.query = "distance", variant.strategy = strategy, variant.relative_error = error;
-      bvlab::check(variant);
     }
-  return settings;
+  return variants;
 }
 
-void check_settings(const StudyDefinition& definition) { settings_of(definition); }
+void check_variants(const StudyDefinition& definition) {
+  for (const Variant& variant : variants_of(definition)) bvlab::check(variant);
+}
 
 /// Bodies of one mesh wandering about.
 std::pair<std::vector<TriangleMesh>, Trace> scene_of(const StudyDefinition& definition,
@@ -86,38 +80,31 @@ Observed compared(const std::vector<double>& answers, const std::vector<double>&
 }
 
 void run(const StudyDefinition& definition, StudyRecord& record) {
-  const Settings settings = settings_of(definition);
-  std::mt19937_64 random(20260101);
-  const auto measure = [&](const std::string& name) {
+  const auto variants = variants_of(definition);
+  record.each(definition.words("mesh"), [&](const std::string& name) {
     const auto [meshes, trace] = scene_of(definition, name);
-    Variant variant;
-    variant.query = "distance";
-    const auto truth = replay(meshes, trace, variant, {}).distances;
+    Variant exact;
+    exact.query = "distance";
+    const auto truth = replay(meshes, trace, exact, {}).distances;
     const auto touching = std::count(truth.begin(), truth.end(), 0.0);
     std::vector<std::pair<Variant, ReplayResult>> cells;
-    for (const auto& strategy : settings.strategies)
-      for (const double error : settings.errors)
-        for (const auto& volume : volumes()) {
-          variant.volume = volume.name, variant.strategy = strategy, variant.relative_error = error;
-          ReplayOptions options;
-          options.count = Count::on;
-          cells.emplace_back(variant, replay(meshes, trace, variant, options));
-        }
-    for (unsigned repetition = 0; repetition < definition.repetitions; ++repetition) {
-      std::shuffle(cells.begin(), cells.end(), random);
-      for (const auto& [cell, counted] : cells) {
-        const auto timed = replay(meshes, trace, cell, {});
-        const Observed observed = compared(timed.distances, truth, cell.relative_error);
-        record.add(
-            {name, cell.volume, cell.strategy, text_of(cell.relative_error),
-             std::to_string(repetition), std::to_string(truth.size()), std::to_string(touching),
-             text_of(observed.largest), text_of(observed.sum / static_cast<double>(truth.size())),
-             std::to_string(observed.below + observed.above), std::to_string(counted.n_u),
-             std::to_string(counted.n_v), std::to_string(counted.n_p), nanoseconds(timed.seconds)});
+    for (Variant variant : variants)
+      for (const auto& volume : volumes()) {
+        variant.volume = volume.name;
+        ReplayOptions options;
+        options.count = Count::on;
+        cells.emplace_back(variant, replay(meshes, trace, variant, options));
       }
-    }
-  };
-  record.each(definition.words("mesh"), row_of, measure);
+    record.interleave(cells.size(), [&](std::size_t k, unsigned repetition) {
+      const auto& [cell, counted] = cells[k];
+      const auto timed = replay(meshes, trace, cell, {});
+      const Observed observed = compared(timed.distances, truth, cell.relative_error);
+      record.add(cell.volume, cell.strategy, cell.relative_error, repetition, truth.size(),
+                 touching, observed.largest, observed.sum / static_cast<double>(truth.size()),
+                 observed.below + observed.above, counted.n_u, counted.n_v, counted.n_p,
+                 nanoseconds(timed.seconds));
+    });
+  });
 }
 
 }  // namespace
@@ -126,7 +113,7 @@ const StudyKind studies::distance = {
     "distance",
     "the relative error of distances, promised and seen, against time",
     parameters,
-    check_settings,
+    check_variants,
     {"mesh", "volume", "strategy", "relative_error", "repetition", "answers", "touching",
      "largest_error", "mean_error", "outside", "n_u", "n_v", "n_p", "time_ns"},
     run};

@@ -4,18 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/files/joined.hpp"
 #include "experiments/files/unusable.hpp"
 
 namespace bvlab {
 namespace {
 
 using Type = StudyParameter::Type;
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string all;
-  for (const auto& word : words) all += (all.empty() ? "" : ", ") + word;
-  return all;
-}
 
 /// As it would be written: 1000000, not 1e+06.
 std::string plain(double value) {
@@ -78,33 +73,15 @@ void StudyParameter::check(const std::vector<std::string>& values, const std::st
   }
 }
 
-StudyParameter word_parameter(std::string name, std::string fallback, std::string what,
-                              std::vector<std::string> names) {
-  std::vector<std::string> one;
-  if (!fallback.empty()) one.push_back(std::move(fallback));
-  return {std::move(name), Type::word, false,           std::move(one),
-          std::move(what), {},         std::move(names)};
-}
-
 StudyParameter words_parameter(std::string name, std::vector<std::string> fallback,
                                std::string what, std::vector<std::string> names) {
   return {std::move(name), Type::word, true, std::move(fallback), std::move(what), {},
           std::move(names)};
 }
 
-StudyParameter number_parameter(std::string name, double fallback, NumberBounds bounds,
-                                std::string what) {
-  return {std::move(name), Type::number, false, texts_of({fallback}), std::move(what), bounds};
-}
-
 StudyParameter numbers_parameter(std::string name, const std::vector<double>& fallback,
                                  NumberBounds bounds, std::string what) {
   return {std::move(name), Type::number, true, texts_of(fallback), std::move(what), bounds};
-}
-
-StudyParameter whole_parameter(std::string name, double fallback, NumberBounds bounds,
-                               std::string what) {
-  return {std::move(name), Type::whole, false, texts_of({fallback}), std::move(what), bounds};
 }
 
 StudyParameter wholes_parameter(std::string name, const std::vector<double>& fallback,

@@ -39,21 +39,20 @@ struct StudyParameter {
 
 using StudyParameters = std::vector<StudyParameter>;
 
-/// One word, or as many as there are in a list.
-StudyParameter word_parameter(std::string name, std::string fallback, std::string what,
-                              std::vector<std::string> names = {});
+/// A list of words or of numbers.
 StudyParameter words_parameter(std::string name, std::vector<std::string> fallback,
                                std::string what, std::vector<std::string> names = {});
-
 using NumberBounds = StudyParameter::Bounds;
-StudyParameter number_parameter(std::string name, double fallback, NumberBounds bounds,
-                                std::string what);
 StudyParameter numbers_parameter(std::string name, const std::vector<double>& fallback,
                                  NumberBounds bounds, std::string what);
-StudyParameter whole_parameter(std::string name, double fallback, NumberBounds bounds,
-                               std::string what);
 StudyParameter wholes_parameter(std::string name, const std::vector<double>& fallback,
                                 NumberBounds bounds, std::string what);
+
+/// The same, of one value.
+inline StudyParameter one(StudyParameter parameter) {
+  parameter.is_list = false;
+  return parameter;
+}
 
 inline constexpr NumberBounds seeds{1, 1e9};
 

@@ -24,6 +24,7 @@
 #include "experiments/replay/hierarchies_of.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/triangle_test.hpp"
+#include "experiments/studies/statistics.hpp"
 #include "experiments/studies/study.hpp"
 #include "hierarchies/geometry/enclosing_sphere.hpp"
 
@@ -33,43 +34,34 @@ namespace {
 StudyParameters parameters() {
   std::vector<std::string> all;
   for (const auto& volume : volumes()) all.push_back(volume.name);
-  return {words_parameter("mesh", {"bunny"}, "meshes, NAME or NAME:POLYGONS"),
-          words_parameter("volumes", all, "that are fitted", all),
-          words_parameter("builds", {Variant{}.build}, "see `bvlab list builds`"),
-          words_parameter("fits", {"published", "tight"}, "how volumes are fitted"),
-          whole_parameter("polygons", 5000, {1, 1e6}, "triangles of each mesh"),
-          whole_parameter("leaf_size", 1, {1, 1 << 16}, "triangles in a leaf, at most"),
-          whole_parameter("nodes", 64, {1, 1e6}, "nodes of a level that are probed, at most"),
-          whole_parameter("probes", 1024, {1, 1e6}, "points for each level, at least"),
-          whole_parameter("seed", 1, seeds, "of the random numbers")};
+  return {
+      words_parameter("mesh", {"bunny"}, "meshes, NAME or NAME:POLYGONS"),
+      words_parameter("volumes", all, "that are fitted", all),
+      words_parameter("builds", {Variant{}.build}, "see `bvlab list builds`"),
+      words_parameter("fits", {"published", "tight"}, "how volumes are fitted"),
+      one(wholes_parameter("polygons", {5000}, {1, 1e6}, "triangles of each mesh")),
+      one(wholes_parameter("leaf_size", {1}, {1, 1 << 16}, "triangles in a leaf, at most")),
+      one(wholes_parameter("nodes", {64}, {1, 1e6}, "nodes of a level that are probed, at most")),
+      one(wholes_parameter("probes", {1024}, {1, 1e6}, "points for each level, at least")),
+      one(wholes_parameter("seed", {1}, seeds, "of the random numbers"))};
 }
 
-struct Settings {
-  std::vector<std::string> meshes, volumes, builds, fits;
-  std::size_t leaf_size, nodes, probes, seed;
+/// Of a build, every volume by every fit.
+std::vector<Variant> variants_of(const StudyDefinition& definition, const std::string& build) {
+  std::vector<Variant> variants;
+  for (const auto& volume : definition.words("volumes"))
+    for (const auto& fit : definition.words("fits")) {
+      Variant& variant = variants.emplace_back();
+      variant.volume = volume, variant.build = build, variant.fit = fit;
+      variant.leaf_size = static_cast<std::uint32_t>(definition.whole("leaf_size"));
+    }
+  return variants;
+}
 
-  explicit Settings(const StudyDefinition& definition)
-      : meshes(definition.words("mesh")),
-        volumes(definition.words("volumes")),
-        builds(definition.words("builds")),
-        fits(definition.words("fits")),
-        leaf_size(definition.whole("leaf_size")),
-        nodes(definition.whole("nodes")),
-        probes(definition.whole("probes")),
-        seed(definition.whole("seed")) {
-    for (const auto& volume : volumes)
-      for (const auto& build : builds)
-        for (const auto& fit : fits) bvlab::check(variant(volume, build, fit));
-  }
-
-  Variant variant(const std::string& volume, const std::string& build,
-                  const std::string& fit) const {
-    Variant variant;
-    variant.volume = volume, variant.build = build, variant.fit = fit;
-    variant.leaf_size = static_cast<std::uint32_t>(leaf_size);
-    return variant;
-  }
-};
+void check_variants(const StudyDefinition& definition) {
+  for (const auto& build : definition.words("builds"))
+    for (const Variant& variant : variants_of(definition, build)) bvlab::check(variant);
+}
 
 struct Probe {
   Vec3<double> at;
@@ -107,8 +99,12 @@ double diameter_of(const std::vector<Triangle>& triangles) {
 /// Probes for the nodes of a topology, the same for every volume that is fitted to it.
 class Prober {
  public:
-  Prober(const TriangleMesh& mesh, const Topology& topology, const Settings& settings)
-      : mesh_(mesh), topology_(topology), settings_(settings), random_(settings.seed) {}
+  Prober(const TriangleMesh& mesh, const Topology& topology, const StudyDefinition& definition)
+      : mesh_(mesh),
+        topology_(topology),
+        most_nodes_(definition.whole("nodes")),
+        probes_(definition.whole("probes")),
+        random_(definition.whole("seed")) {}
 
   std::vector<ProbedLevel> levels() {
     std::vector<ProbedLevel> levels;
@@ -120,8 +116,8 @@ class Prober {
       ProbedLevel& probed = levels.emplace_back();
       probed.nodes = level.size();
       std::shuffle(level.begin(), level.end(), random_);
-      const std::size_t nodes = std::min(level.size(), settings_.nodes);
-      const std::size_t probes = (settings_.probes + nodes - 1) / nodes;
+      const std::size_t nodes = std::min(level.size(), most_nodes_);
+      const std::size_t probes = (probes_ + nodes - 1) / nodes;
       for (const auto node : level) {
         if (probed.probed.size() == nodes) break;
         if (ProbedNode done = around(node, probes); done.diameter > 0)
@@ -173,7 +169,7 @@ class Prober {
 
   const TriangleMesh& mesh_;
   const Topology& topology_;
-  const Settings& settings_;
+  std::size_t most_nodes_, probes_;
   std::mt19937_64 random_;
   std::uniform_real_distribution<double> uniform_;
   std::normal_distribution<double> normal_;
@@ -208,14 +204,9 @@ double quantile(const std::vector<double>& values, double part) {
   return values[below] + (place - std::floor(place)) * (values[above] - values[below]);
 }
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
 /// One row for each level that has a node larger than a point.
-void add_rows(StudyRecord& record, const Row& key, const std::vector<std::vector<double>>& left,
+void add_rows(StudyRecord& record, const Variant& variant,
+              const std::vector<std::vector<double>>& left,
               const std::vector<ProbedLevel>& levels) {
   for (std::size_t depth = 0; depth < levels.size(); ++depth) {
     const ProbedLevel& level = levels[depth];
@@ -223,40 +214,26 @@ void add_rows(StudyRecord& record, const Row& key, const std::vector<std::vector
     std::vector<double> diameters;
     for (const auto& node : level.probed) diameters.push_back(node.diameter);
     const auto& shares = left[depth];
-    Row row = key;
-    for (const std::size_t n : {depth, level.nodes, level.probed.size(), shares.size()})
-      row.push_back(std::to_string(n));
-    for (const double value :
-         {mean_of(diameters), mean_of(shares), shares.front(), quantile(shares, 0.25),
-          quantile(shares, 0.5), quantile(shares, 0.75), shares.back()})
-      row.push_back(text_of(value));
-    record.add(std::move(row));
+    record.add(variant.volume, variant.build, variant.fit, depth, level.nodes, level.probed.size(),
+               shares.size(), mean(diameters), mean(shares), shares.front(), quantile(shares, 0.25),
+               quantile(shares, 0.5), quantile(shares, 0.75), shares.back());
   }
 }
-
-void measure(StudyRecord& record, const TriangleMesh& mesh, const std::string& name,
-             const Settings& settings) {
-  for (const auto& build : settings.builds) {
-    const Topology topology =
-        topology_of(mesh, settings.variant(settings.volumes[0], build, settings.fits[0]));
-    const auto levels = Prober(mesh, topology, settings).levels();
-    for (const auto& name_of_volume : settings.volumes)
-      for (const auto& fit : settings.fits) {
-        const VolumeEntry& volume = volume_entry(name_of_volume);
-        const Fit how = fit == "tight" ? Fit::tight : Fit::published;
-        if (how == Fit::tight && !volume.has_tight_fit) continue;
-        add_rows(record, {name, name_of_volume, build, fit},
-                 left_out(volume, mesh, topology, how, levels), levels);
-      }
-  }
-}
-
-void check_settings(const StudyDefinition& definition) { Settings{definition}; }
 
 void run(const StudyDefinition& definition, StudyRecord& record) {
-  const Settings settings(definition);
-  record.each(settings.meshes, row_of, [&](const std::string& name) {
-    measure(record, mesh_of(definition, name), name, settings);
+  record.each(definition.words("mesh"), [&](const std::string& name) {
+    const TriangleMesh mesh = mesh_of(definition, name);
+    for (const auto& build : definition.words("builds")) {
+      const auto variants = variants_of(definition, build);
+      const Topology topology = topology_of(mesh, variants.at(0));
+      const auto levels = Prober(mesh, topology, definition).levels();
+      for (const Variant& variant : variants) {
+        const VolumeEntry& volume = volume_entry(variant.volume);
+        const Fit fit = fit_of(variant);
+        if (fit == Fit::tight && !volume.has_tight_fit) continue;
+        add_rows(record, variant, left_out(volume, mesh, topology, fit, levels), levels);
+      }
+    }
   });
 }
 
@@ -266,7 +243,7 @@ const StudyKind studies::tightness = {
     "tightness",
     "what volumes leave out of distances, level by level of the tree",
     parameters,
-    check_settings,
+    check_variants,
     {"mesh", "volume", "build", "fit", "level", "nodes", "probed", "probes", "diameter", "mean",
      "least", "lower_quartile", "median", "upper_quartile", "largest"},
     run};

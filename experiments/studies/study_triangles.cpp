@@ -4,11 +4,7 @@
 #include <time.h>
 
 #include <algorithm>
-#include <bit>
-#include <functional>
-#include <random>
 
-#include "experiments/files/unusable.hpp"
 #include "experiments/peers/triangle_oracle.hpp"
 #include "experiments/peers/triangle_tests.hpp"
 #include "experiments/replay/triangle_test.hpp"
@@ -59,31 +55,17 @@ StudyParameters parameters() {
   std::vector<std::string> sets;
   for (const auto& set : triangle_sets) sets.emplace_back(set.name);
   return {words_parameter("sets", sets, "of pairs of triangles", sets),
-          whole_parameter("pairs", 50000, {1, 1e7}, "pairs in each set"),
-          whole_parameter("at_once", 5000, {1, 1e7}, "pairs that are timed together"),
-          whole_parameter("seed", 1, seeds, "of the random numbers")};
-}
-
-struct Settings {
-  std::vector<const TriangleSet*> sets;
-  std::size_t pairs, at_once;
-  std::uint64_t seed;
-};
-
-Settings settings_of(const StudyDefinition& definition) {
-  Settings settings{
-      {}, definition.whole("pairs"), definition.whole("at_once"), definition.whole("seed")};
-  for (const auto& name : definition.words("sets"))
-    settings.sets.push_back(
-        &*std::find_if(std::begin(triangle_sets), std::end(triangle_sets),
-                       [&](const TriangleSet& set) { return set.name == name; }));
-  return settings;
+          one(wholes_parameter("pairs", {50000}, {1, 1e7}, "pairs in each set")),
+          one(wholes_parameter("at_once", {5000}, {1, 1e7}, "pairs that are timed together")),
+          one(wholes_parameter("seed", {1}, seeds, "of the random numbers"))};
 }
 
 /// Pairs with area, so that every test can answer, but for the sets that are made of others.
-std::vector<TrianglePair> pairs_of(const TriangleSet& set, const Settings& settings,
+std::vector<TrianglePair> pairs_of(const std::string& name, const StudyDefinition& definition,
                                    bool zero_area) {
-  auto pairs = set.make(settings.pairs, settings.seed);
+  const auto set = std::find_if(std::begin(triangle_sets), std::end(triangle_sets),
+                                [&](const TriangleSet& each) { return each.name == name; });
+  auto pairs = set->make(definition.whole("pairs"), definition.whole("seed"));
   if (!zero_area)
     std::erase_if(pairs, [](const TrianglePair& pair) {
       return oracle::without_area(pair[0]) || oracle::without_area(pair[1]);
@@ -92,52 +74,41 @@ std::vector<TrianglePair> pairs_of(const TriangleSet& set, const Settings& setti
 }
 
 /// Of this thread on a processor: neighbours on the machine disturb that less than the wall clock.
-double nanoseconds(const std::function<void()>& work) {
-  const auto now = [] {
-    timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
-  };
-  const double start = now();
-  work();
-  return now() - start;
+double thread_nanoseconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e9 * static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec);
 }
 
 void run(const StudyDefinition& definition, StudyRecord& record) {
-  const Settings settings = settings_of(definition);
-  std::mt19937_64 random(20260101);
-  const auto measure = [&](const TriangleSet* set) {
-    const std::string set_name(set->name);
-    const bool zero_area = set_name.starts_with("without area");
-    const auto pairs = pairs_of(*set, settings, zero_area);
+  const std::size_t at_once = definition.whole("at_once");
+  const std::vector<Test> tests = all_tests();
+  record.each(definition.words("sets"), [&](const std::string& set) {
+    const bool zero_area = set.starts_with("without area");
+    const auto pairs = pairs_of(set, definition, zero_area);
     std::vector<std::uint8_t> truth, verdicts(pairs.size());
     for (const auto& [a, b] : pairs) truth.push_back(oracle::intersect(a, b));
-    std::vector<Test> tests = all_tests();
-    for (unsigned repetition = 0; repetition < definition.repetitions; ++repetition) {
-      std::shuffle(tests.begin(), tests.end(), random);
-      for (const Test& test : tests) {
-        if (zero_area && !test.takes_zero_area) continue;
-        // Pairs few enough to stay in the cache: once to bring them there, then by the clock.
-        double time = 0;
-        for (std::size_t first = 0; first < pairs.size(); first += settings.at_once) {
-          const Pairs some(&pairs[first], std::min(settings.at_once, pairs.size() - first));
-          if (first == 0) test.decide(some, &verdicts[first]);
-          time += nanoseconds([&] { test.decide(some, &verdicts[first]); });
-        }
-        std::size_t touching = 0, positives = 0, negatives = 0;
-        for (std::size_t i = 0; i < pairs.size(); ++i) {
-          touching += truth[i];
-          positives += verdicts[i] > truth[i], negatives += verdicts[i] < truth[i];
-        }
-        record.add({set_name, test.name, test.source, std::to_string(repetition),
-                    std::to_string(pairs.size()), std::to_string(touching),
-                    std::to_string(positives), std::to_string(negatives),
-                    text_of(time / static_cast<double>(pairs.size()))});
+    record.interleave(tests.size(), [&](std::size_t k, unsigned repetition) {
+      const Test& test = tests[k];
+      if (zero_area && !test.takes_zero_area) return;
+      // Pairs few enough to stay in the cache: once to bring them there, then by the clock.
+      double time = 0;
+      for (std::size_t first = 0; first < pairs.size(); first += at_once) {
+        const Pairs some(&pairs[first], std::min(at_once, pairs.size() - first));
+        if (first == 0) test.decide(some, &verdicts[first]);
+        const double start = thread_nanoseconds();
+        test.decide(some, &verdicts[first]);
+        time += thread_nanoseconds() - start;
       }
-    }
-  };
-  record.each(
-      settings.sets, [](const TriangleSet* set) { return Row{std::string(set->name)}; }, measure);
+      std::size_t touching = 0, positives = 0, negatives = 0;
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        touching += truth[i];
+        positives += verdicts[i] > truth[i], negatives += verdicts[i] < truth[i];
+      }
+      record.add(test.name, test.source, repetition, pairs.size(), touching, positives, negatives,
+                 time / static_cast<double>(pairs.size()));
+    });
+  });
 }
 
 }  // namespace

@@ -2,9 +2,7 @@
 /// Whole scenes: many bodies in a closed cube of which some move, our engine and other libraries'
 /// complete pipelines on the same trace, answers compared pair by pair in every frame.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <random>
 
 #include "experiments/files/unusable.hpp"
 #include "experiments/peers/world_peers.hpp"
@@ -51,10 +49,10 @@ double side_of(const Scene& scene) {
 
 StudyParameters parameters() {
   const Variant standard;
-  return {word_parameter("mesh", "bunny", "NAME"),
-          whole_parameter("polygons", 500, {1, 1e7}, "triangles of the mesh"),
-          whole_parameter("frames", 12, {2, 1e5}, "frames, the start included"),
-          whole_parameter("seed", 1, {0, 1e9}, "of the random numbers"),
+  return {one(words_parameter("mesh", {"bunny"}, "NAME")),
+          one(wholes_parameter("polygons", {500}, {1, 1e7}, "triangles of the mesh")),
+          one(wholes_parameter("frames", {12}, {2, 1e5}, "frames, the start included")),
+          one(wholes_parameter("seed", {1}, {0, 1e9}, "of the random numbers")),
           numbers_parameter("steps", {0.03}, {0, 1e6}, "lengths of a step, in radii of the body"),
           numbers_parameter("degrees", {5}, {0, 180}, "angles of a step, one for each length"),
           wholes_parameter("objects", {1000}, {1, 1e6}, "bodies"),
@@ -64,9 +62,10 @@ StudyParameters parameters() {
           wholes_parameter("threads", {1}, {1, 1024}, "of ours"),
           words_parameter("volumes", {"sphere"}, "see `bvlab list volumes`"),
           words_parameter("strategies", {"recursive"}, "see `bvlab list strategies`"),
-          word_parameter("build", standard.build, "see `bvlab list builds`"),
-          word_parameter("fit", standard.fit, "how volumes are fitted"),
-          whole_parameter("leaf_size", standard.leaf_size, {1, 64}, "triangles in a leaf, at most"),
+          one(words_parameter("build", {standard.build}, "see `bvlab list builds`")),
+          one(words_parameter("fit", {standard.fit}, "how volumes are fitted")),
+          one(wholes_parameter("leaf_size", {static_cast<double>(standard.leaf_size)}, {1, 64},
+                               "triangles in a leaf, at most")),
           words_parameter("configurations", {}, "see `bvlab list configurations`"),
           words_parameter("peers", {}, "complete pipelines of others")};
 }
@@ -142,13 +141,13 @@ Trace trace_of(const Scene& scene, const Settings& settings, const TriangleMesh&
 
 WorldRun run_of(const Contestant& who, const TriangleMesh& mesh, const Trace& trace,
                 Answers answers) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = wall_seconds();
   const std::span meshes(&mesh, 1);
   auto world = who.peer.empty() ? make_world(meshes, trace.objects, who.variant, who.threads)
                                 : make_world_peer(who.peer, meshes, trace.objects);
-  const std::chrono::duration<double> built = std::chrono::steady_clock::now() - start;
+  const double built = wall_seconds() - start;
   WorldRun run = play_frames(*world, trace, answers);
-  run.build_seconds = built.count();
+  run.build_seconds = built;
   return run;
 }
 
@@ -163,45 +162,28 @@ void run(const StudyDefinition& definition, StudyRecord& record) {
   for (auto& who : settings.contestants)
     if (!who.configuration.empty())
       who.variant = configured({}, who.configuration, std::span(&mesh, 1)).variant;
-  std::mt19937_64 random(20260101);
   const auto key_of = [&](const Scene& scene) {
-    return Row{std::to_string(scene.objects),
-               text_of(scene.room),
-               text_of(scene.moving),
-               text_of(scene.step),
-               text_of(scene.degrees),
-               settings.mesh,
-               std::to_string(settings.polygons),
-               std::to_string(settings.frames),
-               std::to_string(settings.seed)};
+    Row row;
+    add_to(row, scene.objects, scene.room, scene.moving, scene.step, scene.degrees, settings.mesh,
+           settings.polygons, settings.frames, settings.seed);
+    return row;
   };
   record.each(settings.scenes, key_of, [&](const Scene& scene) {
     const Trace trace = trace_of(scene, settings, mesh);
     const WorldRun reference = run_of({}, mesh, trace, Answers::kept);
-    std::vector<std::size_t> order, differences;
-    for (const auto& who : settings.contestants) {
-      order.push_back(order.size());
+    std::vector<std::size_t> differences;
+    for (const auto& who : settings.contestants)
       differences.push_back(differing(run_of(who, mesh, trace, Answers::kept), reference));
-    }
-    for (unsigned repetition = 0; repetition < definition.repetitions; ++repetition) {
-      std::shuffle(order.begin(), order.end(), random);
-      for (const std::size_t k : order) {
-        const auto& who = settings.contestants[k];
-        const WorldRun timed = run_of(who, mesh, trace, Answers::counted);
-        const bool ours = who.peer.empty();
-        Row row = key_of(scene);
-        for (const auto& field :
-             {ours ? who.variant.volume : "", ours ? who.variant.strategy : "",
-              ours ? who.variant.kernel : "", who.configuration, who.peer,
-              std::to_string(who.threads), std::to_string(repetition), nanoseconds(timed.seconds),
-              nanoseconds(timed.first_seconds), nanoseconds(timed.build_seconds),
-              std::to_string(timed.moved), ours ? std::to_string(timed.near) : "",
-              ours ? std::to_string(timed.queried) : "", std::to_string(timed.touching),
-              std::to_string(differences[k])})
-          row.push_back(field);
-        record.add(std::move(row));
-      }
-    }
+    record.interleave(settings.contestants.size(), [&](std::size_t k, unsigned repetition) {
+      const auto& who = settings.contestants[k];
+      const WorldRun timed = run_of(who, mesh, trace, Answers::counted);
+      const auto if_ours = [&](const auto& what) { return who.peer.empty() ? text_of(what) : ""; };
+      record.add(if_ours(who.variant.volume), if_ours(who.variant.strategy),
+                 if_ours(who.variant.kernel), who.configuration, who.peer, who.threads, repetition,
+                 nanoseconds(timed.seconds), nanoseconds(timed.first_seconds),
+                 nanoseconds(timed.build_seconds), timed.moved, if_ours(timed.near),
+                 if_ours(timed.queried), timed.touching, differences[k]);
+    });
   });
 }
 

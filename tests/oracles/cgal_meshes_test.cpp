@@ -2,6 +2,8 @@
 /// Meshes as they are met with: a sample of CGAL's data set, open, not manifold and intersecting
 /// themselves among them. Every volume, strategy and query against all pairs of triangles, decided
 /// in rational numbers.
+#include "experiments/scenes/cgal_meshes.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +17,6 @@
 #include "experiments/scenes/posed_triangles.hpp"
 #include "experiments/scenes/random_walk.hpp"
 #include "experiments/scenes/read_mesh.hpp"
-#include "experiments/scenes/simplify_mesh.hpp"
 #include "traversal/primitives/triangle_distance.hpp"
 #include "traversal/queries.hpp"
 

@@ -8,9 +8,9 @@
 #include <filesystem>
 
 #include "experiments/files/unusable.hpp"
+#include "experiments/scenes/cgal_meshes.hpp"
 #include "experiments/scenes/formula_mesh.hpp"
 #include "experiments/scenes/read_mesh.hpp"
-#include "experiments/scenes/simplify_mesh.hpp"
 
 namespace bvlab {
 namespace {

@@ -119,8 +119,7 @@ PublicMotion arm(const PublicFiles& files, const std::string& urdf, const std::s
                             std::to_string(request.frames));
   PublicMotion motion{{}, {{request.frames, meshes.size(), 7}, {}}};
   for (const auto& each : meshes)
-    motion.meshes.push_back(
-        {std::filesystem::path(each).stem().string(), parse_mesh(files[each], each)});
+    motion.meshes.push_back({stem(each), parse_mesh(files[each], each)});
   for (std::size_t frame = 0; frame < request.frames; ++frame) {
     Eigen::Isometry3d at = frames[frame].base;
     for (std::size_t link = 0; link < meshes.size(); ++link) {

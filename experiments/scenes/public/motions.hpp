@@ -14,6 +14,11 @@
 
 namespace bvlab {
 
+/// A file's name without its folder and extension.
+inline std::string stem(const std::string& path) {
+  return std::filesystem::path(path).stem().string();
+}
+
 /// Meshes, and the motion of as many objects: shape (frames, meshes, 7).
 struct PublicMotion {
   std::vector<NamedMesh> meshes;

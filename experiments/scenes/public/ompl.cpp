@@ -15,8 +15,6 @@
 namespace bvlab {
 namespace {
 
-std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
-
 void add_vertices(const aiScene& scene, const aiNode& node, aiMatrix4x4 transformation,
                   aiVector3D& sum, std::size_t& count) {
   transformation *= node.mTransformation;

@@ -51,8 +51,6 @@ TriangleMesh soup(const std::string& bytes, const std::string& name) {
   return mesh;
 }
 
-std::string stem(const std::string& path) { return std::filesystem::path(path).stem().string(); }
-
 /// x y z qw qx qy qz of each step.
 std::vector<std::array<double, 7>> steps_of(const std::string& bytes, const std::string& name,
                                             std::size_t frames) {

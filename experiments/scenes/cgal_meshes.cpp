@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/scenes/simplify_mesh.hpp"
+#include "experiments/scenes/cgal_meshes.hpp"
 
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Simple_cartesian.h>
@@ -8,6 +9,7 @@
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/LindstromTurk_cost.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/LindstromTurk_placement.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
+#include <CGAL/convex_hull_3.h>
 
 namespace bvlab {
 namespace {
@@ -65,6 +67,28 @@ TriangleMesh simplified(const TriangleMesh& mesh, std::size_t polygons) {
       CGAL::parameters::get_cost(simplification::LindstromTurk_cost<Surface>())
           .get_placement(simplification::LindstromTurk_placement<Surface>()));
   return mesh_of(surface);
+}
+
+TriangleMesh convex_hull(const TriangleMesh& mesh) {
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  std::vector<Kernel::Point_3> points;
+  for (const auto& [i, j, k] : mesh.triangles)
+    for (const auto v : {i, j, k})
+      points.emplace_back(mesh.vertices[v][0], mesh.vertices[v][1], mesh.vertices[v][2]);
+  CGAL::Surface_mesh<Kernel::Point_3> hull;
+  CGAL::convex_hull_3(points.begin(), points.end(), hull);
+  TriangleMesh result;
+  for (const auto v : hull.vertices()) {
+    const auto& p = hull.point(v);
+    result.vertices.emplace_back(p.x(), p.y(), p.z());
+  }
+  for (const auto f : hull.faces()) {
+    auto& triangle = result.triangles.emplace_back();
+    std::size_t corner = 0;
+    for (const auto v : hull.vertices_around_face(hull.halfedge(f)))
+      triangle[corner++] = static_cast<std::uint32_t>(v.idx());
+  }
+  return result;
 }
 
 }  // namespace bvlab
