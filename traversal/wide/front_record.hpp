@@ -217,7 +217,7 @@ class FrontRecord {
   /// Makes the verdict on two triangles, of a lane of an entry, an entry; returns its number.
   std::size_t add_verdict(const NodePair& numbers, std::size_t entry, int lane) {
     WideFront& front = *start_.front;
-    front[entry].kind = WideFront::Kind::sorted;
+    front.sort(entry);
     const LaneOfEntry from = static_cast<LaneOfEntry>(16 * entry) + static_cast<LaneOfEntry>(lane);
     front.open(from);
     front.gaps().add();
@@ -228,8 +228,10 @@ class FrontRecord {
   void set_verdict(std::size_t entry, bool hit, float margin, const NodePair& triangles,
                    const Frame& frame) {
     set_margin(margin, frame.reference_sphere((*start_.front)[entry].pair.a), entry);
-    ++verdicts_, lasting_verdicts_ += margin > lasting * start_.step;
-    verdicts_worn_ = verdicts_ >= 16 && 2 * lasting_verdicts_ < verdicts_;
+    if (entry >= first_new_) {
+      ++verdicts_, lasting_verdicts_ += margin > lasting * start_.step;
+      verdicts_worn_ = verdicts_worn_ || (verdicts_ >= 16 && 3 * lasting_verdicts_ < verdicts_);
+    }
     if (!hit) return;
     touched_ = triangles;
     start_.front->hits.push_back({static_cast<std::uint32_t>(entry), triangles});
@@ -247,9 +249,10 @@ class FrontRecord {
   void count(std::size_t tests) { tests_ += tests; }
   std::size_t tests() const { return tests_; }
   bool grew() const { return grew_; }
-  /// Whether most verdicts that were found do not last: they are not worth being entries.
+  /// Whether verdicts are not worth being entries: most new ones do not last, or so many are due
+  /// that testing whole leaves costs less.
   bool verdicts_worn() const { return verdicts_worn_; }
-  bool found_verdicts() const { return verdicts_ > 0; }
+  bool has_verdicts() const { return keeps_front() && start_.front->sorted() > 0; }
   /// Whether so many entries were due that the traversal left the front and started from the roots.
   bool worn() const { return worn_; }
   const std::optional<Crossing>& crossing() const { return crossing_; }
@@ -273,6 +276,8 @@ class FrontRecord {
   /// the saved tests must also pay for writing fronts.
   static constexpr float most_of_rebuild = 0.75f;
   static constexpr float lasting = 4;  // frames
+  /// Due verdicts that cost less than testing whole leaves, beside one for each pair of leaves.
+  static constexpr std::size_t few_verdicts = 16;
 
   void drop_if_raised(std::size_t i) {
     const WideFront::Entry& at = (*start_.front)[i];
@@ -310,15 +315,21 @@ class FrontRecord {
     WideFront& front = *start_.front;
     auto& due = traversal.workspace().due;
     due.clear();
+    first_new_ = front.size();
     float cost = 0;
+    std::size_t verdicts = 0;
     for (std::size_t first = 0; first < front.size(); first += MeasuredGaps::width) {
       std::uint64_t lanes = due_lanes(front, first, limit, traversal.pair().frame().a_to_b());
       due.push_back(lanes);
-      for (; lanes; lanes &= lanes - 1)
-        cost += WideFront::cost(
-            front[first + static_cast<std::size_t>(std::countr_zero(lanes))].kind);
+      for (; lanes; lanes &= lanes - 1) {
+        const auto kind = front[first + static_cast<std::size_t>(std::countr_zero(lanes))].kind;
+        cost += WideFront::cost(kind), verdicts += kind == WideFront::Kind::verdict;
+      }
     }
-    return cost > most_of_rebuild * front.cost_of_rebuild();
+    const bool wears = cost > most_of_rebuild * front.cost_of_rebuild();
+    // Verdicts go before the front does.
+    verdicts_worn_ = verdicts > front.sorted() + few_verdicts || (wears && front.sorted() > 0);
+    return wears && !verdicts_worn_;
   }
   [[gnu::always_inline]] std::uint64_t due_lanes(const WideFront& front, std::size_t first,
                                                  const Gaps& limit,
@@ -362,7 +373,8 @@ class FrontRecord {
   std::optional<NodePair> touched_;
   std::optional<Crossing> crossing_;
   LaneOfEntry entry_ = 0;  // that was recorded last
-  std::size_t tests_ = 0, verdicts_ = 0, lasting_verdicts_ = 0;
+  std::size_t tests_ = 0, verdicts_ = 0, lasting_verdicts_ = 0;  // verdicts: new ones
+  std::size_t first_new_ = 0;  // entries from here on were made in this run
   bool grew_ = false, verdicts_worn_ = false;
   bool sweeps_, sweep_is_due_, worn_ = false;
   bool raised_ = false;  // a lane was closed whose entry may still be there

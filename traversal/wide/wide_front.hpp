@@ -51,7 +51,9 @@ class WideFront {
 
   std::size_t size() const { return entries_.size(); }
   bool is_complete() const { return complete_at_ > 0; }
-  void clear() { entries_.clear(), gaps_.clear(), hits.clear(), complete_at_ = gone_ = 0; }
+  void clear() {
+    entries_.clear(), gaps_.clear(), hits.clear(), complete_at_ = gone_ = sorted_ = 0;
+  }
   /// The first run is over. A front whose roots were not opened stays incomplete.
   void complete() {
     complete_at_ = entries_.size(), cost_of_rebuild_ = 0;
@@ -62,6 +64,13 @@ class WideFront {
   bool overgrown() const { return entries_.size() > 4 * complete_at_ + 16; }
 
   Entry& operator[](std::size_t i) { return entries_[i]; }
+  /// Verdicts on near triangles of entry i are about to be entries.
+  void sort(std::size_t i) {
+    sorted_ += entries_[i].kind != Kind::sorted;
+    entries_[i].kind = Kind::sorted;
+  }
+  /// The number of entries of which that is so.
+  std::size_t sorted() const { return sorted_; }
   /// Adds an entry; returns its number.
   std::size_t add(const OpenPair& pair, Kind kind, std::uint64_t opened = 0) {
     entries_.push_back({pair, pair.from, static_cast<std::uint16_t>(opened), 0, kind, 0, 1});
@@ -114,7 +123,7 @@ class WideFront {
 
   std::vector<Entry> entries_;
   MeasuredGaps gaps_;
-  std::size_t complete_at_ = 0, gone_ = 0;
+  std::size_t complete_at_ = 0, gone_ = 0, sorted_ = 0;
   float cost_of_rebuild_ = 0;
 };
 

@@ -266,7 +266,7 @@ class WideMargins {
     Kept& kept = kept_[p];
     if (found.sweeps() || found.worn()) kept.pause.begin(found.worn());
     if (found.keeps_front() && !found.sweeps()) kept.front.complete();
-    if (found.found_verdicts()) kept.verdicts_pause.begin(found.verdicts_worn());
+    if (found.has_verdicts()) kept.verdicts_pause.begin(found.verdicts_worn());
     if (kept.front.overgrown() || found.verdicts_worn()) kept.front.clear();
     front_sizes_[p] = static_cast<std::uint32_t>(kept.front.size());
   }
