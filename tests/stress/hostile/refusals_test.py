@@ -233,7 +233,7 @@ class Names(ProgramTest):
                 for strategy in ("recursive:1", "margins:1", "deferred:x", "frob", ""):
                     self.refuse(*wide, "--strategy", strategy, mentions=["--strategy", strategy])
                 self.refuse(*wide, "--query", "frob", mentions=["--query", *names_of("queries")])
-                self.refuse(*wide, "--frame", "world", mentions=["--frame world", "body"])
+                self.refuse(*wide, "--frame", "frob", mentions=["--frame frob", "world", "body"])
                 self.refuse(*wide, "--fan-out", "3", mentions=["--fan-out"])
                 self.refuse(*wide, "--budget", "10", mentions=["--budget", kernel])
             for volume in (*(set(names_of("volumes")) - set(volumes_of(kernel))), "frob", ""):
