@@ -137,35 +137,39 @@ TEST(LargeLeavesWithMargins, AreLookedAtAgainWhereAHitCutThemShort) {
   }
 }
 
-std::size_t most_at_once = 0;
 std::size_t tested = 0;
 std::uint64_t counted_test(const Triangle* const* a, const Triangle* const* b, int count) {
   tested += static_cast<std::size_t>(count);
   return intersect_batch<Exact>(a, b, count);
 }
 
-struct CountingLargest : NotCounting {
-  void primitives(std::size_t n) { most_at_once = std::max(most_at_once, n); }
-};
-
 TEST(LargeLeavesWithinABudget, HoldNoMore) {
+  constexpr int W = width<B>();
   const TriangleMesh mesh = formula_mesh("star", 300);
   Two bodies(mesh, 65536);
   const PatchSizes sizes(mesh, bodies.hierarchy);
-  Budgeted<width<B>()> budgeted;
-  CountingLargest counter;
+  Budgeted<W> budgeted;
+  NotCounting counter;
   bodies.a.move(Pose{}, Vec3<double>::Zero());
   for (const auto& [x, touches] : {std::pair(0.0, true), {0.3, true}, {1.9, false}}) {
     bodies.b.move(Pose{Mat3<double>::Identity(), {x, 0, 0}}, Vec3<double>::Zero());
-    most_at_once = tested = 0;
+    tested = 0;
     const auto answer =
-        budgeted(bodies.a, sizes, bodies.b, sizes, tests_between<width<B>(), V, Touching>, 1000,
+        budgeted(bodies.a, sizes, bodies.b, sizes, tests_between<W, V, Touching>, 1000,
                  counted_test, counter);
     EXPECT_EQ(answer.verdict, touches ? BudgetVerdict::touching : BudgetVerdict::apart) << x;
-    EXPECT_LE(most_at_once, 5000u);
     if (touches) {
       EXPECT_LT(tested, 45000u);
     }
+    // The same by a query that notes what it is handed.
+    Watched<Touching> query(counted_test);
+    std::vector<PairOfPatches> queue;
+    traverse<W>(bodies.a, bodies.b,
+                tests_between<W, V, Watched<Touching>>(bodies.a, bodies.b, bodies.workspace), query,
+                bodies.workspace, LargestFirst(sizes, sizes, 1000, queue));
+    EXPECT_EQ(query.touching(), touches) << x;
+    EXPECT_GT(query.most, 0u);
+    EXPECT_LE(query.most, 5000u);
   }
 }
 
