@@ -13,6 +13,7 @@
 #include <memory>
 
 #include "hierarchies/wide/tree_in_blocks.hpp"
+#include "hierarchies/geometry/once.hpp"
 #include "hierarchies/wide/wide_tree.hpp"
 #include "traversal/frame.hpp"
 #include "traversal/wide/block_tests.hpp"
@@ -31,7 +32,7 @@ class PosedTree {
 
   /// The body has moved.
   void place(const Pose& pose, const Vec3<double>& origin) {
-    ++epoch_;
+    if (++epoch_ >= never_done) forget(), epoch_ = 1;
     is_far_ = put_placement(pose, origin);
   }
   /// See MovingBody::is_far.
@@ -42,6 +43,8 @@ class PosedTree {
  protected:
   /// Returns whether the body is far.
   virtual bool put_placement(const Pose& pose, const Vec3<double>& origin) = 0;
+  /// All epochs have been used: no volume counts as posed.
+  virtual void forget() = 0;
   void count_posed(std::uint64_t count) { posed_.fetch_add(count, std::memory_order_relaxed); }
 
   std::uint32_t epoch_ = 0;

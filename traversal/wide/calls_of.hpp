@@ -3,6 +3,7 @@
 /// those of its sibling test, and in the world's frame those of its posed form.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -46,6 +47,7 @@ class MadeOnce {
     if (!is_done(done_[i], epoch)) once(done_[i], epoch, [&] { make(all_[i]); });
     return all_[i];
   }
+  void forget() { std::fill(done_.begin(), done_.end(), 0u); }
 
  private:
   LargeVector<T> all_;
@@ -76,6 +78,8 @@ class PosedTreeOf : public PosedTree {
     return !((pose(extent_.origin) - origin).template lpNorm<1>() <=
              far_from_origin<typename V::scalar>(extent_));
   }
+
+  void forget() override { node_.forget(); }
 
   const Tree& tree_;
   PlacementOf<V> placement_;
@@ -109,6 +113,8 @@ class PosedSiblings final : public PosedTreeOf<V, WideHierarchy<V, F>> {
   }
 
  private:
+  void forget() override { Base::forget(), children_.forget(); }
+
   MadeOnce<Lanes> children_;
 };
 
@@ -139,6 +145,8 @@ class PosedBlocks final : public PosedTreeOf<V, BlockHierarchy<V>> {
   }
 
  private:
+  void forget() override { Base::forget(), rows_.forget(), blocks_.forget(); }
+
   template <std::size_t width, class Stored>
   const Lanes<width>& lanes(MadeOnce<Lanes<width>>& all, const Stored& stored,
                             const Stored& first) {
