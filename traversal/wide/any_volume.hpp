@@ -12,8 +12,8 @@
 #include <cstdint>
 #include <memory>
 
-#include "hierarchies/wide/tree_in_blocks.hpp"
 #include "hierarchies/geometry/once.hpp"
+#include "hierarchies/wide/tree_in_blocks.hpp"
 #include "hierarchies/wide/wide_tree.hpp"
 #include "traversal/frame.hpp"
 #include "traversal/wide/block_tests.hpp"
