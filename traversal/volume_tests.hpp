@@ -70,7 +70,7 @@ template <bool kGaps, class P, class Query>
   return bits(query.culls(p, q));
 }
 
-/// `lanes(side, nodes)` are the volumes of as many nodes of a body as `Some` has lanes, posed.
+/// The tests of as many pairs as `Some` has lanes.
 template <class V, int W, bool kGaps, bool kInWorld, class Query>
 struct CulledPairs {
   template <class Some>

@@ -10,17 +10,15 @@
 #include <cstdint>
 
 #include "hierarchies/geometry/large_vector.hpp"
-#include "hierarchies/node_sphere.hpp"
-#include "hierarchies/wide/fitting.hpp"
 #include "hierarchies/wide/heads.hpp"
-#include "hierarchies/wide/support_map.hpp"
+#include "hierarchies/wide/lane_tree.hpp"
 #include "hierarchies/wide/triangle_lanes.hpp"
 
 namespace bvlab {
 
 struct BlockCalls;
 
-class TreeInBlocks {
+class TreeInBlocks : public LaneTree {
  public:
   using scalar = float;  // a lane holds a number and a node alike
   static constexpr int fan_out = 4;
@@ -46,16 +44,9 @@ class TreeInBlocks {
   using Row = Lanes<4>;
   using Block = Lanes<16>;
 
-  TreeInBlocks(const TreeInBlocks&) = delete;
-  TreeInBlocks& operator=(const TreeInBlocks&) = delete;
-  TreeInBlocks(TreeInBlocks&&) = default;
-  TreeInBlocks& operator=(TreeInBlocks&&) = default;
-
-  std::size_t size() const { return node_spheres_.size(); }
   const Node& node(std::uint32_t i) const { return node_heads_[i]; }
   /// The number of rows, that for the root included.
   std::size_t rows() const { return inner_ + 1; }
-  const NodeSphere& node_sphere(std::uint32_t i) const { return node_spheres_[i]; }
   /// The row of an inner node, by its `first`.
   const Row& row(std::uint32_t first) const { return row_heads_[first]; }
   const Block& block(std::uint32_t first) const { return block_heads_[first]; }
@@ -65,20 +56,10 @@ class TreeInBlocks {
   const TriangleLanes<float, 4>& corners(std::uint32_t first) const {
     return corners_[first / fan_out];
   }
-  /// The mesh's index of the triangle in lane `k - first` of a leaf.
-  std::uint32_t triangle(std::uint32_t k) const { return triangles_[k]; }
   std::uint32_t root() const { return node(0).leaf ? leaf_flag : 0; }
-  /// The origin of the mesh (LocalMesh), in its frame: all else is relative to it.
-  const Vec3<double>& origin() const { return origin_; }
-  /// An upper bound on the distance of vertices and volumes from the origin.
-  double reach() const { return reach_; }
-
-  const MeshSphere& sphere() const { return sphere_; }
-  /// The support map about the sphere's centre.
-  const SupportMap& supports() const { return supports_; }
 
   /// The tests of its volumes, for loops that do not know their type; null where nobody has set
-  /// them (calls_of in any_volume.hpp).
+  /// them (calls_of.hpp).
   const BlockCalls* calls = nullptr;
 
  protected:
@@ -89,13 +70,7 @@ class TreeInBlocks {
   Heads<Row> row_heads_;
   Heads<Block> block_heads_;
   std::uint32_t inner_ = 0;  // nodes that are no leaves
-  LargeVector<NodeSphere> node_spheres_;
   LargeVector<TriangleLanes<float, 4>> corners_;
-  LargeVector<std::uint32_t> triangles_;
-  double reach_ = 0;
-  Vec3<double> origin_;
-  MeshSphere sphere_;
-  SupportMap supports_;
 };
 
 }  // namespace bvlab

@@ -10,10 +10,8 @@
 
 #include "hierarchies/geometry/large_vector.hpp"
 #include "hierarchies/geometry/once.hpp"
-#include "hierarchies/node_sphere.hpp"
-#include "hierarchies/wide/fitting.hpp"
 #include "hierarchies/wide/heads.hpp"
-#include "hierarchies/wide/support_map.hpp"
+#include "hierarchies/wide/lane_tree.hpp"
 #include "hierarchies/wide/triangle_lanes.hpp"
 
 namespace bvlab {
@@ -27,7 +25,7 @@ template <int F>
 struct SiblingCalls;
 
 template <class T, int F>
-class WideTree {
+class WideTree : public LaneTree {
   static_assert(F == 2 || F == 4 || F == 8 || F == 16);
 
  public:
@@ -44,35 +42,16 @@ class WideTree {
     std::uint32_t made;   ///< `whole` once its children are, else see once.hpp
   };
 
-  WideTree(const WideTree&) = delete;
-  WideTree& operator=(const WideTree&) = delete;
-  WideTree(WideTree&&) = default;
-  WideTree& operator=(WideTree&&) = default;
-
-  /// The number of nodes; on demand, the most that there may be.
-  std::size_t size() const { return node_spheres_.size(); }
   const Node& node(std::uint32_t i) const { return heads_[i]; }
-  const NodeSphere& node_sphere(std::uint32_t i) const { return node_spheres_[i]; }
   /// The corners of a leaf, by its `first`.
   const TriangleLanes<T, F>& corners(std::uint32_t first) const { return corners_[first / F]; }
   /// The leaf that holds triangle k.
   std::uint32_t leaf_of(std::uint32_t k) const { return leaves_[k / F]; }
-  /// The mesh's index of the triangle in lane `k - first` of a leaf.
-  std::uint32_t triangle(std::uint32_t k) const { return triangles_[k]; }
-  /// The origin of the mesh (LocalMesh), in its frame: all else is relative to it.
-  const Vec3<double>& origin() const { return origin_; }
-  /// An upper bound on the distance of vertices and volumes from the origin.
-  double reach() const { return reach_; }
-
   /// Trees that are made on demand have another of this name.
   static void require(std::uint32_t) {}
 
-  const MeshSphere& sphere() const { return sphere_; }
-  /// The support map about the sphere's centre; of a tree on demand it is empty.
-  const SupportMap& supports() const { return supports_; }
-
   /// The tests of its volumes, for loops that do not know their type; null where nobody has set
-  /// them (calls_of in any_volume.hpp).
+  /// them (calls_of.hpp).
   const SiblingCalls<F>* calls = nullptr;
 
  protected:
@@ -81,9 +60,8 @@ class WideTree {
   WideTree() = default;
   /// `paging`: of arrays.
   explicit WideTree(Paging paging)
-      : node_spheres_(LargeAllocator<NodeSphere>(paging)),
+      : LaneTree(paging),
         corners_(LargeAllocator<TriangleLanes<T, F>>(paging)),
-        triangles_(LargeAllocator<std::uint32_t>(paging)),
         leaves_(LargeAllocator<std::uint32_t>(paging)) {}
 
   /// `heads`: of the nodes, which the derived class stores.
@@ -93,14 +71,8 @@ class WideTree {
   }
 
   // Of a tree on demand, what is not made is not written.
-  mutable LargeVector<NodeSphere> node_spheres_;
   mutable LargeVector<TriangleLanes<T, F>> corners_;
-  mutable LargeVector<std::uint32_t> triangles_;
   mutable LargeVector<std::uint32_t> leaves_;  // the node of each leaf, in the order of corners_
-  double reach_ = 0;
-  Vec3<double> origin_;
-  MeshSphere sphere_;
-  SupportMap supports_;
 
  private:
   Heads<Node> heads_;

@@ -145,26 +145,25 @@ struct SiblingCalls {
   S (*gaps)(const Step&);
 };
 
-/// The tests of BlockTests, of a register of sixteen lanes.
+/// The tests of BlockTests.
 struct BlockCalls {
   using S = SixteenLanes;
   using Change = AnyFrameChange<BlockCalls>;
   struct Four {
-    const TreeInBlocks::Row &a, &b;
+    const TreeInBlocks::Row &row_a, &row_b;
     const Change& change;
-    std::size_t part;
   };
   struct One {
     const TreeInBlocks::Node& one;
     const TreeInBlocks::Block& block;
     const Change& change;
-    std::size_t part;
   };
+  /// Of a register of the sixteen lanes.
   template <class Step>
   struct Of {
-    OverlapLanes<S> (*overlap)(const Step&);
-    GapLanes<S> (*separation)(const Step&);
-    S (*gaps)(const Step&);
+    OverlapLanes<S> (*overlap)(const Step&, std::size_t part);
+    GapLanes<S> (*separation)(const Step&, std::size_t part);
+    S (*gaps)(const Step&, std::size_t part);
   };
 
   const BlockCalls* in_world;
@@ -232,45 +231,19 @@ struct BlockTests<AnyVolume> {
   using S = SixteenLanes;
   using Tree = TreeInBlocks;
   using SiblingTest = CalledTest<BlockCalls>;
-  using FrameChange = SiblingTest::FrameChange;
 
-  class Four {
-   public:
-    const Tree::Row &row_a, &row_b;
-
-    Four(const Tree::Row& a, const Tree::Row& b, const FrameChange& into_b)
-        : row_a(a), row_b(b), into_b_(into_b) {}
+  template <class Step, BlockCalls::Of<Step> BlockCalls::*tests>
+  struct Called : Step {
     OverlapLanes<S> overlap(std::size_t part) const {
-      return into_b_.calls->four.overlap({row_a, row_b, into_b_, part});
+      return (this->change.calls->*tests).overlap(*this, part);
     }
     GapLanes<S> separation(std::size_t part) const {
-      return into_b_.calls->four.separation({row_a, row_b, into_b_, part});
+      return (this->change.calls->*tests).separation(*this, part);
     }
-    S gaps(std::size_t part) const {
-      return into_b_.calls->four.gaps({row_a, row_b, into_b_, part});
-    }
-
-   private:
-    const FrameChange& into_b_;
+    S gaps(std::size_t part) const { return (this->change.calls->*tests).gaps(*this, part); }
   };
-  class One {
-   public:
-    const Tree::Block& block;
-
-    One(const Tree::Node& one, const Tree::Block& lanes, const FrameChange& change)
-        : block(lanes), one_(one), change_(change) {}
-    OverlapLanes<S> overlap(std::size_t part) const {
-      return change_.calls->one.overlap({one_, block, change_, part});
-    }
-    GapLanes<S> separation(std::size_t part) const {
-      return change_.calls->one.separation({one_, block, change_, part});
-    }
-    S gaps(std::size_t part) const { return change_.calls->one.gaps({one_, block, change_, part}); }
-
-   private:
-    const Tree::Node& one_;
-    const FrameChange& change_;
-  };
+  using Four = Called<BlockCalls::Four, &BlockCalls::four>;
+  using One = Called<BlockCalls::One, &BlockCalls::one>;
 };
 
 }  // namespace bvlab

@@ -240,8 +240,8 @@ struct BlocksInBody {
   using Tree = BlockHierarchy<V>;
 
   static typename Tests::Four test(const BlockCalls::Four& step) {
-    return {static_cast<const typename Tree::Row&>(step.a),
-            static_cast<const typename Tree::Row&>(step.b), change_of<V>(step.change)};
+    return {static_cast<const typename Tree::Row&>(step.row_a),
+            static_cast<const typename Tree::Row&>(step.row_b), change_of<V>(step.change)};
   }
   static typename Tests::One test(const BlockCalls::One& step) {
     return {static_cast<const typename Tree::Node&>(step.one),
@@ -257,8 +257,8 @@ struct BlocksInWorld {
 
   static auto test(const BlockCalls::Four& step) {
     return FourByFourTest<Posed<V>, Test, typename In::template Lanes<4>>(
-        of(step, 0).row(static_cast<const typename Tree::Row&>(step.a)),
-        of(step, 1).row(static_cast<const typename Tree::Row&>(step.b)), none);
+        of(step, 0).row(static_cast<const typename Tree::Row&>(step.row_a)),
+        of(step, 1).row(static_cast<const typename Tree::Row&>(step.row_b)), none);
   }
   static auto test(const BlockCalls::One& step) {
     const auto& one = static_cast<const typename Tree::Node&>(step.one);
@@ -275,9 +275,9 @@ struct BlocksInWorld {
 };
 template <class Frame, class Step>
 inline constexpr BlockCalls::Of<Step> called_blocks{
-    [](const Step& step) { return Frame::test(step).overlap(step.part); },
-    [](const Step& step) { return Frame::test(step).separation(step.part); },
-    [](const Step& step) { return Frame::test(step).gaps(step.part); }};
+    [](const Step& step, std::size_t part) { return Frame::test(step).overlap(part); },
+    [](const Step& step, std::size_t part) { return Frame::test(step).separation(part); },
+    [](const Step& step, std::size_t part) { return Frame::test(step).gaps(part); }};
 
 template <class Posed, class Tree, class Base>
 std::unique_ptr<PosedTree> posed_tree(const Base& tree) {
