@@ -49,7 +49,8 @@ std::unique_ptr<AnyPairs<Query>> pairs_over(
   return made;
 }
 
-/// The same over trees of any kernel, by loops that do not know their volume.
+/// The same over trees of any kernel, by loops that do not know their volume. Null where the query
+/// is none for wide trees.
 template <class Query>
 std::unique_ptr<AnyPairs<Query>> pairs_over_trees(const std::shared_ptr<AnyTrees>& trees,
                                                   std::span<const TriangleMesh> meshes,
@@ -60,11 +61,12 @@ std::unique_ptr<AnyPairs<Query>> pairs_over_trees(const std::shared_ptr<AnyTrees
     if (const auto of = std::dynamic_pointer_cast<Trees>(trees))
       made = pairs_over<AnyVolume, Kernel, lanes, Query>(of, meshes, objects, variant);
   };
-  Kernels::for_each([&]<class Kernel>(std::type_identity<Kernel>) {
-    with.template operator()<Kernel, kernel_lanes<Kernel>>();
-    if constexpr (kernel_lanes<Kernel> < most_kernel_lanes<Kernel>)
-      with.template operator()<Kernel, most_kernel_lanes<Kernel>>();
-  });
+  if constexpr (for_wide_trees<Query>())
+    Kernels::for_each([&]<class Kernel>(std::type_identity<Kernel>) {
+      with.template operator()<Kernel, kernel_lanes<Kernel>>();
+      if constexpr (kernel_lanes<Kernel> < most_kernel_lanes<Kernel>)
+        with.template operator()<Kernel, most_kernel_lanes<Kernel>>();
+    });
   return made;
 }
 
