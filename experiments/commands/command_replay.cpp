@@ -121,11 +121,6 @@ void run(Arguments arguments) {
   trace.chosen = chosen_from(read_pair_arrays(arguments.pairs), trace.objects);
   require_finite_corners(trace, arguments.trace, meshes);
   const BroadPhase broad_phase = broad_phase_from(arguments.broad_phase);
-  Chosen chosen;
-  if (arguments.configuration) {
-    chosen = configured(arguments.variant, *arguments.configuration, meshes, &trace, broad_phase);
-    arguments.variant = chosen.variant;
-  }
   const Count count = arguments.count == "on" ? Count::on : Count::off;
   if (arguments.budget) {
     const BudgetedResult result =
@@ -143,11 +138,8 @@ void run(Arguments arguments) {
   options.keep_answers = !arguments.out.empty();
   options.keep_nearest = !arguments.nearest.empty();
   options.broad_phase = broad_phase;
-  options.trees = chosen.trees.get();
   const ReplayResult result = replay(meshes, trace, arguments.variant, options);
   Totals totals = totals_of(result, meshes, trace, arguments.variant, options);
-  if (!chosen.reason.empty())
-    totals.set("recommended", chosen.reason).set("choosing_seconds", chosen.seconds);
   if (!arguments.out.empty()) write_answers(arguments, trace, result);
   if (!arguments.nearest.empty()) write_nearest(arguments, trace, result);
   if (!arguments.page.empty()) write_page(arguments, meshes, trace);

@@ -90,11 +90,9 @@ struct PairAnswers::Engine {
   AskedBodies<Query>& of(std::optional<AskedBodies<Query>>& bodies) {
     if (!hierarchies) {
       const VolumeEntry& volume = volume_entry(variant.volume);
-      auto first = volume.hierarchies(meshes, variant);
-      of_first = first.get();
-      hierarchies.emplace(volume, std::move(first), variant);
+      hierarchies.emplace(volume, volume.hierarchies(meshes, variant), variant);
     }
-    if (!bodies) bodies.emplace(*of_first, variant.volume, objects, frame_of(variant));
+    if (!bodies) bodies.emplace(hierarchies->first(), variant.volume, objects, frame_of(variant));
     while (bodies->size() < objects + added.size())
       bodies->add(hierarchies->of(mesh(bodies->size())));
     return *bodies;
@@ -105,7 +103,6 @@ struct PairAnswers::Engine {
   std::vector<const TriangleMesh*> added;  // the meshes of objects that came later
   Variant variant;
   std::optional<HierarchiesByMesh> hierarchies;
-  const AnyHierarchies* of_first = nullptr;  // those of `meshes`
   std::optional<AskedBodies<Contacts>> for_contacts;
   std::optional<AskedBodies<Distance>> for_distances;
   // The boxes of meshes, each once, and which of them each object has.

@@ -10,7 +10,6 @@
 #include "experiments/python/signals.hpp"
 #include "experiments/python/variants.hpp"
 #include "experiments/replay/coherence.hpp"
-#include "experiments/replay/configurations.hpp"
 #include "experiments/replay/predict.hpp"
 #include "experiments/replay/replay_boxes.hpp"
 #include "experiments/replay/replay_totals.hpp"
@@ -91,16 +90,8 @@ std::shared_ptr<Result> play(const py::object& given_meshes, const py::object& g
   options.after_frame = [&](std::size_t) { signals(); };
   auto [result, totals] = released([&] {
     require_finite_corners(trace, "poses", meshes.span());
-    Chosen chosen{variant, ""};
-    if (words.configuration)
-      chosen =
-          configured(variant, *words.configuration, meshes.span(), &trace, options.broad_phase);
-    variant = chosen.variant;
-    options.trees = chosen.trees.get();
     ReplayResult played = replay(meshes.span(), trace, variant, options);
     Totals of_it = totals_of(played, meshes.span(), trace, variant, options);
-    if (!chosen.reason.empty())
-      of_it.set("recommended", chosen.reason).set("choosing_seconds", chosen.seconds);
     return std::pair(std::move(played), std::move(of_it));
   });
   auto all = std::make_shared<Result>(py::none(), dictionary(totals));

@@ -19,7 +19,6 @@
 #include "experiments/python/pair_arrays.hpp"
 #include "experiments/python/signals.hpp"
 #include "experiments/python/variants.hpp"
-#include "experiments/replay/configurations.hpp"
 #include "experiments/replay/player.hpp"
 #include "experiments/replay/worlds.hpp"
 #include "experiments/scenes/trace.hpp"
@@ -35,9 +34,7 @@ class PyWorld : public MadeByCalls {
           int threads, const PairArrays& pairs)
       : meshes_(meshes, 0),
         first_(counted(objects.value_or(meshes_.given()))),
-        variant_(words.configuration
-                     ? configured(variant_from(words), *words.configuration, meshes_.span()).variant
-                     : variant_from(words)),
+        variant_(variant_from(words)),
         moved_to_(first_),
         stands_(first_),
         present_(first_, 0),
@@ -49,7 +46,6 @@ class PyWorld : public MadeByCalls {
     chosen_ = PairFilter(choice_);
     engine_ = released([&] { return make_world(meshes_.span(), first_, variant_, threads); });
     engine_->choose(choice_);
-    if (words.configuration == "recommended") later_ = later_choice(variant_, meshes_.span());
     for (const TriangleMesh& mesh : meshes_.span()) small_.push_back(is_small(mesh));
   }
 
@@ -294,9 +290,7 @@ class PyWorld : public MadeByCalls {
     set(object, pose);
   }
   void settle() {
-    const auto start = Clock::now();
     engine_->update();
-    spent_ += seconds_since(start);
     for (const auto object : changed_) {
       present_[object] = moved_to_[object].has_value();
       if (present_[object]) stands_[object] = *moved_to_[object];
@@ -304,19 +298,6 @@ class PyWorld : public MadeByCalls {
     }
     changed_.clear();
     is_stale_ = false, is_updated_ = true;
-    if (later_ && spent_ > 2 * later_->build_seconds) change();
-  }
-  /// Goes on with the later choice, from where the bodies stand.
-  void change() {
-    auto other = make_world(meshes_.span(), first_, later_->variant, threads_);
-    other->choose(choice_);
-    for (const Added& body : added_) other->add(*body.of.mesh);
-    for (std::uint32_t i = 0; i < objects(); ++i)
-      if (present_[i]) other->move(i, stands_[i]);
-    other->update();
-    engine_ = std::move(other);
-    variant_ = later_->variant;
-    answers_.reset(), later_.reset();
   }
   /// From the next update on.
   void set(std::uint32_t object, const std::optional<Pose>& pose) {
@@ -372,8 +353,6 @@ class PyWorld : public MadeByCalls {
   int threads_ = 1;
   PairChoice choice_;
   PairFilter chosen_;
-  std::optional<LaterChoice> later_;
-  double spent_ = 0;                           // seconds, by all updates
   std::vector<bool> small_;                    // of each of the first bodies' meshes
   std::vector<std::optional<Pose>> moved_to_;  // of each body: where it is from the next update on
   std::vector<Pose> stands_;                   // where it stood in the last one
@@ -398,7 +377,7 @@ World()                  no bodies; `add` gives it some
 A body is in the scene from its first `move` on. Answers are those of `update`: after a move, an add or a
 remove, and before the first update, all questions are a RuntimeError. Volume and
 strategy are chosen by name, as in replay; if none of these words is given, nor fan_out, frame, kernel,
-build, leaf_size or fit, what is recommended for these meshes is taken. Calls from
+build, leaf_size or fit, configuration="recommended" is taken. Calls from
 several threads run one after the other.
 
 pairs, without, groups   which pairs are asked about, as in replay: pairs (k, 2) alone, without (k, 2),

@@ -81,6 +81,11 @@ class Answers {
     }
   }
 
+  /// The answer to a query is not wanted.
+  void drop(std::size_t p) {
+    if constexpr (lists) list_of(p).pair = nobody;
+  }
+
   std::uint64_t hits() const { return hits_; }
 
  private:
@@ -137,6 +142,7 @@ struct Asking {
   const std::vector<std::size_t>* places = nullptr;  ///< of slots in it; null: the same
   TouchingPairs* touching = nullptr;                 ///< of a whole scene
   std::vector<Answered>* later = nullptr;  ///< where the answers go that another thread takes
+  bool drops = false;                      ///< the same queries were answered by others
 
   Query operator()(std::uint32_t slot, const ObjectPair&) const {
     if constexpr (AnswersYesOrNo<Query>)
@@ -144,6 +150,7 @@ struct Asking {
     return answers->ask(place(slot));
   }
   void operator()(std::uint32_t slot, const ObjectPair& pair, const Query& query) const {
+    if (drops) return answers ? answers->drop(place(slot)) : void();
     if (later) return later->push_back({slot, query});
     if constexpr (AnswersYesOrNo<Query>)
       if (touching) return touching->put(slot, pair, query.answer());

@@ -9,22 +9,31 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "experiments/replay/answers.hpp"
+#include "experiments/replay/made_pairs.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "traversal/counters.hpp"
 
 namespace bvlab::detail {
 
+/// What pairs that choose among variants have chosen (PairsInTurn), in which seconds of their
+/// frames.
+struct ChoiceInTurn {
+  std::string reason;
+  double build_seconds, choosing_seconds;
+};
+
 /// What is not documented here is as in AllPairsOf and WorldOf.
 template <class Query>
-class AnyPairs {
+class AnyPairs : public PairsUnderSome {
  public:
-  virtual ~AnyPairs() = default;
   virtual std::size_t size() const = 0;
   virtual const TriangleMesh& mesh(std::size_t i) const = 0;
   virtual const Vec3<double>& mesh_origin(std::size_t i) const = 0;
@@ -51,6 +60,7 @@ class AnyPairs {
       const std::function<void(std::size_t pair, std::span<const NodePair>)>& see) const = 0;
   /// Of trees that are built on demand: their nodes, and how many of them have been made.
   virtual std::array<std::size_t, 2> nodes() const = 0;
+  virtual std::optional<ChoiceInTurn> choice() const { return {}; }
 };
 
 /// `Hierarchies` holds those of all meshes; `of(mesh)` is what Pairs has for a body of a mesh.

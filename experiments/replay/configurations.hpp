@@ -3,8 +3,6 @@
 /// those who do not want to choose.
 #pragma once
 
-#include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,7 +21,7 @@ std::vector<Named> configurations();
 
 /// The variant with what the configuration says of it under the variant's query; what it does not
 /// say (query, precision, relative error) stays. Throws Unusable where there is none of that name.
-/// `recommended` is then what is best for meshes whose triangles are about as long as wide.
+/// `recommended` says what a run begins with, and that it may go on with another.
 Variant configured(Variant variant, std::string_view configuration);
 
 /// A configuration of the library (traversal/recommended.hpp and the like) as a variant.
@@ -36,28 +34,13 @@ Variant variant_of(Variant variant) {
   return variant;
 }
 
-/// The same for these meshes and, where it is known, their motion: `recommended` depends on both.
-/// With the reason, a sentence that is empty where there is no choice. Samples of the motion are
-/// played with trees that the replay can go on with, by the candidates that may pay, with a broad
-/// phase where the replay will use one. O(triangles) where the motion is null.
-struct Chosen {
+/// What `recommended` may go on with, and begins with the first of.
+struct Recommendation {
   Variant variant;
-  std::string reason;
-  double seconds = 0;  ///< that the choice took, without the trees of what was chosen
-  std::shared_ptr<KeptTrees> trees{};  ///< those of what was chosen, for ReplayOptions
+  std::string name;
+  double build;  ///< of a triangle's share of the trees, in nanoseconds
 };
-Chosen configured(Variant variant, std::string_view configuration,
-                  std::span<const TriangleMesh> meshes, const Trace* trace = nullptr,
-                  BroadPhase broad_phase = BroadPhase::off);
-
-/// What a run of `recommended` in unknown motion is to change to once it has taken twice as long as
-/// that takes to build: oriented boxes, which fit long triangles, and others do not. Nothing where
-/// triangles are about as long as wide.
-struct LaterChoice {
-  Variant variant;
-  double build_seconds;
-};
-std::optional<LaterChoice> later_choice(const Variant& variant,
-                                        std::span<const TriangleMesh> meshes);
+/// For a variant's query, in the order in which they are tried. O(triangles).
+std::vector<Recommendation> recommendations(Variant variant, std::span<const TriangleMesh> meshes);
 
 }  // namespace bvlab

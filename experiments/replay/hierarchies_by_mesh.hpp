@@ -29,6 +29,8 @@ class HierarchiesByMesh {
     keep(std::move(first));
   }
 
+  /// Those of the meshes that were known at first.
+  const AnyHierarchies& first() const { return *all_.front(); }
   /// The mesh must outlive this.
   OneOfHierarchies of(const TriangleMesh& mesh) {
     if (const auto at = known_.find(&mesh); at != known_.end()) return at->second;

@@ -8,7 +8,6 @@
 #include "experiments/replay/any_bodies.hpp"
 #include "experiments/replay/any_pairs.hpp"
 #include "experiments/replay/play_entry.hpp"
-#include "experiments/replay/play_pairs.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/strategy_text.hpp"
 #include "traversal/strategy_pairs.hpp"
@@ -17,35 +16,18 @@ namespace bvlab {
 
 namespace detail {
 
-/// `hierarchies` are of the volume.
 template <class Strategy, class Query>
-std::unique_ptr<AnyPairs<Query>> strategy_pairs(const VolumeEntry& volume,
-                                                std::shared_ptr<const AnyHierarchies> hierarchies,
-                                                std::size_t objects, const Variant& variant) {
+std::unique_ptr<PairsUnderSome> strategy_pairs(PairsFrom& from, const Variant& variant) {
   using Pairs = StrategyPairs<AnyBodies<Query>, Strategy>;
-  AnyBodies<Query> bodies(
-      bodies_entry<Query>(volume.name).bodies(*hierarchies, objects, frame_of(variant)));
+  const VolumeEntry& volume = volume_entry(variant.volume);
+  const auto hierarchies = from.trees<HierarchiesByMesh>(variant, [&] {
+    return std::make_shared<HierarchiesByMesh>(volume, volume.hierarchies(from.meshes, variant),
+                                               variant);
+  });
+  AnyBodies<Query> bodies(bodies_entry<Query>(volume.name)
+                              .bodies(hierarchies->first(), from.objects, frame_of(variant)));
   return std::make_unique<PairsOver<Pairs, Query, HierarchiesByMesh>>(
-      std::make_shared<HierarchiesByMesh>(volume, std::move(hierarchies), variant),
-      Pairs(std::move(bodies), made_from<Strategy>(variant.strategy)));
-}
-
-template <class Strategy, class Query>
-void play(const VolumeEntry& volume, std::shared_ptr<const AnyHierarchies> hierarchies,
-          std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
-          const ReplayOptions& options, ReplayResult& result) {
-  play_pairs(
-      strategy_pairs<Strategy, Query>(volume, std::move(hierarchies), trace.objects, variant),
-      meshes, trace, variant, options, result);
-}
-
-template <class Strategy, class Query>
-std::unique_ptr<WorldEngine> world(const VolumeEntry& volume,
-                                   std::shared_ptr<const AnyHierarchies> hierarchies,
-                                   std::size_t objects, const Variant& variant, int threads) {
-  return world_of_pairs(
-      strategy_pairs<Strategy, Query>(volume, std::move(hierarchies), objects, variant), variant,
-      threads);
+      hierarchies, Pairs(std::move(bodies), made_from<Strategy>(variant.strategy)));
 }
 
 }  // namespace detail
@@ -57,8 +39,7 @@ constexpr PlayEntry play_of() {
           Query::name,
           Query::description,
           [](std::string_view text) { made_from<Strategy>(text); },
-          detail::play<Strategy, Query>,
-          detail::world<Strategy, Query>};
+          detail::strategy_pairs<Strategy, Query>};
 }
 
 }  // namespace bvlab

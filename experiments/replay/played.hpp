@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/// What play_pairs.hpp declares, to be compiled for one query.
+/// Replays and whole scenes over pairs of any kind, compiled once for each query (played.cpp.in).
 #pragma once
 
 #include <memory>
+#include <span>
 #include <utility>
+#include <vector>
 
-#include "experiments/replay/play_pairs.hpp"
+#include "experiments/replay/pairs_in_turn.hpp"
+#include "experiments/replay/player.hpp"
+#include "experiments/replay/query_entry.hpp"
 #include "experiments/replay/touching_world.hpp"
 #include "experiments/replay/trace_pairs.hpp"
 #include "experiments/replay/triangle_test.hpp"
@@ -55,6 +59,12 @@ class PlayedBy final : public Player {
     result_.hits += answers_.hits();
     const auto [nodes, made] = engine_.pairs().nodes();
     result_.nodes += nodes, result_.nodes_made += made;
+    if (const auto choice = engine_.pairs().choice()) {
+      result_.chosen = choice->reason;
+      result_.build_seconds += choice->build_seconds;
+      result_.choosing_seconds += choice->choosing_seconds;
+      result_.seconds -= choice->build_seconds + choice->choosing_seconds;
+    }
     if (!counts(options_)) return;
     result_.n_b += counter_.n_b, result_.n_u += counter_.n_u, result_.n_v += counter_.n_v;
     result_.n_p += counter_.n_p, result_.considered += counter_.considered;
@@ -69,6 +79,7 @@ class PlayedBy final : public Player {
   Counting counter_;
 };
 
+/// All must outlive the player.
 template <class Query>
 std::unique_ptr<Player> player_over(std::unique_ptr<AnyPairs<Query>> pairs,
                                     std::span<const TriangleMesh> meshes, const Trace& trace,
@@ -79,13 +90,32 @@ std::unique_ptr<Player> player_over(std::unique_ptr<AnyPairs<Query>> pairs,
 }
 
 template <class Query>
-std::unique_ptr<WorldEngine> world_of_pairs(std::unique_ptr<AnyPairs<Query>> pairs,
-                                            const Variant& variant, int threads) {
+std::unique_ptr<AnyPairs<Query>> under(std::unique_ptr<PairsUnderSome> pairs) {
+  return std::unique_ptr<AnyPairs<Query>>(static_cast<AnyPairs<Query>*>(pairs.release()));
+}
+
+template <class Query>
+constexpr QueryEntry query_of() {
+  QueryEntry entry{Query::name,
+                   [](std::unique_ptr<PairsUnderSome> pairs, std::span<const TriangleMesh> meshes,
+                      const Trace& trace, const Variant& variant, const ReplayOptions& options,
+                      ReplayResult& result) {
+                     return player_over(under<Query>(std::move(pairs)), meshes, trace, variant,
+                                        options, result);
+                   },
+                   nullptr,
+                   [](Trials trials, std::shared_ptr<PairsFrom> from,
+                      std::vector<Variant> variants) -> std::unique_ptr<PairsUnderSome> {
+                     return std::make_unique<PairsInTurn<Query>>(std::move(trials), std::move(from),
+                                                                 std::move(variants));
+                   }};
   if constexpr (AnswersYesOrNo<Query>)
-    return std::make_unique<TouchingWorld<Query>>(std::move(pairs), query_options(variant),
-                                                  threads);
-  else
-    return nullptr;
+    entry.world = [](std::unique_ptr<PairsUnderSome> pairs, const Variant& variant,
+                     int threads) -> std::unique_ptr<WorldEngine> {
+      return std::make_unique<TouchingWorld<Query>>(under<Query>(std::move(pairs)),
+                                                    query_options(variant), threads);
+    };
+  return entry;
 }
 
 }  // namespace bvlab::detail

@@ -53,8 +53,7 @@ class Player {
         trace_(trace),
         variant_(variant),
         waiting_(waiting),
-        volume_(volume_entry(variant.volume)),
-        hierarchies_(volume_.hierarchies(meshes, variant)) {}
+        from_(std::make_shared<PairsFrom>(meshes, trace.objects, 1)) {}
 
   Window play(std::string_view strategy, std::size_t first, std::size_t frames) const {
     Variant variant = variant_;
@@ -68,7 +67,7 @@ class Player {
     options.keep_answers = false;
     options.keep_series = true;
     options.after_frame = [&](std::size_t) { waiting_(); };
-    const ReplayResult counted = played(variant, part, options);
+    const ReplayResult counted = replay(from_, part, variant, options);
     for (const FrameCounts& counts : counted.series) {
       window.volumes.push_back(static_cast<double>(counts.n_v));
       window.triangles.push_back(static_cast<double>(counts.n_p));
@@ -77,14 +76,6 @@ class Player {
   }
 
  private:
-  ReplayResult played(const Variant& variant, const Trace& part,
-                      const ReplayOptions& options) const {
-    ReplayResult result;
-    play_entry(variant.strategy, variant.query)
-        .play(volume_, hierarchies_, meshes_, part, variant, options, result);
-    return result;
-  }
-
   /// Seconds of each frame, those of a few together dealt out evenly: the clock is not free.
   std::vector<double> timed(const Variant& variant, const Trace& part) const {
     const std::size_t few = std::max<std::size_t>(part.frames / 8, 1);
@@ -95,7 +86,7 @@ class Player {
       if ((frame + 1) % few == 0 || frame + 1 == part.frames) read.push_back(Clock::now());
       waiting_();
     };
-    const ReplayResult result = played(variant, part, options);
+    const ReplayResult result = replay(from_, part, variant, options);
     std::vector<double> seconds(part.frames);
     double later = 0;
     for (std::size_t k = read.size(); k-- > 0;) {
@@ -114,8 +105,7 @@ class Player {
   const Trace& trace_;
   const Variant& variant_;
   const std::function<void()>& waiting_;
-  const VolumeEntry& volume_;
-  std::shared_ptr<const AnyHierarchies> hierarchies_;
+  std::shared_ptr<PairsFrom> from_;  // its trees are made once
 };
 
 /// What a strategy made, tests or seconds, and recursion beside it in the same frame.

@@ -110,6 +110,12 @@ const WideEntry& wide_entry(std::string_view volume, std::string_view query) {
   refuse("--query", query, queries());
 }
 
+const QueryEntry& query_entry(std::string_view name) {
+  for (const auto* entry : query_entries())
+    if (entry->query == name) return *entry;
+  refuse("--query", name, queries());
+}
+
 const PlayEntry& play_entry(std::string_view strategy, std::string_view query) {
   bool strategy_exists = false;
   for (const auto* entry : play_entries()) {

@@ -12,6 +12,7 @@
 
 #include "experiments/replay/bodies_of.hpp"
 #include "experiments/replay/play_entry.hpp"
+#include "experiments/replay/query_entry.hpp"
 #include "experiments/replay/volume_entry.hpp"
 #include "experiments/replay/wide_entry.hpp"
 
@@ -23,6 +24,8 @@ std::span<const VolumeEntry* const> volume_entries();
 std::span<const PlayEntry* const> play_entries();
 /// Of volumes in wide trees, each under every query.
 std::span<const WideEntry* const> wide_entries();
+/// In the order of the list.
+std::span<const QueryEntry* const> query_entries();
 /// One for each volume; specialised for each query.
 template <class Query>
 std::span<const BodiesEntry<Query>* const> bodies_entries();
@@ -53,6 +56,7 @@ void require_fit(const Variant& variant);
 const VolumeEntry& volume_entry(std::string_view name);
 const PlayEntry& play_entry(std::string_view strategy, std::string_view query);
 const WideEntry& wide_entry(std::string_view volume, std::string_view query);
+const QueryEntry& query_entry(std::string_view name);
 
 /// Of a volume that exists.
 template <class Query>

@@ -6,6 +6,7 @@
 
 #include "experiments/files/joined.hpp"
 #include "experiments/files/unusable.hpp"
+#include "experiments/replay/configurations.hpp"
 #include "experiments/replay/player.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/strategy_text.hpp"
@@ -13,6 +14,7 @@
 #include "hierarchies/builds.hpp"
 #include "traversal/all_pairs.hpp"
 #include "traversal/primitives/precisions.hpp"
+#include "traversal/recommended_for.hpp"
 #include "traversal/wide/kernels.hpp"
 
 namespace bvlab {
@@ -40,7 +42,7 @@ void check_wide(const Variant& variant) {
     throw Unusable("--volume " + variant.volume + ": the kernel " + variant.kernel +
                    " does not take it; there is " +
                    joined(wide_volumes(variant.kernel), &Named::name));
-  if (!wide_entry(variant.volume, variant.query).play)
+  if (!wide_entry(variant.volume, variant.query).pairs)
     throw Unusable("--query " + variant.query + ": not with --kernel " + variant.kernel +
                    ", which culls by whether volumes are disjoint; use --kernel gathered");
   play_entry(name_of(variant.strategy), variant.query).check(variant.strategy);
@@ -63,6 +65,21 @@ void check_engine(const Variant& variant) {
   else
     throw Unusable("--kernel " + variant.kernel + ": unknown; available: gathered, " +
                    Kernels::names());
+}
+
+/// The pairs of a run of so many frames; 0: it is not known how many.
+std::unique_ptr<PairsUnderSome> begun(const std::shared_ptr<PairsFrom>& from,
+                                      const Variant& variant, std::size_t frames) {
+  if (!variant.chooses_in_turn) return pairs_of(*from, variant);
+  const std::vector<Recommendation> all = recommendations(variant, from->meshes);
+  std::vector<Trials::Candidate> candidates;
+  std::vector<Variant> variants;
+  for (const Recommendation& each : all) {
+    candidates.push_back({each.name, each.build * static_cast<double>(triangles_of(from->meshes))});
+    variants.push_back(each.variant);
+  }
+  return query_entry(variant.query)
+      .in_turn(Trials(std::move(candidates), frames), from, std::move(variants));
 }
 
 }  // namespace
@@ -106,34 +123,37 @@ ReplayResult replay(std::span<const TriangleMesh> meshes, const Trace& trace,
   check(variant);
   // Nothing happens without frames, so bodies are not made, however many there would be.
   if (trace.frames == 0 && trace.objects > 0) return replay(meshes, Trace{}, variant, options);
+  return replay(
+      std::make_shared<PairsFrom>(meshes, trace.objects, static_cast<int>(options.threads)), trace,
+      variant, options);
+}
+
+ReplayResult replay(const std::shared_ptr<PairsFrom>& from, const Trace& trace,
+                    const Variant& variant, const ReplayOptions& options) {
   ReplayResult result;
-  if (variant.kernel != "gathered") {
-    wide_entry(variant.volume, variant.query).play(meshes, trace, variant, options, result);
-    return result;
-  }
-  const VolumeEntry& volume = volume_entry(variant.volume);
-  const auto start = Clock::now();
-  auto hierarchies = volume.hierarchies(meshes, variant);
-  result.build_seconds = seconds_since(start);
-  play_entry(name_of(variant.strategy), variant.query)
-      .play(volume, std::move(hierarchies), meshes, trace, variant, options, result);
+  const double built = from->build_seconds();
+  auto pairs = begun(from, variant, trace.frames);
+  result.build_seconds = from->build_seconds() - built;
+  const auto player = query_entry(variant.query)
+                          .player(std::move(pairs), from->meshes, trace, variant, options, result);
+  detail::play_frames(*player, trace, options, result);
   return result;
 }
 
 std::unique_ptr<WorldEngine> make_world(std::span<const TriangleMesh> meshes, std::size_t objects,
                                         const Variant& variant, int threads) {
   check(variant);
-  std::unique_ptr<WorldEngine> world;
-  if (variant.kernel != "gathered") {
-    world = wide_entry(variant.volume, variant.query).world(meshes, objects, variant, threads);
-  } else {
-    const VolumeEntry& volume = volume_entry(variant.volume);
-    world = play_entry(name_of(variant.strategy), variant.query)
-                .world(volume, volume.hierarchies(meshes, variant), objects, variant, threads);
-  }
-  if (!world)
+  const QueryEntry& query = query_entry(variant.query);
+  if (!query.world)
     throw Unusable("--query " + variant.query + ": a whole scene takes only yes-or-no queries");
-  return world;
+  const auto from = std::make_shared<PairsFrom>(meshes, objects, threads);
+  return query.world(begun(from, variant, 0), variant, threads);
+}
+
+std::unique_ptr<PairsUnderSome> pairs_of(PairsFrom& from, const Variant& variant) {
+  if (variant.kernel != "gathered")
+    return wide_entry(variant.volume, variant.query).pairs(from, variant);
+  return play_entry(name_of(variant.strategy), variant.query).pairs(from, variant);
 }
 
 bool detail::broad_phase_pays(const Trace& trace, const ReplayOptions& options) {

@@ -5,8 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <map>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -35,6 +33,9 @@ struct Variant {
   std::uint32_t fan_out = 2;        ///< children per node, at most: 2, 4, 8 or 16
   std::string frame = "world";      ///< or "body", see traversal/frame.hpp
   std::string kernel = "gathered";  ///< or "siblings", "mixed": see kernels() in registry.hpp
+  /// What it says of trees, strategy and kernel is what a run begins with; it may go on with
+  /// another of the candidates that are recommended (configurations.hpp, trials.hpp).
+  bool chooses_in_turn = false;
 };
 
 /// The frame of a variant whose names have been checked.
@@ -59,20 +60,6 @@ BroadPhase broad_phase_from(std::string_view name);
 /// Whether a trace has so many more pairs than bodies that a broad phase pays.
 inline bool has_many_pairs(const Trace& trace) { return trace.pairs() >= 16 * trace.objects; }
 
-/// Wide trees that replays of the same meshes share, by what they are made of, and what making them
-/// took.
-struct TreesOfMeshes {
-  std::shared_ptr<void> trees;
-  double seconds = 0;
-};
-using KeptTrees = std::map<std::string, TreesOfMeshes>;
-/// What a variant says of wide trees.
-inline std::string trees_of(const Variant& variant) {
-  return variant.kernel + ' ' + variant.volume + ' ' + variant.build + ' ' + variant.fit + ' ' +
-         std::to_string(variant.leaf_size) + ' ' + std::to_string(variant.fan_out) + ' ' +
-         variant.frame;
-}
-
 struct ReplayOptions {
   Count count = Count::off;
   unsigned threads = 1;
@@ -81,7 +68,6 @@ struct ReplayOptions {
   bool keep_nearest = false;        ///< fill `nearest`, where the query is for distances
   bool keep_series = false;         ///< fill `series`
   bool keep_frame_seconds = false;  ///< fill `frame_seconds`: a reading of the clock in each frame
-  KeptTrees* trees = nullptr;       ///< takes wide trees from there, and leaves them there
   /// Called after every frame, for every pair, with what the strategy keeps of it, if it does.
   std::function<void(std::size_t frame, std::size_t pair, std::span<const NodePair>)> see_front;
   /// Called after every frame; what it throws ends the replay.
@@ -96,7 +82,10 @@ struct FrameCounts {
 struct ReplayResult {
   double seconds = 0;        ///< posing and querying every frame
   double first_seconds = 0;  ///< the first frame alone
-  double build_seconds = 0;  ///< before the first frame; what is built on demand is in `seconds`
+  double build_seconds = 0;  ///< of whole trees; what is built on demand is in `seconds`
+  /// Where the variant chooses in turn: what was chosen and why; what trying others took.
+  std::optional<std::string> chosen;
+  double choosing_seconds = 0;
   /// Of all trees, those of kernel `siblings`, and how many of them have been made.
   std::size_t nodes = 0, nodes_made = 0;
   std::uint64_t n_b = 0, n_u = 0, n_v = 0, n_p = 0;  ///< where counted

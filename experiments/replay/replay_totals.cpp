@@ -20,7 +20,7 @@ void skipped(Totals& totals, const Variant& variant, const ReplayOptions& option
     return;
   }
   Variant from_roots = variant;
-  from_roots.strategy = "recursive";
+  from_roots.strategy = "recursive", from_roots.chooses_in_turn = false;
   ReplayOptions counted;
   counted.count = Count::on;
   counted.keep_answers = false;
@@ -83,6 +83,8 @@ Totals totals_of(const ReplayResult& result, std::span<const TriangleMesh> meshe
   set_counts(totals, options.count, result);
   totals.set("front", result.front);
   set_variant(totals, variant);
+  if (variant.chooses_in_turn)
+    totals.set("recommended", *result.chosen).set("choosing_seconds", result.choosing_seconds);
   totals.set("threads", options.threads)
       .set("broad_phase", result.near ? "on" : "off")
       .set("near", result.near);

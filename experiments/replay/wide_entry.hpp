@@ -5,11 +5,9 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string_view>
 
-#include "experiments/replay/replay.hpp"
-#include "experiments/replay/world_frames.hpp"
+#include "experiments/replay/made_pairs.hpp"
 
 namespace bvlab {
 
@@ -27,13 +25,8 @@ struct WideEntry {
   std::string_view volume, volume_description, query;
   /// With which a kernel is fastest; 0 where it is not compiled for the volume.
   std::uint32_t (*fan_out)(std::string_view kernel);
-  /// Adds to the result, the time to build included. This and `world` are null for a query that
-  /// wide trees cannot answer.
-  void (*play)(std::span<const TriangleMesh> meshes, const Trace& trace, const Variant& variant,
-               const ReplayOptions& options, ReplayResult& result);
-  /// A whole scene; null for a query that is not answered by yes or no.
-  std::unique_ptr<WorldEngine> (*world)(std::span<const TriangleMesh> meshes, std::size_t objects,
-                                        const Variant& variant, int threads);
+  /// Null for a query that wide trees cannot answer.
+  std::unique_ptr<PairsUnderSome> (*pairs)(PairsFrom& from, const Variant& variant);
 };
 
 }  // namespace bvlab

@@ -161,23 +161,6 @@ Variant configured_variant_of(const Cell& cell) {
   return cell["configuration"].empty() ? variant : configured(variant, cell["configuration"]);
 }
 
-/// What is recommended depends on the meshes and the motion. It is found once for each of them,
-/// also where the cells are made again.
-void set_recommended_of_motions(std::vector<Cell>& cells) {
-  static std::map<std::string, Variant> known;
-  for (auto& cell : cells) {
-    if (cell["configuration"] != "recommended") continue;
-    const std::string key = trace_key(cell) + "/" + cell["query"];
-    auto found = known.find(key);
-    if (found == known.end()) {
-      const Prepared ready = prepared(cell);
-      const auto chosen = configured(variant_of(cell), "recommended", ready.meshes, &ready.trace);
-      found = known.emplace(key, chosen.variant).first;
-    }
-    spell_out(cell, found->second);
-  }
-}
-
 /// Of a mesh from a file a record says what it has, and not what a mesh by name would have had: the
 /// most triangles of those in the list.
 void set_polygons_of_files(std::vector<Cell>& cells) {
@@ -304,20 +287,16 @@ std::vector<Cell> cells_with_answers(const Definition& definition, AbsentPeers a
   set_lengths_of_recordings(cells);
   set_meshes_of_scenes(cells);
   set_polygons_of_files(cells);
-  set_recommended_of_motions(cells);
   return cells;
 }
 
 ReplayResult answered(const Prepared& ready, const Cell& cell, const ReplayOptions& options) {
   if (const Peer* const other = peer(cell["peer"]))
     return other->replay(ready.meshes, ready.trace, cell["query"], options);
-  if (cell["configuration"] != "recommended")
-    return replay(ready.meshes, ready.trace, variant_of(cell), options);
-  const Chosen chosen = configured(variant_of(cell), "recommended", ready.meshes, &ready.trace);
-  ReplayOptions with_trees = options;
-  with_trees.trees = chosen.trees.get();
-  ReplayResult result = replay(ready.meshes, ready.trace, chosen.variant, with_trees);
-  result.build_seconds += chosen.seconds;
+  Variant variant = variant_of(cell);
+  variant.chooses_in_turn = cell["configuration"] == "recommended";
+  ReplayResult result = replay(ready.meshes, ready.trace, variant, options);
+  result.build_seconds += result.choosing_seconds;
   return result;
 }
 

@@ -83,8 +83,7 @@ void run(const StudyDefinition& definition, StudyRecord& record) {
         each.first->make(each.second, definition.whole("frames"), definition.whole("seed"));
     Judge judge(stress, record);
     for (const auto& variant : stressed_variants()) judge.ours(variant, "");
-    for (const auto& [name, what] : configurations())
-      judge.ours(configured({}, name, stress.meshes, &stress.trace).variant, name);
+    for (const auto& [name, what] : configurations()) judge.ours(configured({}, name), name);
     judge.theirs(static_cast<unsigned>(definition.whole("seconds")));
   });
 }

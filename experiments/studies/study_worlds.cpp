@@ -152,16 +152,13 @@ WorldRun run_of(const Contestant& who, const TriangleMesh& mesh, const Trace& tr
 }
 
 void run(const StudyDefinition& definition, StudyRecord& record) {
-  Settings settings = settings_of(definition);
+  const Settings settings = settings_of(definition);
   for (const auto& who : settings.contestants)
     if (static_cast<std::size_t>(who.threads) > cores_allowed())
       throw Unusable(definition.file, "threads: " + std::to_string(who.threads) +
                                           " need as many processors; " +
                                           std::to_string(cores_allowed()) + " may be used");
   const TriangleMesh mesh = named_mesh(settings.mesh, settings.polygons).mesh;
-  for (auto& who : settings.contestants)
-    if (!who.configuration.empty())
-      who.variant = configured({}, who.configuration, std::span(&mesh, 1)).variant;
   const auto key_of = [&](const Scene& scene) {
     Row row;
     add_to(row, scene.objects, scene.room, scene.moving, scene.step, scene.degrees, settings.mesh,

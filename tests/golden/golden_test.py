@@ -29,7 +29,7 @@ DEFINITIONS = ROOT / "experiments" / "definitions"
 TABLES = {HERE / "cells.toml": ["8"],
           DEFINITIONS / "coherence.toml": ["12", "mesh=bunny;knot;star", "motion=0.001 / 0.1;0.03 / 5;0 / 10",
                                            "motion_model=all bodies, all freedoms;all bodies, persisting"],
-          DEFINITIONS / "recommended-costs.toml": ["8", "motion=" + ";".join(
+          HERE / "recommended-costs.toml": ["8", "motion=" + ";".join(
               f"bunny of 500, {motion}" for motion in ("5 degrees", "planner", "graze", "near", "slow", "5 degrees, contacts",
                                                        "near, contacts", "slow, contacts"))]}
 MOST_NAMED = 40
