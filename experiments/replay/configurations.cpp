@@ -39,7 +39,9 @@ constexpr Configuration list[] = {
      "slab-box, kernel siblings, built bottom-up, leaves of 4, margins; (4) obb, kernel mixed, "
      "built bottom-up, fit tight, leaves of 4, margins, or (5) recursive; (6) obb, kernel "
      "siblings, built bottom-up, fit tight, leaves of 8, margins. distance: (4), and rss in binary "
-     "trees, frame body, built bottom-up, fit tight, leaves of 1, witness",
+     "trees, frame body, built bottom-up, fit tight, leaves of 1, witness. What goes on depends on "
+     "times: counts, the last bits of distances, and which of several nearest pairs is named may "
+     "differ from run to run",
      set_recommended},
     {"as-published",
      "the talk's (Li and Chen 1998): spheres in binary trees, one triangle per leaf, and a "

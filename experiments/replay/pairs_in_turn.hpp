@@ -27,8 +27,11 @@ class PairsInTurn final : public AnyPairs<Query> {
   /// Variant k is that of candidate k.
   PairsInTurn(Trials trials, std::shared_ptr<PairsFrom> from, std::vector<Variant> variants)
       : trials_(std::move(trials)), from_(std::move(from)), variants_(std::move(variants)) {
+    const auto start = Clock::now();
+    const double built = from_->build_seconds();
     answering_ = make(trials_.current());
     built_before_ = from_->build_seconds();
+    trials_.expect_pairs(1e9 * (seconds_since(start) - (built_before_ - built)));
   }
 
   std::size_t size() const override { return answering_->size(); }

@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "experiments/replay/made_pairs.hpp"
-#include "experiments/replay/trials.hpp"
 #include "experiments/replay/world_frames.hpp"
 
 namespace bvlab {
+
+class Trials;
 
 struct QueryEntry {
   std::string_view query;

@@ -10,6 +10,7 @@
 #include "experiments/replay/player.hpp"
 #include "experiments/replay/registry.hpp"
 #include "experiments/replay/strategy_text.hpp"
+#include "experiments/replay/trials.hpp"
 #include "experiments/replay/worlds.hpp"
 #include "hierarchies/builds.hpp"
 #include "traversal/all_pairs.hpp"
@@ -75,7 +76,10 @@ std::unique_ptr<PairsUnderSome> begun(const std::shared_ptr<PairsFrom>& from,
   std::vector<Trials::Candidate> candidates;
   std::vector<Variant> variants;
   for (const Recommendation& each : all) {
-    candidates.push_back({each.name, each.build * static_cast<double>(triangles_of(from->meshes))});
+    candidates.push_back({each.name,
+                          each.build * static_cast<double>(triangles_of(from->meshes)),
+                          each.variant.kernel + ' ' + each.variant.volume + ' ' +
+                              each.variant.build});
     variants.push_back(each.variant);
   }
   return query_entry(variant.query)

@@ -4,7 +4,7 @@
 /// One of them answers all frames. Now and then another is tried: it answers the same ten frames
 /// beside it, and its answers are dropped. Both are timed, and the one that takes less time goes
 /// on. No property of meshes or motions that was tried predicts which one that is, and counts of
-/// tests do only with unit costs that hold for one processor.
+/// tests do only with unit costs that hold for one processor. Frames below 200 ns tell nothing.
 ///
 /// Cost. The first trials, with the trees that have to be built for them, take at most a sixth of
 /// the run: of its expected time where its length is known, else of the time so far. They are made
@@ -28,14 +28,20 @@ class Trials {
  public:
   struct Candidate {
     std::string name;
-    double build;  ///< the time that its trees, and its pairs of bodies, are expected to take
+    double build;  ///< the time that its trees are expected to take
+    std::string trees;  ///< others of the same name have the same trees
   };
 
   /// The first candidate begins. `frames` is the length of the run, 0 where it is not known. All
-  /// times are in one unit.
+  /// times are in nanoseconds.
   Trials(std::vector<Candidate> candidates, std::size_t frames) : length_(frames) {
     for (Candidate& each : candidates) states_.push_back({std::move(each)});
+    for (State& each : states_)
+      if (each.candidate.trees == states_[0].candidate.trees) each.candidate.build = 0;
   }
+
+  /// What making pairs of bodies takes beside their trees.
+  void expect_pairs(double took) { making_ = took; }
 
   std::size_t current() const { return current_; }
   /// What is tried in this frame.
@@ -49,19 +55,21 @@ class Trials {
   void made(std::optional<double> took) {
     State& state = states_[*tried_];
     state.is_known = true, state.last = frame_;
-    state.candidate.build = 0;
-    if (took)
+    if (took) {
       spend(*took);
-    else
+      for (State& each : states_)
+        if (each.candidate.trees == state.candidate.trees) each.candidate.build = 0;
+    } else {
       state.is_possible = false, tried_.reset();
+    }
   }
   /// A timed frame took `own`, and what is tried took `other` for it. A trial may begin or end.
   void took(double own, double other) {
     if (!tried_) {
-      // A frame that was interrupted does not stand for all until the next one.
-      const double typical =
-          frame_ > 1 ? std::min(own, 4 * elapsed_ / static_cast<double>(frame_)) : own;
-      elapsed_ += (frame_ > 1 ? every : 1) * typical;
+      // The first frame makes trees; one that was interrupted does not stand for all until the next.
+      if (frame_ == 1) return;
+      const double mean = elapsed_ / static_cast<double>(frame_);
+      elapsed_ += every * (frame_ > 1 + every ? std::min(own, 4 * mean) : own);
       return begin_trial(own);
     }
     elapsed_ += own, spend(other);
@@ -92,7 +100,7 @@ class Trials {
   /// Frames of a trial, of which the first are not counted: they write fronts. A frame of so many
   /// is timed where nothing is tried.
   static constexpr std::size_t trial = 10, uncounted = 4, enough = 6, every = 8;
-  static constexpr double hopeless = 2.5, better = 0.97;
+  static constexpr double hopeless = 2.5, better = 0.97, shortest = 200;
   static constexpr double first_share = 6, later_share = 32;
 
   struct State {
@@ -106,15 +114,14 @@ class Trials {
   void spend(double time) { (is_first_ ? first_spent_ : later_spent_) += time; }
 
   void begin_trial(double frame) {
-    if (frame_ < uncounted) return;
-    const double mean = elapsed_ / static_cast<double>(frame_);
+    const double mean = elapsed_ / static_cast<double>(frame_ - 1);
     const double run = length_ ? mean * static_cast<double>(length_) : elapsed_;
     const double left = length_ ? run - elapsed_ : elapsed_;
     State* best = nullptr;
     for (State& state : states_) {
       if (&state == &states_[current_] || !state.is_possible) continue;
       const double price =
-          state.candidate.build + trial * frame * (state.is_known ? state.own / state.base : 1);
+          state.candidate.build + making_ + trial * frame * (state.base > 0 ? state.own / state.base : 1);
       const bool may_pay = first_share * price <= left;
       if (!may_pay) continue;
       if (!state.is_known) {
@@ -133,6 +140,8 @@ class Trials {
   void end_trial(double ratio) {
     State& state = states_[*tried_];
     const double base = median(own_);
+    tried_.reset();
+    if (base < shortest) return;
     state.own = state.own / 2 + base * ratio, state.base = state.base / 2 + base;
     const double settled = state.own / state.base;
     if (settled < better) {
@@ -140,9 +149,8 @@ class Trials {
       State& beaten = states_[current_];
       beaten.own = beaten.base = base, beaten.base *= settled;
       beaten.is_known = true, beaten.last = frame_;
-      current_ = *tried_, switched_at_ = frame_;
+      current_ = static_cast<std::size_t>(&state - states_.data()), switched_at_ = frame_;
     }
-    tried_.reset();
   }
   /// Of the counted frames.
   double median(const std::array<double, trial>& times) const {
@@ -160,7 +168,8 @@ class Trials {
   std::size_t length_, frame_ = 0, current_ = 0, timed_ = 0, switched_at_ = 0;
   std::optional<std::size_t> tried_;
   bool is_first_ = false;
-  double elapsed_ = 0, first_spent_ = 0, later_spent_ = 0;
+  double making_ = 0;
+  double elapsed_ = 0 /* since the first frame */, first_spent_ = 0, later_spent_ = 0;
   std::array<double, trial> own_{}, other_{};
 };
 
