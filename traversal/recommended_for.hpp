@@ -36,9 +36,8 @@ using RecommendedWideOriented =
                           Fit::tight, std::min(8, native_fan_out<float>)>>;
 
 /// Slab-boxes in smaller leaves, for bodies that come near each other at few triangles.
-using RecommendedSmallLeaves =
-    MarginsOver<WideTrees<SlabBox<float>, native_fan_out<float>, SiblingsKernel,
-                          builds::BottomUpLocal, Fit::published, 4>>;
+using RecommendedSmallLeaves = MarginsOver<
+    WideTrees<SlabBox<float>, 4, MixedKernel, builds::TopDownSurfaceArea, Fit::published, 4>>;
 
 /// Slab-boxes and oriented boxes from the roots: for bodies so fast, or so often in contact,
 /// that hardly an answer outlasts a frame.
@@ -63,7 +62,7 @@ inline constexpr double on_demand = 50;
 inline constexpr std::tuple recommended_candidates{
     RecommendedCandidate<Recommended>{"slab-boxes", on_demand, true},
     RecommendedCandidate<RecommendedRoots>{"slab-boxes from the roots", on_demand, false},
-    RecommendedCandidate<RecommendedSmallLeaves>{"slab-boxes in small leaves", 1400, false},
+    RecommendedCandidate<RecommendedSmallLeaves>{"slab-boxes in small leaves", 1100, false},
     RecommendedCandidate<RecommendedOriented>{"oriented boxes", 8000, true},
     RecommendedCandidate<RecommendedOrientedRoots>{"oriented boxes from the roots", 8000, false},
     RecommendedCandidate<RecommendedWideOriented>{"wide oriented boxes", 8000, false}};

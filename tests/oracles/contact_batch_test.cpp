@@ -83,7 +83,7 @@ struct Transformed {
   explicit Transformed(const Bodies& bodies) {
     const OrthonormalPose a(bodies.pose_a, bodies.reach_a), b(bodies.pose_b, bodies.reach_b);
     transform.begin(RelativePose(a, b), bodies.reach_a, bodies.reach_b);
-    leaf.require(0, lanes_of(bodies.a), transform);
+    leaf.transform_all(lanes_of(bodies.a), transform);
   }
 };
 

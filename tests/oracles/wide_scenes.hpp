@@ -213,7 +213,7 @@ class PlayedWide {
  public:
   using Hierarchy = typename Kernel::template Hierarchy<V, F>;
 
-  PlayedWide(const Scene& scene, std::uint32_t leaf_size, const Memory& memory = {})
+  PlayedWide(const Scene& scene, std::uint32_t leaf_size, const Memory& memory = Memory())
       : PlayedWide(
             scene,
             [leaf_size](const TriangleMesh& mesh) {
@@ -225,7 +225,7 @@ class PlayedWide {
   template <class MakeHierarchy>
     requires std::invocable<MakeHierarchy, const TriangleMesh&>
   PlayedWide(const Scene& scene, MakeHierarchy&& hierarchy, int threads = 1,
-             const Memory& memory = {})
+             const Memory& memory = Memory())
       : scene_(scene) {
     for (const auto& mesh : scene.meshes) hierarchies_.push_back(hierarchy(mesh));
     const auto shapes = shapes_over(scene.meshes, hierarchies_, scene.frames[0].size());
@@ -325,7 +325,7 @@ inline ListMemory raised_lists() {
 
 /// One engine for all queries, one after the other, so that each begins with another's memory.
 template <class V, int F, class Memory, class Kernel = SiblingsKernel>
-void expect_truth_in_motion(const Memory& memory = {}) {
+void expect_truth_in_motion(const Memory& memory = Memory()) {
   for (const auto& [scene, truth] : motions_with_truth()) {
     PlayedWide<V, F, Memory, Kernel> played(scene, static_cast<std::uint32_t>(F), memory);
     played.expect_touching(truth);

@@ -116,12 +116,16 @@ TEST(Wide, DirectionsTellApart) {
         const double distance = truth.distances[f * pairs.size() + p];
         for (std::size_t lane = 0; lane < gap.size(); ++lane)
           EXPECT_LE(static_cast<double>(gap[lane]), distance) << scene.name;
-        if (!(directions.spheres_meet(lanes) & 1)) EXPECT_GT(distance, 0) << scene.name;
+        if (!(directions.spheres_meet(lanes) & 1)) {
+          EXPECT_GT(distance, 0) << scene.name;
+        }
         apart += distance > 0, told += gap[0] > 0;
       }
     }
     EXPECT_LE(told, apart);
-    if (std::string_view(scene.name) == "sparse") EXPECT_GT(4 * told, 3 * apart);
+    if (std::string_view(scene.name) == "sparse") {
+      EXPECT_GT(4 * told, 3 * apart);
+    }
   }
 }
 
@@ -292,7 +296,9 @@ TEST(Wide, TouchingLasts) {
     frame[1].translation = Vec3<double>(1.2 + 0.0004 * static_cast<double>(f), 0.31, 0.17);
     Counting counter;
     const bool found = touch(engine, frame, counter);
-    if (f % 20 == 0) EXPECT_EQ(found, surfaces_touch(mesh, frame)) << f;
+    if (f % 20 == 0) {
+      EXPECT_EQ(found, surfaces_touch(mesh, frame)) << f;
+    }
     touching += found, looked_at += found && counter.n_v + counter.n_p > 0;
   }
   EXPECT_GT(touching, 1000u);

@@ -70,13 +70,22 @@ class TransformedLeaf {
   using S = Batch<float, F>;
 
  public:
-  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-
-  void forget() { leaf_ = none; }
-  /// The triangles of a leaf, known by the number `leaf`.
-  [[gnu::always_inline]] void require(std::uint32_t leaf, const TriangleLanes<float, F>& own,
-                                      const CornerTransform& transform) {
-    if (leaf != leaf_) transform_all(leaf, own, transform);
+  [[gnu::noinline]] void transform_all(const TriangleLanes<float, F>& own,
+                                       const CornerTransform& transform) {
+    off_ = transform.error_bound() < most_known ? transform.error_bound() : infinity;
+    Corners<S> corner = corners_in_lanes<S>(own);
+    for (std::size_t i = 0; i < 3; ++i) {
+      corner[i] = transform(corner[i][0], corner[i][1], corner[i][2]);
+      for (std::size_t k = 0; k < 3; ++k)
+        corner[i][k].copy_to(transformed_.corner[i][k].data(), stdx::vector_aligned);
+    }
+    const TriangleBoxes<S> boxes(corner);
+    const S grown(2.25f * off_);
+    for (std::size_t k = 0; k < 3; ++k) {
+      (boxes.low[k] - grown).copy_to(low_[k].data(), stdx::vector_aligned);
+      (boxes.high[k] + grown).copy_to(high_[k].data(), stdx::vector_aligned);
+    }
+    put_planes(corner);
   }
   const TriangleLanes<float, F>& corners() const { return transformed_; }
   /// The error bound of each coordinate.
@@ -107,24 +116,6 @@ class TransformedLeaf {
   const std::array<float, F>& most() const { return most_; }
 
  private:
-  [[gnu::noinline]] void transform_all(std::uint32_t leaf, const TriangleLanes<float, F>& own,
-                                       const CornerTransform& transform) {
-    leaf_ = leaf;
-    off_ = transform.error_bound() < most_known ? transform.error_bound() : infinity;
-    Corners<S> corner = corners_in_lanes<S>(own);
-    for (std::size_t i = 0; i < 3; ++i) {
-      corner[i] = transform(corner[i][0], corner[i][1], corner[i][2]);
-      for (std::size_t k = 0; k < 3; ++k)
-        corner[i][k].copy_to(transformed_.corner[i][k].data(), stdx::vector_aligned);
-    }
-    const TriangleBoxes<S> boxes(corner);
-    const S grown(2.25f * off_);
-    for (std::size_t k = 0; k < 3; ++k) {
-      (boxes.low[k] - grown).copy_to(low_[k].data(), stdx::vector_aligned);
-      (boxes.high[k] + grown).copy_to(high_[k].data(), stdx::vector_aligned);
-    }
-    put_planes(corner);
-  }
   [[gnu::always_inline]] void put_planes(const Corners<S>& corner) {
     using namespace filter;
     const Vector<S> normal = cross<S>(corner[1] - corner[0], corner[2] - corner[0]);
@@ -147,7 +138,6 @@ class TransformedLeaf {
   static constexpr float tiny = std::numeric_limits<float>::min(), most_known = 0x1p100f,
                          infinity = std::numeric_limits<float>::infinity();
 
-  std::uint32_t leaf_ = none;
   float off_;
   TriangleLanes<float, F> transformed_;
   alignas(sizeof(float) * F) std::array<Lanes, 3> low_, high_;
@@ -166,7 +156,7 @@ class ContactBatch {
   bool full() const { return size_ >= enough; }
 
   /// Adds triangle k of `a` with each triangle of `b` whose bit is set in `lanes`. Triangles are
-  /// numbered from first_a and first_b on. The batch must not be full.
+  /// numbered from first_a and first_b on. The batch must have room.
   template <int F>
   [[gnu::always_inline]] void add(std::uint64_t lanes, const TriangleLanes<float, F>& a,
                                   std::size_t k, std::uint32_t first_a,
@@ -247,7 +237,8 @@ class ContactBatch {
   }
 
  private:
-  static constexpr std::size_t enough = 64, room = enough + 16;
+  /// Four times sixteen pairs may be added to a batch that is not full.
+  static constexpr std::size_t enough = 64, room = enough + 4 * 16;
 
   template <Batched S>
   [[gnu::always_inline]] Corners<S> corners(std::size_t side, std::size_t first) const {

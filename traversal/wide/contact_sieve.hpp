@@ -7,6 +7,9 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
 
 #include "hierarchies/wide/lanes.hpp"
 #include "hierarchies/wide/triangle_lanes.hpp"
@@ -24,13 +27,14 @@ class SiblingsSieve {
   using Trees = std::array<const Tree*, 2>;
 
  public:
-  void begin() { leaf_of_a_.forget(); }
+  void begin() { held_ = none; }
 
   /// The triangles of the leaf of a whose first one has the number `first`.
   [[gnu::always_inline]] const TransformedLeaf<F>& leaf_of_a(const Trees& trees,
                                                              const CornerTransform& a_to_b,
                                                              std::uint32_t first) {
-    leaf_of_a_.require(first, trees[0]->corners(first), a_to_b);
+    if (std::exchange(held_, first) != first)
+      leaf_of_a_.transform_all(trees[0]->corners(first), a_to_b);
     return leaf_of_a_;
   }
 
@@ -54,6 +58,9 @@ class SiblingsSieve {
   }
 
  private:
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+  std::uint32_t held_ = none;  // the number of that leaf
   TransformedLeaf<F> leaf_of_a_;
 };
 
@@ -64,29 +71,52 @@ class BlocksSieve {
   using Trees = std::array<const Tree*, 2>;
 
  public:
-  void begin() { leaf_of_a_.forget(); }
+  void begin() { held_.fill(none); }
 
   template <class Counter>
   [[gnu::noinline]] void sift(const Trees& trees, const CornerTransform& a_to_b,
                               WorkQueue& triangles, ContactBatch& batch, Counter& counter) {
+    // Whether a pair has near triangles is hardly predictable: those that have are added together.
+    std::array<Near, 4> found;
+    std::size_t count = 0;
+    const auto add = [&]() __attribute__((always_inline)) {
+      for (const Near& each : std::span(found).first(std::exchange(count, 0)))
+        batch.add(each.lanes, each.a->corners(), each.first_a, *each.b, each.first_b);
+    };
     do {
       const NodePair pair = triangles.take_last();
       const auto &a = trees[0]->node(Tree::number_of(pair.a)),
                  &b = trees[1]->node(Tree::number_of(pair.b));
       const std::uint64_t lanes = four_by_four(a.children, b.children);
       counter.primitives(static_cast<std::uint64_t>(std::popcount(lanes)));
-      leaf_of_a_.require(a.first, trees[0]->corners(a.first), a_to_b);
+      const std::size_t slot = a.first / Tree::fan_out % slots;
+      if (held_[slot] != a.first) {
+        add();  // whatever has the corners of the leaf that is replaced
+        held_[slot] = a.first;
+        leaves_[slot].transform_all(trees[0]->corners(a.first), a_to_b);
+      }
       const auto& others = trees[1]->corners(b.first);
-      const std::uint64_t near = lanes & this->near(others);
-      if (near) batch.add(near, leaf_of_a_.corners(), a.first, others, b.first);
+      const std::uint64_t near = lanes & near_of(leaves_[slot], others);
+      found[count] = {near, &leaves_[slot], &others, a.first, b.first};
+      count += near != 0;
+      if (count == found.size()) add();
     } while (!batch.full() && !triangles.empty());
+    add();
   }
 
  private:
   using Four = CornerTransform::Four;
+  /// Lanes of two leaves whose triangles are near.
+  struct Near {
+    std::uint64_t lanes;
+    const TransformedLeaf<4>* a;
+    const TriangleLanes<float, 4>* b;
+    std::uint32_t first_a, first_b;
+  };
 
   /// As TransformedLeaf::near, for all four of a: lane 4 i + j is of triangle i of a and j of b.
-  [[gnu::always_inline]] std::uint64_t near(const TriangleLanes<float, 4>& others) const {
+  [[gnu::always_inline]] static std::uint64_t near_of(const TransformedLeaf<4>& leaf_of_a,
+                                                      const TriangleLanes<float, 4>& others) {
     const TriangleBoxes<Four> boxes(corners_in_lanes<Four>(others));
     alignas(16) std::array<std::array<float, 4>, 3> low, high;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -95,21 +125,22 @@ class BlocksSieve {
     }
     std::uint64_t apart = 0;
     for (std::size_t part = 0; part < 16 / S::size(); ++part) {
-      Mask<S> found = beyond_plane(others, part);
+      Mask<S> found = beyond_plane(leaf_of_a, others, part);
       for (std::size_t k = 0; k < 3; ++k)
         found =
             found |
-            (four_repeated(low[k].data(), part) > each_of_four(leaf_of_a_.high()[k].data(), part)) |
-            (four_repeated(high[k].data(), part) < each_of_four(leaf_of_a_.low()[k].data(), part));
+            (four_repeated(low[k].data(), part) > each_of_four(leaf_of_a.high()[k].data(), part)) |
+            (four_repeated(high[k].data(), part) < each_of_four(leaf_of_a.low()[k].data(), part));
       apart |= bits(found) << (part * S::size());
     }
     return ~apart;
   }
-  [[gnu::always_inline]] Mask<S> beyond_plane(const TriangleLanes<float, 4>& others,
-                                              std::size_t part) const {
+  [[gnu::always_inline]] static Mask<S> beyond_plane(const TransformedLeaf<4>& leaf_of_a,
+                                                     const TriangleLanes<float, 4>& others,
+                                                     std::size_t part) {
     std::array<S, 3> normal, along;
     for (std::size_t k = 0; k < 3; ++k)
-      normal[k] = each_of_four(leaf_of_a_.normal()[k].data(), part);
+      normal[k] = each_of_four(leaf_of_a.normal()[k].data(), part);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto of_b = [&](std::size_t k) __attribute__((always_inline)) {
         return four_repeated(others.corner[i][k].data(), part);
@@ -117,12 +148,17 @@ class BlocksSieve {
       along[i] = fused<S>(normal[2], of_b(2), fused<S>(normal[1], of_b(1), normal[0] * of_b(0)));
     }
     return (filter::min(filter::min(along[0], along[1]), along[2]) >
-            each_of_four(leaf_of_a_.most().data(), part)) |
+            each_of_four(leaf_of_a.most().data(), part)) |
            (filter::max(filter::max(along[0], along[1]), along[2]) <
-            each_of_four(leaf_of_a_.least().data(), part));
+            each_of_four(leaf_of_a.least().data(), part));
   }
 
-  TransformedLeaf<4> leaf_of_a_;
+  static constexpr std::size_t slots = 32;
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+  // Leaves of a that were tested, transformed: each in the slot of its number, which `held_` has.
+  std::array<std::uint32_t, slots> held_;
+  std::array<TransformedLeaf<4>, slots> leaves_;
 };
 
 }  // namespace bvlab
