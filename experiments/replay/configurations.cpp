@@ -75,7 +75,9 @@ std::vector<Recommendation> recommendations(Variant variant, std::span<const Tri
   std::vector<Recommendation> all;
   for_each_candidate([&]<class Best>(const RecommendedCandidate<Best>& candidate) {
     if (is_distance && !candidate.for_distances) return;
-    all.push_back({variant_of<Best>(variant), std::string(candidate.name), candidate.build});
+    constexpr bool on_demand = std::is_same_v<typename Best::Build, builds::OnDemand>;
+    all.push_back({variant_of<Best>(variant), std::string(candidate.name), candidate.build,
+                   on_demand ? 800.0 : 0.0});
   });
   if (is_distance)
     all.push_back({recommended_distances(variant), "rectangle swept spheres", 8000});

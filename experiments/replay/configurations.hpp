@@ -39,6 +39,7 @@ struct Recommendation {
   Variant variant;
   std::string name;
   double build;  ///< of a triangle's share of the trees, in nanoseconds
+  double in_frames = 0;  ///< the same of trees on demand, while frames run: at most
 };
 /// For a variant's query, in the order in which they are tried. O(triangles).
 std::vector<Recommendation> recommendations(Variant variant, std::span<const TriangleMesh> meshes);

@@ -76,10 +76,10 @@ std::unique_ptr<PairsUnderSome> begun(const std::shared_ptr<PairsFrom>& from,
   std::vector<Trials::Candidate> candidates;
   std::vector<Variant> variants;
   for (const Recommendation& each : all) {
-    candidates.push_back({each.name,
-                          each.build * static_cast<double>(triangles_of(from->meshes)),
-                          each.variant.kernel + ' ' + each.variant.volume + ' ' +
-                              each.variant.build});
+    candidates.push_back(
+        {each.name, each.build * static_cast<double>(triangles_of(from->meshes)),
+         each.variant.kernel + ' ' + each.variant.volume + ' ' + each.variant.build,
+         each.in_frames * static_cast<double>(triangles_of(from->meshes))});
     variants.push_back(each.variant);
   }
   return query_entry(variant.query)

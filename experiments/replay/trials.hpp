@@ -7,7 +7,8 @@
 /// tests do only with unit costs that hold for one processor. Frames below 200 ns tell nothing.
 ///
 /// Cost. The first trials, with the trees that have to be built for them, take at most a sixth of
-/// the run: of its expected time where its length is known, else of the time so far. They are made
+/// the run: of its expected time where its length is known, else of the time so far. Where trees
+/// have to be built, what trees on demand may have taken until then does not count. They are made
 /// in the order of the list. Later trials take at most 1/32 of the time so far; what has not been
 /// tried for longest comes first. A run of few frames therefore has no trial.
 #pragma once
@@ -28,8 +29,9 @@ class Trials {
  public:
   struct Candidate {
     std::string name;
-    double build;  ///< the time that its trees are expected to take
-    std::string trees;  ///< others of the same name have the same trees
+    double build;          ///< the time that its trees are expected to take
+    std::string trees;     ///< others of the same name have the same trees
+    double in_frames = 0;  ///< the most that its trees may take while frames run
   };
 
   /// The first candidate begins. `frames` is the length of the run, 0 where it is not known. All
@@ -66,7 +68,8 @@ class Trials {
   /// A timed frame took `own`, and what is tried took `other` for it. A trial may begin or end.
   void took(double own, double other) {
     if (!tried_) {
-      // The first frame makes trees; one that was interrupted does not stand for all until the next.
+      // The first frame makes trees; one that was interrupted does not stand for all until the
+      // next.
       if (frame_ == 1) return;
       const double mean = elapsed_ / static_cast<double>(frame_);
       elapsed_ += every * (frame_ > 1 + every ? std::min(own, 4 * mean) : own);
@@ -114,14 +117,18 @@ class Trials {
   void spend(double time) { (is_first_ ? first_spent_ : later_spent_) += time; }
 
   void begin_trial(double frame) {
-    const double mean = elapsed_ / static_cast<double>(frame_ - 1);
-    const double run = length_ ? mean * static_cast<double>(length_) : elapsed_;
-    const double left = length_ ? run - elapsed_ : elapsed_;
     State* best = nullptr;
     for (State& state : states_) {
       if (&state == &states_[current_] || !state.is_possible) continue;
-      const double price =
-          state.candidate.build + making_ + trial * frame * (state.base > 0 ? state.own / state.base : 1);
+      const double price = state.candidate.build + making_ +
+                           trial * frame * (state.base > 0 ? state.own / state.base : 1);
+      // What made trees on demand until now is no sign of what later frames take.
+      const double frames = state.candidate.build > 0
+                                ? std::max(0.0, elapsed_ - states_[0].candidate.in_frames)
+                                : elapsed_;
+      const double later = length_ > frame_ ? static_cast<double>(length_ - frame_) : 0;
+      const double left = length_ ? frames / static_cast<double>(frame_ - 1) * later : frames;
+      const double run = length_ ? elapsed_ + left : frames;
       const bool may_pay = first_share * price <= left;
       if (!may_pay) continue;
       if (!state.is_known) {

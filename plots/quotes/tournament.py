@@ -108,12 +108,13 @@ def scenes(record):
     wrong = set(rows[rows.differing > 0].work)
     claim(all(work.startswith("contacts") for work in wrong), "only contacts differ")
     tails = middle.tail_ns.unstack("method")
-    claim((tails[OURS] < tails[libraries(rows)].min(axis=1)).all(), "recommended has a lower 99th percentile than every library")
+    behind = tails[OURS] >= tails[libraries(rows)].min(axis=1)
+    claim(set(behind[behind].index.get_level_values("polygons")) == {8000}, "a library has a lower 99th percentile than recommended for 8000 polygons alone")
     contacts = rows.work.str.startswith("contacts")
     claim(rows[contacts].frames.max() < 100 < rows[~contacts].frames.min(), "runs for contacts alone have less than a hundred frames")
     mean = middle.ns.unstack("method")
     roots = "wide, from the roots"
     built = rows[rows.polygons == 8000].groupby(["method", *PLACES]).build_ns.median() / 1e6
     return {"build": Interval(built[OURS]), "build_opcode": Interval(built["OPCODE"]), "build_physx": Interval(built["PhysX"]), "rows": lines, "lead": Interval(beside.ratio), "seeds": rows.seed.nunique(), "repetitions": rows.repetition.nunique(),
-            "cells": len(beside), "roots_faster": int((mean[roots] < mean[OURS]).sum()), "roots_most": 100 * (mean[OURS] / mean[roots] - 1).max(), "roots_tails": int((tails[roots] < tails[OURS]).sum()),
+            "cells": len(beside), "roots_faster": int((mean[roots] < mean[OURS]).sum()), "roots_most": 100 * (mean[OURS] / mean[roots] - 1).max(), "roots_tails": int((tails[roots] < tails[OURS]).sum()), "tails_behind": int(behind.sum()),
             "contact_frames": rows[contacts].frames.max()}
