@@ -2,6 +2,7 @@
 #include "experiments/replay/configurations.hpp"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include "experiments/files/joined.hpp"
@@ -17,6 +18,9 @@ struct Configuration {
   std::string_view name, description;
   void (*set)(Variant&);
 };
+
+/// What a tree on demand takes in frames until all of it is made, in nanoseconds a triangle.
+constexpr double whole_in_frames = 800;
 
 /// What a run begins with: no other trees cost less before the first frame.
 void set_recommended(Variant& variant) {
@@ -37,8 +41,7 @@ constexpr Configuration list[] = {
      "margins, and goes on with what takes the least time in trials of ten frames beside it, as "
      "far as the run repays trials and trees. touching and contacts: (2) the same, recursive; (3) "
      "slab-box, kernel mixed, built top-down-surface-area, leaves of 4, margins; (4) obb, kernel "
-     "mixed, "
-     "built bottom-up, fit tight, leaves of 4, margins, or (5) recursive; (6) obb, kernel "
+     "mixed, built bottom-up, fit tight, leaves of 4, margins, or (5) recursive; (6) obb, kernel "
      "siblings, built bottom-up, fit tight, leaves of 8, margins. distance: (4), and rss in binary "
      "trees, frame body, built bottom-up, fit tight, leaves of 1, witness. What goes on depends on "
      "times: counts, the last bits of distances, and which of several nearest pairs is named may "
@@ -77,7 +80,7 @@ std::vector<Recommendation> recommendations(Variant variant, std::span<const Tri
     if (is_distance && !candidate.for_distances) return;
     constexpr bool on_demand = std::is_same_v<typename Best::Build, builds::OnDemand>;
     all.push_back({variant_of<Best>(variant), std::string(candidate.name), candidate.build,
-                   on_demand ? 800.0 : 0.0});
+                   on_demand ? whole_in_frames : 0});
   });
   if (is_distance)
     all.push_back({recommended_distances(variant), "rectangle swept spheres", 8000});

@@ -38,8 +38,8 @@ Variant variant_of(Variant variant) {
 struct Recommendation {
   Variant variant;
   std::string name;
-  double build;  ///< of a triangle's share of the trees, in nanoseconds
-  double in_frames = 0;  ///< the same of trees on demand, while frames run: at most
+  double build;          ///< of a triangle's share of the trees, in nanoseconds
+  double in_frames = 0;  ///< the same of trees on demand, the most that frames spend on it
 };
 /// For a variant's query, in the order in which they are tried. O(triangles).
 std::vector<Recommendation> recommendations(Variant variant, std::span<const TriangleMesh> meshes);

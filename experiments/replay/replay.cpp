@@ -73,13 +73,14 @@ std::unique_ptr<PairsUnderSome> begun(const std::shared_ptr<PairsFrom>& from,
                                       const Variant& variant, std::size_t frames) {
   if (!variant.chooses_in_turn) return pairs_of(*from, variant);
   const std::vector<Recommendation> all = recommendations(variant, from->meshes);
+  const auto triangles = static_cast<double>(triangles_of(from->meshes));
   std::vector<Trials::Candidate> candidates;
   std::vector<Variant> variants;
   for (const Recommendation& each : all) {
     candidates.push_back(
-        {each.name, each.build * static_cast<double>(triangles_of(from->meshes)),
+        {each.name, each.build * triangles,
          each.variant.kernel + ' ' + each.variant.volume + ' ' + each.variant.build,
-         each.in_frames * static_cast<double>(triangles_of(from->meshes))});
+         each.in_frames * triangles});
     variants.push_back(each.variant);
   }
   return query_entry(variant.query)

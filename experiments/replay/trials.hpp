@@ -31,7 +31,7 @@ class Trials {
     std::string name;
     double build;          ///< the time that its trees are expected to take
     std::string trees;     ///< others of the same name have the same trees
-    double in_frames = 0;  ///< the most that its trees may take while frames run
+    double in_frames = 0;  ///< the most that frames spend on making its trees on demand
   };
 
   /// The first candidate begins. `frames` is the length of the run, 0 where it is not known. All
@@ -68,8 +68,8 @@ class Trials {
   /// A timed frame took `own`, and what is tried took `other` for it. A trial may begin or end.
   void took(double own, double other) {
     if (!tried_) {
-      // The first frame makes trees; one that was interrupted does not stand for all until the
-      // next.
+      // The first frame makes trees; one that was interrupted does not stand for those until the
+      // next timed one.
       if (frame_ == 1) return;
       const double mean = elapsed_ / static_cast<double>(frame_);
       elapsed_ += every * (frame_ > 1 + every ? std::min(own, 4 * mean) : own);

@@ -45,7 +45,8 @@ Outcome play(Trials& trials, std::size_t frames, const std::vector<double>& buil
 const std::vector<double> builds{0, 0, 5e5, 2e6};
 
 Trials trials_of(std::size_t frames) {
-  return Trials({{"first", 0, "a"}, {"roots", 0, "a"}, {"small", 5e5, "b"}, {"large", 2e6, "c"}}, frames);
+  return Trials({{"first", 0, "a"}, {"roots", 0, "a"}, {"small", 5e5, "b"}, {"large", 2e6, "c"}},
+                frames);
 }
 
 TEST(Trials, TheFastestGoesOnAndTrialsTakeTheirShare) {
@@ -67,6 +68,18 @@ TEST(Trials, ShortRunsHaveNone) {
   EXPECT_EQ(found.current, 0u);
   EXPECT_EQ(found.spent, 0) << trials.reason();
   EXPECT_NE(trials.reason().find("too short"), std::string::npos) << trials.reason();
+}
+
+/// Frames that make trees take 20 times as long as later ones; foretold from them, the run would
+/// repay trees that take as long as all of it.
+TEST(Trials, MakingTreesOnDemandIsNoSignOfLongFrames) {
+  for (const bool is_said : {false, true}) {
+    Trials trials({{"on demand", 0, "a", is_said ? 1.5e6 : 0}, {"built", 1e6, "b"}}, 2000);
+    const Outcome found = play(trials, 2000, {0, 1e6}, [](std::size_t, std::size_t frame) {
+      return frame < 100 ? 1e4 : 5e2;
+    });
+    EXPECT_EQ(found.spent > 0, !is_said) << trials.reason();
+  }
 }
 
 TEST(Trials, WhatBecomesFasterLaterIsFound) {

@@ -70,6 +70,7 @@ class TransformedLeaf {
   using S = Batch<float, F>;
 
  public:
+  /// Takes the triangles of a leaf in place of those that it holds.
   [[gnu::noinline]] void transform_all(const TriangleLanes<float, F>& own,
                                        const CornerTransform& transform) {
     off_ = transform.error_bound() < most_known ? transform.error_bound() : infinity;
