@@ -23,9 +23,11 @@ struct alignas(16) NodeSphere {
       for (int i = 0; i < 3; ++i)
         low[i] = std::min(low[i], point[i]), high[i] = std::max(high[i], point[i]);
     const Vec3<double> at = put_centre(low, high);
-    double farthest = 0;
-    for (const auto& point : points) farthest = std::max(farthest, stable_norm(point - at));
-    put_radius(farthest);
+    double squared = 0;
+    for (const auto& point : points) squared = std::max(squared, squared_norm<double>(point - at));
+    put_radius(largest_norm(squared, [&](const auto& take) {
+      for (const auto& point : points) take(point - at);
+    }));
   }
   /// Around the spheres of children, of which there is at least one.
   explicit NodeSphere(std::span<const NodeSphere> children) {

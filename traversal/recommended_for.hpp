@@ -24,16 +24,15 @@
 
 namespace bvlab {
 
-/// Oriented boxes, which fit best and cost most: for meshes of long triangles, as in models of
-/// plates and beams, and for surfaces that run closely along each other.
+/// Oriented boxes, which fit best: for meshes of long triangles, as in models of plates and beams,
+/// and for surfaces that run closely along each other.
 using RecommendedOriented =
-    MarginsOver<WideTrees<Obb<float>, 4, MixedKernel, builds::BottomUpLocal, Fit::tight, 4>>;
+    MarginsOver<WideTrees<Obb<float>, 4, MixedKernel, builds::BottomUpLocal, Fit::published, 4>>;
 
-/// Oriented boxes, one against as many as a register has lanes: for surfaces that follow each other
-/// closely throughout a motion, as in narrow passages.
-using RecommendedWideOriented =
-    MarginsOver<WideTrees<Obb<float>, native_fan_out<float>, SiblingsKernel, builds::BottomUpLocal,
-                          Fit::tight, std::min(8, native_fan_out<float>)>>;
+/// The same with boxes of a tight fit, for long runs: trees take two to three times as long to
+/// build, frames up to a third less time and mostly a few hundredths.
+using RecommendedTight =
+    MarginsOver<WideTrees<Obb<float>, 4, MixedKernel, builds::BottomUpLocal, Fit::tight, 4>>;
 
 /// Slab-boxes in smaller leaves, for bodies that come near each other at few triangles.
 using RecommendedSmallLeaves = MarginsOver<
@@ -50,7 +49,6 @@ struct RecommendedCandidate {
   using Configuration = Best;
   std::string_view name;
   double build;  ///< of a triangle's share of the trees, in nanoseconds
-  bool for_distances;
 };
 
 /// What a tree that is made on demand costs before anything of it is made, in nanoseconds a
@@ -60,12 +58,12 @@ inline constexpr double on_demand = 50;
 /// The candidates; one from the roots follows the one with the same trees. Small leaves from the
 /// roots never cost least.
 inline constexpr std::tuple recommended_candidates{
-    RecommendedCandidate<Recommended>{"slab-boxes", on_demand, true},
-    RecommendedCandidate<RecommendedRoots>{"slab-boxes from the roots", on_demand, false},
-    RecommendedCandidate<RecommendedSmallLeaves>{"slab-boxes in small leaves", 1100, false},
-    RecommendedCandidate<RecommendedOriented>{"oriented boxes", 8000, true},
-    RecommendedCandidate<RecommendedOrientedRoots>{"oriented boxes from the roots", 8000, false},
-    RecommendedCandidate<RecommendedWideOriented>{"wide oriented boxes", 8000, false}};
+    RecommendedCandidate<Recommended>{"slab-boxes", on_demand},
+    RecommendedCandidate<RecommendedRoots>{"slab-boxes from the roots", on_demand},
+    RecommendedCandidate<RecommendedSmallLeaves>{"slab-boxes in small leaves", 1050},
+    RecommendedCandidate<RecommendedOriented>{"oriented boxes", 1150},
+    RecommendedCandidate<RecommendedOrientedRoots>{"oriented boxes from the roots", 1150},
+    RecommendedCandidate<RecommendedTight>{"tight oriented boxes", 2800}};
 
 inline std::size_t triangles_of(std::span<const TriangleMesh> meshes) {
   std::size_t triangles = 0;
@@ -81,7 +79,7 @@ void for_each_candidate(Do&& what) {
 
 /// Meshes of more triangles get slab-boxes in unknown motion, whatever their shape: the trees of
 /// oriented boxes take over 50 ms.
-inline constexpr std::size_t many_triangles = 6000;
+inline constexpr std::size_t many_triangles = 40'000;
 
 /// Calls `visit` with std::type_identity of the candidate for these meshes in unknown motion, and
 /// returns what it returns. O(triangles). For example, of bodies that all have one mesh:

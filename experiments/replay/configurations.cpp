@@ -2,6 +2,7 @@
 #include "experiments/replay/configurations.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -41,9 +42,8 @@ constexpr Configuration list[] = {
      "margins, and goes on with what takes the least time in trials of ten frames beside it, as "
      "far as the run repays trials and trees. touching and contacts: (2) the same, recursive; (3) "
      "slab-box, kernel mixed, built top-down-surface-area, leaves of 4, margins; (4) obb, kernel "
-     "mixed, built bottom-up, fit tight, leaves of 4, margins, or (5) recursive; (6) obb, kernel "
-     "siblings, built bottom-up, fit tight, leaves of 8, margins. distance: (4), and rss in binary "
-     "trees, frame body, built bottom-up, fit tight, leaves of 1, witness. What goes on depends on "
+     "mixed, built bottom-up, leaves of 4, margins, or (5) recursive, or (6) fit tight, margins. "
+     "distance: rss as obb in (4). What goes on depends on "
      "times: counts, the last bits of distances, and which of several nearest pairs is named may "
      "differ from run to run",
      set_recommended},
@@ -59,33 +59,25 @@ bool is_compiled(const Variant& variant) {
   return has(volumes(), variant.volume) && has(strategies(), variant.strategy);
 }
 
-Variant recommended_distances(Variant variant) {
-  using Best = RecommendedDistances;
-  set_kernel(variant, "gathered");
-  variant.frame = name_of(Best::frame), variant.volume = Best::Volume::name;
-  variant.strategy = Best::Strategy::name;
-  variant.build = Best::Build::name, variant.leaf_size = Best::leaf_size;
-  variant.fit = name_of(Best::fit);
-  return variant;
-}
-
 }  // namespace
 
 std::vector<Recommendation> recommendations(Variant variant, std::span<const TriangleMesh> meshes) {
   variant.chooses_in_turn = false;
-  const bool is_long = elongation(meshes) >= long_triangles,
-             is_distance = variant.query == "distance";
   std::vector<Recommendation> all;
-  for_each_candidate([&]<class Best>(const RecommendedCandidate<Best>& candidate) {
-    if (is_distance && !candidate.for_distances) return;
+  const auto add = [&]<class Best>(const RecommendedCandidate<Best>& candidate) {
     constexpr bool on_demand = std::is_same_v<typename Best::Build, builds::OnDemand>;
     all.push_back({variant_of<Best>(variant), std::string(candidate.name), candidate.build,
                    on_demand ? whole_in_frames : 0});
-  });
-  if (is_distance)
-    all.push_back({recommended_distances(variant), "rectangle swept spheres", 8000});
-  else if (is_long)  // oriented boxes, which fit long triangles, before slab-boxes in small leaves
-    std::rotate(all.begin() + 2, all.begin() + 3, all.begin() + 5);
+  };
+  if (variant.query == "distance") {
+    add(std::get<0>(recommended_candidates));
+    add(RecommendedCandidate<RecommendedDistances>{"rectangle swept spheres", 1350});
+  } else {
+    for_each_candidate(add);
+    // Oriented boxes, which fit long triangles, before slab-boxes in small leaves.
+    if (elongation(meshes) >= long_triangles)
+      std::rotate(all.begin() + 2, all.begin() + 3, all.begin() + 5);
+  }
   std::erase_if(all, [](const Recommendation& each) { return !is_compiled(each.variant); });
   // As the variant says, where the program has none of them.
   if (all.empty()) all.push_back({variant, "what is there", 0});

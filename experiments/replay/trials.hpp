@@ -103,7 +103,7 @@ class Trials {
   /// Frames of a trial, of which the first are not counted: they write fronts. A frame of so many
   /// is timed where nothing is tried.
   static constexpr std::size_t trial = 10, uncounted = 4, enough = 6, every = 8;
-  static constexpr double hopeless = 2.5, better = 0.97, shortest = 200;
+  static constexpr double hopeless = 1.3, better = 0.97, shortest = 200;
   static constexpr double first_share = 6, later_share = 32;
 
   struct State {

@@ -5,12 +5,14 @@
 /// Locally-ordered clustering (meister2018parallel): clusters are kept in Morton order, each finds
 /// its partner among `radius` neighbours on either side, and pairs that choose each other merge.
 /// O(n radius), also on equal costs, instead of the O(n^2) of the exact greedy rule. Threads share
-/// the search for partners, which is nearly all of the work; the topology does not depend on their
+/// the search for partners, about half of the work; the topology does not depend on their
 /// number.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -19,6 +21,7 @@
 #include "hierarchies/build/topology.hpp"
 #include "hierarchies/geometry/local_mesh.hpp"
 #include "hierarchies/geometry/morton.hpp"
+#include "hierarchies/geometry/scalar.hpp"
 #include "hierarchies/geometry/threads.hpp"
 #include "hierarchies/geometry/triangle_mesh.hpp"
 
@@ -38,6 +41,7 @@ class Clustering {
  public:
   Clustering(const TriangleMesh& mesh, const BottomUp& options) : options_(options) {
     const std::size_t count = mesh.triangles.size();
+    boxes_.reserve(2 * count), children_.reserve(2 * count), sizes_.reserve(2 * count);
     boxes_.resize(count);
     Eigen::AlignedBox3d all;
     for (std::size_t i = 0; i < count; ++i) {
@@ -60,6 +64,7 @@ class Clustering {
   }
 
  private:
+  using Several = stdx::native_simd<double>;
   struct Children {
     std::uint32_t left = 0, right = 0;
   };
@@ -68,32 +73,24 @@ class Clustering {
   /// At least one cluster in this many merges per round, so that n clusters take O(log n) rounds.
   static constexpr std::size_t fewest_mutual = 64;
 
-  double cost(std::uint32_t i, std::uint32_t j) const {
-    const Vec3<double> d = boxes_[i].merged(boxes_[j]).sizes();
+  /// The cost of a merge: half the surface of the union of two boxes. S is a number or a register.
+  template <class S>
+  static S cost(const std::array<S, 6>& a, const std::array<S, 6>& b) {
+    using std::max, std::min;
+    std::array<S, 3> d;
+    for (std::size_t k = 0; k < 3; ++k) d[k] = max(a[3 + k], b[3 + k]) - min(a[k], b[k]);
     return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
   }
 
-  /// One round of merges. Clusters are numbered by their position in `active_`. Every range
-  /// compares neighbours in the same order, so that ties are broken alike on any number of threads.
+  /// One round of merges. Clusters are numbered by their position in `active_`.
   void merge_round(Threads& threads) {
-    const std::size_t n = active_.size(), radius = std::max(1u, options_.radius);
-    std::vector<std::size_t> partner(n, n);
-    std::vector<double> least(n, std::numeric_limits<double>::infinity());
-    const auto propose = [&](std::size_t i, std::size_t j, double c) {
-      if (partner[i] == n || c < least[i]) least[i] = c, partner[i] = j;
-    };
+    const std::size_t n = active_.size();
+    std::vector<double> found(n), least(n, std::numeric_limits<double>::infinity());
+    line_up();
     threads.share_out(n, worth_sharing, [&](std::size_t begin, std::size_t end, std::size_t) {
-      // Clusters before the range belong to another thread, but neighbour the range's first.
-      for (std::size_t i = begin - std::min(begin, radius); i < begin; ++i)
-        for (std::size_t j = begin; j < std::min(end, i + radius + 1); ++j)
-          propose(j, i, cost(active_[i], active_[j]));
-      for (std::size_t i = begin; i < end; ++i)
-        for (std::size_t j = i + 1; j < std::min(n, i + radius + 1); ++j) {
-          const double c = cost(active_[i], active_[j]);
-          propose(i, j, c);
-          if (j < end) propose(j, i, c);
-        }
+      find_partners(begin, end, found, least);
     });
+    std::vector<std::size_t> partner(found.begin(), found.end());
     std::size_t mutual = 0;
     for (std::size_t i = 0; i < n; ++i) mutual += i < partner[i] && partner[partner[i]] == i;
     if (mutual * fewest_mutual < n) pair_more(partner, least);
@@ -109,6 +106,66 @@ class Clustering {
     active_ = std::move(next);
   }
 
+  /// Copies the boxes of active clusters in their order, side by side. Vacant lanes behind them
+  /// cost infinity.
+  void line_up() {
+    const std::size_t n = active_.size();
+    for (std::size_t k = 0; k < 6; ++k) {
+      const int axis = static_cast<int>(k % 3);
+      lanes_[k].resize(n + Several::size());
+      for (std::size_t i = 0; i < n; ++i) {
+        const Eigen::AlignedBox3d& box = boxes_[active_[i]];
+        lanes_[k][i] = k < 3 ? box.min()[axis] : box.max()[axis];
+      }
+      const double infinity = std::numeric_limits<double>::infinity();
+      std::fill_n(lanes_[k].begin() + static_cast<std::ptrdiff_t>(n), Several::size(),
+                  k < 3 ? -infinity : infinity);
+    }
+  }
+  double cost(std::size_t i, std::size_t j) const {
+    std::array<double, 6> a, b;
+    for (std::size_t k = 0; k < 6; ++k) a[k] = lanes_[k][i], b[k] = lanes_[k][j];
+    return cost(a, b);
+  }
+
+  /// Finds the partners of a range, several at a time: of the neighbours that cost least the first
+  /// one, on any number of threads.
+  void find_partners(std::size_t begin, std::size_t end, std::vector<double>& partner,
+                     std::vector<double>& least) const {
+    const std::size_t n = active_.size(), radius = std::max(1u, options_.radius),
+                      width = Several::size();
+    const Several lane([](auto i) { return static_cast<double>(i()); });
+    // Where all costs overflow, the next one.
+    for (std::size_t i = begin; i < end; ++i) partner[i] = i > 0 ? static_cast<double>(i) - 1 : 1;
+    for (std::size_t i = begin - std::min(begin, radius); i < end; ++i) {
+      std::array<Several, 6> own, others;
+      for (std::size_t k = 0; k < 6; ++k) own[k] = lanes_[k][i];
+      for (std::size_t j = std::max(begin, i + 1); j < std::min(n, i + radius + 1); j += width) {
+        for (std::size_t k = 0; k < 6; ++k)
+          others[k].copy_from(&lanes_[k][j], stdx::element_aligned);
+        Several costs = cost(own, others);
+        stdx::where(lane > Several(static_cast<double>(i + radius - j)), costs) =
+            Several(std::numeric_limits<double>::infinity());
+        if (const double c = stdx::hmin(costs); i >= begin && c < least[i])
+          least[i] = c,
+          partner[i] = static_cast<double>(j) + std::countr_zero(bits(costs == Several(c)));
+        if (j + width <= end) {
+          Several least_of(&least[j], stdx::element_aligned),
+              of(&partner[j], stdx::element_aligned);
+          const auto less = costs < least_of;
+          stdx::where(less, least_of) = costs;
+          stdx::where(less, of) = Several(static_cast<double>(i));
+          least_of.copy_to(&least[j], stdx::element_aligned);
+          of.copy_to(&partner[j], stdx::element_aligned);
+        } else {
+          for (std::size_t l = 0; j + l < end; ++l)
+            if (costs[l] < least[j + l])
+              least[j + l] = costs[l], partner[j + l] = static_cast<double>(i);
+        }
+      }
+    }
+  }
+
   /// Where equal costs (or costs that fall from one cluster to the next) leave few mutual choices,
   /// as among identical triangles: the rest pair in order, each with the nearest free cluster of
   /// least cost. At least one in 4 radius + 2 clusters finds a partner this way.
@@ -118,7 +175,7 @@ class Clustering {
     std::vector<char> paired(n);
     for (std::size_t i = 0; i < n; ++i) paired[i] = partner[partner[i]] == i;
     const auto costs_least = [&](std::size_t i, std::size_t j) {
-      return !paired[j] && (j == partner[i] || cost(active_[i], active_[j]) == least[i]);
+      return !paired[j] && (j == partner[i] || cost(i, j) == least[i]);
     };
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t off = 1; off <= radius && !paired[i]; ++off) {
@@ -185,6 +242,7 @@ class Clustering {
   std::vector<Children> children_;
   std::vector<std::uint32_t> sizes_;
   std::vector<std::uint32_t> active_;
+  std::array<std::vector<double>, 6> lanes_;  // their boxes: the low sides, then the high ones
 };
 
 }  // namespace detail

@@ -30,6 +30,16 @@ inline double stable_norm(const Vec3<double>& v) {
   return scale * std::sqrt((a * a + b * b) + c * c);
 }
 
+/// The largest norm of some vectors, by the largest of their squares. Where that may have over- or
+/// underflowed, `each` is called with a function that takes each of them.
+template <class Each>
+double largest_norm(double largest_squared, const Each& each) {
+  if (largest_squared > 1e-280 && largest_squared < 1e300) return std::sqrt(largest_squared);
+  double largest = 0;
+  each([&](const Vec3<double>& v) { largest = std::max(largest, stable_norm(v)); });
+  return largest;
+}
+
 /// |M'M - I|_F: how far a matrix is from being orthonormal.
 inline double defect_of(const Mat3<double>& m) {
   double squares[9];

@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -21,11 +23,41 @@ namespace bvlab {
 
 namespace detail {
 
-/// The convex hull, counterclockwise, without points on edges up to rounding (Andrew's monotone
-/// chain). Where all points are equal it holds two copies.
+/// Drops points that are inside the octagon of those farthest along eight directions, by more than
+/// rounding: none is on the hull (akl1978fast). Coordinates are at most 2.
 // Templates, so that only those who call them compile them.
 template <class = double>
-std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
+void drop_inner(std::vector<Eigen::Vector2d>& points) {
+  std::array<double, 8> farthest;
+  farthest.fill(-std::numeric_limits<double>::infinity());
+  std::array<Eigen::Vector2d, 8> corners;
+  for (const auto& p : points) {
+    const double x = p.x(), y = p.y();
+    const std::array<double, 8> along{x, x + y, y, y - x, -x, -x - y, -y, x - y};
+    for (std::size_t i = 0; i < 8; ++i)
+      if (along[i] > farthest[i]) farthest[i] = along[i], corners[i] = p;
+  }
+  if (corners[0] == corners[4] && corners[2] == corners[6]) return;  // all are equal
+  // Inside a side, a x + b y > c; between corners that coincide there is none.
+  std::array<double, 8> a, b, c;
+  a.fill(0), b.fill(0), c.fill(-1);
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Eigen::Vector2d side = corners[(i + 1) % 8] - corners[i];
+    if (side.x() == 0 && side.y() == 0) continue;
+    a[i] = -side.y(), b[i] = side.x(), c[i] = a[i] * corners[i].x() + b[i] * corners[i].y() + 1e-12;
+  }
+  std::erase_if(points, [&](const Eigen::Vector2d& p) {
+    bool inside = true;
+    for (std::size_t i = 0; i < 8; ++i) inside &= a[i] * p.x() + b[i] * p.y() > c[i];
+    return inside;
+  });
+}
+
+/// The convex hull, counterclockwise, without points on edges up to rounding (Andrew's monotone
+/// chain). Where all points are equal it holds two copies. Sorts `points`, and may drop some.
+template <class = double>
+void find_hull(std::vector<Eigen::Vector2d>& points, std::vector<Eigen::Vector2d>& hull) {
+  if (points.size() > 24) drop_inner(points);
   std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
     return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
   });
@@ -33,7 +65,7 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
     const Eigen::Vector2d p = b - a, q = c - a;
     return p.x() * q.y() - p.y() * q.x() > 0;
   };
-  std::vector<Eigen::Vector2d> hull;
+  hull.clear();
   const auto add_chain = [&](auto first, auto last) {
     const std::size_t start = hull.size();
     for (; first != last; ++first) {
@@ -45,7 +77,6 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   };
   add_chain(points.begin(), points.end());
   add_chain(points.rbegin(), points.rend());
-  return hull;
 }
 
 template <class = double>
@@ -53,47 +84,94 @@ double half_surface(const Vec3<double>& sides) {
   return sides[0] * sides[1] + sides[1] * sides[2] + sides[2] * sides[0];
 }
 
-template <class = double>
-Vec3<double> sides_along(const Mat3<double>& axes, std::span<const Vec3<double>> points) {
-  Vec3<double> low = Vec3<double>::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const auto& p : points) {
-    const Vec3<double> x = axes * p;
-    low = low.cwiseMin(x), high = high.cwiseMax(x);
-  }
-  return high - low;
-}
+/// A box around points whose coordinates are at most 1, with given axes.
+class RotatedBox {
+ public:
+  RotatedBox(const Mat3<double>& axes, std::vector<Vec3<double>> points)
+      : points_(std::move(points)), axes_(axes), sides_(sides_along(axes)) {}
 
-/// Rotates the axes about the k-th; nothing where no hull edge gives a direction.
-template <class = double>
-std::optional<Mat3<double>> rotated_about(int k, const Mat3<double>& axes, double height,
-                                          std::span<const Vec3<double>> points) {
-  const int i = (k + 1) % 3, j = (k + 2) % 3;
-  std::vector<Eigen::Vector2d> flat;
-  flat.reserve(points.size());
-  for (const auto& p : points) flat.emplace_back(axes.row(i).dot(p), axes.row(j).dot(p));
-  const auto hull = convex_hull(std::move(flat));
-  double least = std::numeric_limits<double>::infinity();
-  Eigen::Vector2d best(0, 0);
-  for (std::size_t e = 0; e < hull.size(); ++e) {
-    const Eigen::Vector2d along = (hull[(e + 1) % hull.size()] - hull[e]).normalized(),
-                          across(-along.y(), along.x());
-    // Skip an edge too short to have a direction.
-    if (!(std::abs(along.squaredNorm() - 1) < 0.5)) continue;
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()),
-                    high = -low;
-    for (const auto& p : hull) {
-      const Eigen::Vector2d x(along.dot(p), across.dot(p));
+  const Mat3<double>& axes() const { return axes_; }
+  const Vec3<double>& sides() const { return sides_; }
+  double half_surface() const { return detail::half_surface(sides_); }
+
+  /// Rotates the box about its k-th axis. Returns whether that makes it smaller; elsewhere it stays
+  /// as it is.
+  bool rotate_about(int k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const auto [along, surface] = best_rectangle(i, j, sides_[k]);
+    // Measured along the rotated axes it may be less by rounding alone.
+    if (surface > half_surface() * (1 + 1e-9)) return false;
+    Mat3<double> rotated = axes_;
+    rotated.row(i) = along.x() * axes_.row(i) + along.y() * axes_.row(j);
+    rotated.row(j) = axes_.row(k).cross(rotated.row(i));
+    const auto axes = orthonormalised(rotated);
+    if (!axes) return false;
+    const Vec3<double> sides = sides_along(*axes);
+    if (!(detail::half_surface(sides) < half_surface())) return false;
+    axes_ = *axes, sides_ = sides;
+    return true;
+  }
+
+ private:
+  Vec3<double> sides_along(const Mat3<double>& axes) const {
+    Vec3<double> low = Vec3<double>::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    for (const auto& p : points_) {
+      const Vec3<double> x = axes * p;
       low = low.cwiseMin(x), high = high.cwiseMax(x);
     }
-    const Eigen::Vector2d sides = high - low;
-    if (const double surface = half_surface({height, sides.x(), sides.y()}); surface < least)
-      least = surface, best = along;
+    return high - low;
   }
-  Mat3<double> rotated = axes;
-  rotated.row(i) = best.x() * axes.row(i) + best.y() * axes.row(j);
-  rotated.row(j) = axes.row(k).cross(rotated.row(i));
-  return orthonormalised(rotated);
-}
+
+  using Several = stdx::native_simd<double>;
+
+  /// Of the rectangles in the plane of axes i and j that have a side on an edge of the hull, the
+  /// direction of the one with the least half surface of the box, `height` being its third side;
+  /// and that half surface. Infinite where no edge has a direction. Several edges at a time.
+  std::pair<Eigen::Vector2d, double> best_rectangle(int i, int j, double height) {
+    flat_.clear();
+    for (const auto& p : points_) flat_.emplace_back(axes_.row(i).dot(p), axes_.row(j).dot(p));
+    find_hull(flat_, hull_);
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr std::size_t width = Several::size();
+    std::pair<Eigen::Vector2d, double> best({0, 0}, infinity);
+    const std::size_t edges = hull_.size();
+    // Closed, and filled up with the first corner: edges without a direction.
+    for (int k = 0; k < 2; ++k) {
+      corners_[k].assign(edges + 1 + width, hull_[0][k]);
+      for (std::size_t e = 0; e < edges; ++e) corners_[k][e] = hull_[e][k];
+    }
+    for (std::size_t e = 0; e < edges; e += width) {
+      const auto from = [&](std::size_t k, std::size_t at) {
+        return Several(&corners_[k][at], stdx::element_aligned);
+      };
+      const Several dx = from(0, e + 1) - from(0, e), dy = from(1, e + 1) - from(1, e),
+                    length = stdx::sqrt(dx * dx + dy * dy), x = dx / length, y = dy / length;
+      Several low_x(infinity), high_x(-infinity), low_y = low_x, high_y = high_x;
+      for (std::size_t p = 0; p < edges; ++p) {
+        const Several px(corners_[0][p]), py(corners_[1][p]), along = x * px + y * py,
+                                                              across = -y * px + x * py;
+        low_x = stdx::min(low_x, along), high_x = stdx::max(high_x, along);
+        low_y = stdx::min(low_y, across), high_y = stdx::max(high_y, across);
+      }
+      const Several u = high_x - low_x, v = high_y - low_y,
+                    surface = Several(height) * u + u * v + v * Several(height);
+      // An edge too short to have a direction has NaN.
+      const Several known =
+          select(stdx::abs(x * x + y * y - Several(1)) < Several(0.5), surface, Several(infinity));
+      if (const double least = stdx::hmin(known); least < best.second) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(bits(known == Several(least))));
+        best = {{x[lane], y[lane]}, least};
+      }
+    }
+    return best;
+  }
+
+  std::vector<Vec3<double>> points_;
+  Mat3<double> axes_;
+  Vec3<double> sides_;
+  std::vector<Eigen::Vector2d> flat_, hull_;
+  std::array<std::vector<double>, 2> corners_;  // of the hull
+};
 
 }  // namespace detail
 
@@ -107,24 +185,19 @@ Mat3<double> tight_axes(const Mat3<double>& start, std::span<const Vec3<double>>
   std::vector<Vec3<double>> scaled;
   scaled.reserve(points.size());
   for (const auto& p : points) scaled.push_back((p - origin) / extent);
-  Mat3<double> axes = start;
-  double surface = detail::half_surface(detail::sides_along(axes, scaled));
-  for (double before = std::numeric_limits<double>::infinity(); surface < 0.99 * before;) {
-    before = surface;
-    for (int k = 0; k < 3; ++k) {
-      const auto rotated =
-          detail::rotated_about(k, axes, detail::sides_along(axes, scaled)[k], scaled);
-      if (!rotated) continue;
-      const double reached = detail::half_surface(detail::sides_along(*rotated, scaled));
-      if (reached < surface) axes = *rotated, surface = reached;
-    }
+  detail::RotatedBox box(start, std::move(scaled));
+  int rejected = 0;  // in a row: what three axes have rejected all would reject again
+  for (double before = std::numeric_limits<double>::infinity();
+       box.half_surface() < 0.99 * before && rejected < 3;) {
+    before = box.half_surface();
+    for (int k = 0; k < 3 && rejected < 3; ++k) rejected = box.rotate_about(k) ? 0 : rejected + 1;
   }
-  const Vec3<double> sides = detail::sides_along(axes, scaled);
+  const Vec3<double>& sides = box.sides();
   int order[3] = {0, 1, 2};
   std::sort(order, order + 3, [&](int i, int j) { return sides[i] > sides[j]; });
-  Mat3<double> sorted = axes;
-  sorted.row(0) = axes.row(order[0]), sorted.row(1) = axes.row(order[1]);
-  return detail::orthonormalised(sorted).value_or(axes);
+  Mat3<double> sorted = box.axes();
+  sorted.row(0) = box.axes().row(order[0]), sorted.row(1) = box.axes().row(order[1]);
+  return detail::orthonormalised(sorted).value_or(box.axes());
 }
 
 }  // namespace bvlab

@@ -67,10 +67,10 @@ class BlockHierarchy : public TreeInBlocks {
     threads.share(nodes_.size(), [&](std::size_t i, std::size_t worker) {
       const auto& node = topology.nodes[i];
       assert(node.count <= fan_out);
-      const V volume = triangles.template volume<V>(node.begin, node.end, fit);
+      const auto [volume, sphere] = triangles.template around<V>(node.begin, node.end, fit);
       const auto children = static_cast<std::uint8_t>((1u << node.count) - 1);
       nodes_[i] = {{size_of(volume), 0, 0, children, node.leaf}, volume};
-      node_spheres_[i] = NodeSphere(triangles.points(node.begin, node.end));
+      node_spheres_[i] = sphere;
       reach[worker].add(volume);
     });
     put_in_blocks(topology);

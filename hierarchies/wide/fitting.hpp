@@ -53,9 +53,9 @@ struct MeshSphere {
     };
     double squared = 0;
     for (const auto& v : mesh.vertices) squared = std::max(squared, squared_norm(from_centre(v)));
-    radius = std::sqrt(squared);
-    if (!(squared > 1e-280 && squared < 1e300))  // squares may over- or underflow
-      for (const auto& v : mesh.vertices) radius = std::max(radius, stable_norm(from_centre(v)));
+    radius = largest_norm(squared, [&](const auto& take) {
+      for (const auto& v : mesh.vertices) take(from_centre(v));
+    });
     radius *= 1 + 16 * unit_roundoff<double>;
   }
 };
@@ -74,41 +74,50 @@ inline NodeSphere sphere_around(const TriangleColumns& columns, std::size_t begi
                                 const TriangleColumns::Box& box) {
   NodeSphere sphere;
   const Vec3<double> at = sphere.put_centre(box.low, box.high);
-  const double squared = columns.farthest_squared(begin, end, at);
-  double farthest = std::sqrt(squared);
-  if (!(squared > 1e-280 && squared < 1e300))  // squares may over- or underflow
-    for (std::size_t k = 3 * begin; k < 3 * end; ++k)
-      farthest = std::max(farthest, stable_norm(columns.corner(k / 3, k % 3) - at));
-  sphere.put_radius(farthest);
+  sphere.put_radius(largest_norm(columns.farthest_squared(begin, end, at), [&](const auto& take) {
+    for (std::size_t k = 3 * begin; k < 3 * end; ++k) take(columns.corner(k / 3, k % 3) - at);
+  }));
   return sphere;
 }
 
-/// The corners of a mesh's triangles in the order of a topology: those below a node are contiguous,
-/// and each vertex is repeated for every triangle that it belongs to.
+/// The triangles of a mesh in the order of a topology: those below a node are contiguous.
 class OrderedTriangles {
  public:
   OrderedTriangles(const TriangleMesh& mesh, std::span<const std::uint32_t> order, Threads& threads)
-      : triangles_(order.size()) {
+      : triangles_(order.size()), before_(order.size()) {
     threads.share(triangles_.size(),
                   [&](std::size_t k, std::size_t) { triangles_[k] = mesh.corners(order[k]); });
+    LargeVector<std::uint32_t> last(mesh.vertices.size(), none);
+    for (std::size_t k = 0; k < order.size(); ++k)
+      for (std::size_t i = 0; i < 3; ++i)
+        before_[k][i] =
+            std::exchange(last[mesh.triangles[order[k]][i]], static_cast<std::uint32_t>(k + 1));
   }
 
   const Triangle& operator[](std::size_t k) const { return triangles_[k]; }
-  /// The triangles of primitives `begin` to `end` of the topology.
-  std::span<const Triangle> triangles(std::uint32_t begin, std::uint32_t end) const {
-    return std::span(triangles_).subspan(begin, end - begin);
+  /// The vertices of primitives `begin` to `end` of the topology, each once.
+  std::vector<Vec3<double>> points(std::uint32_t begin, std::uint32_t end) const {
+    std::vector<Vec3<double>> points;
+    points.reserve(3 * std::size_t{end - begin});
+    for (std::uint32_t k = begin; k < end; ++k)
+      for (std::size_t i = 0; i < 3; ++i)
+        if (before_[k][i] <= begin) points.push_back(triangles_[k][i]);
+    return points;
   }
-  std::span<const Vec3<double>> points(std::uint32_t begin, std::uint32_t end) const {
-    static_assert(sizeof(Triangle) == 3 * sizeof(Vec3<double>));
-    return {triangles_[begin].data(), 3 * std::size_t{end - begin}};
-  }
+  /// The volume and the sphere around them.
   template <BoundingVolume V>
-  V volume(std::uint32_t begin, std::uint32_t end, Fit fit) const {
-    return fitted<V>(points(begin, end), triangles(begin, end), fit);
+  std::pair<V, NodeSphere> around(std::uint32_t begin, std::uint32_t end, Fit fit) const {
+    const auto points = this->points(begin, end);
+    return {fitted<V>(points, std::span(triangles_).subspan(begin, end - begin), fit),
+            NodeSphere(points)};
   }
 
  private:
+  static constexpr std::uint32_t none = 0;
+
   LargeVector<Triangle> triangles_;
+  // Of each corner, 1 + the last triangle before it that has the same vertex; or `none`.
+  LargeVector<std::array<std::uint32_t, 3>> before_;
 };
 
 /// The volumes of nodes and of single triangles of a wide topology.
@@ -122,8 +131,7 @@ class NodeFitting {
 
   /// The volume and the sphere around primitives `begin` to `end` of the order.
   std::pair<V, NodeSphere> around(std::uint32_t begin, std::uint32_t end) const {
-    return {triangles_.template volume<V>(begin, end, fit_),
-            NodeSphere(triangles_.points(begin, end))};
+    return triangles_.template around<V>(begin, end, fit_);
   }
   /// Writes the volumes of `count` primitives from `first` on, and their sizes, to lanes of
   /// siblings. Vacant lanes repeat the last. Returns how far they reach.
@@ -135,7 +143,7 @@ class NodeFitting {
     for (std::uint32_t lane = 0; lane < lanes; ++lane) {
       const std::uint32_t k = first + std::min(lane, count - 1);
       if (lane < count) {
-        volume = triangles_.template volume<V>(k, k + 1, fit_);
+        volume = fitted<V>(triangles_[k], std::span(&triangles_[k], 1), fit_);
         reach = std::max(reach, static_cast<double>(reach_of(volume)));
       }
       put_lane(to.volumes, static_cast<int>(lane), volume);

@@ -57,7 +57,7 @@ TEST(LocalMesh, DoesNotSeeVerticesOfNoTriangle) {
   EXPECT_LT((origin - survey).norm(), 8);
   mesh.vertices.emplace_back(0, 0, 0);
   EXPECT_EQ(LocalMesh(mesh).origin(), origin);
-  EXPECT_LT(RecommendedDistances::hierarchy(mesh).extent().reach, 8);
+  EXPECT_LT(RecommendedDistances::hierarchy(mesh).reach(), 8);
   EXPECT_LT(Recommended::hierarchy(mesh).reach(), 8);
   TriangleMesh near = formula_mesh("box", 12);
   near.vertices.push_back(survey);

@@ -2,6 +2,7 @@
 /// Every volume over every build: a tree with all triangles in it once, each node around its own.
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <random>
 #include <set>
 
@@ -9,6 +10,7 @@
 #include "hierarchies/builds.hpp"
 #include "hierarchies/hierarchy.hpp"
 #include "hierarchies/volumes.hpp"
+#include "hierarchies/wide/fitting.hpp"
 #include "tests/types_of.hpp"
 
 namespace bvlab {
@@ -205,7 +207,7 @@ TEST(TightBoxes, AxesAreOrthonormalWhateverThePoints) {
   for (const double x : sizes)
     for (const double y : sizes)
       for (const double z : sizes)
-        for (int variant = 0; variant < 4; ++variant) {
+        for (int variant = 0; variant < 8; ++variant) {
           Mat3<double> turn = Mat3<double>::Identity();
           if (variant & 1)
             turn = Eigen::Quaterniond(number(), number(), number(), number())
@@ -217,6 +219,9 @@ TEST(TightBoxes, AxesAreOrthonormalWhateverThePoints) {
           for (int i = 0; i < 8; ++i)
             points.push_back(turn * Vec3<double>(i & 1 ? x : -x, i & 2 ? y : -y, i & 4 ? z : -z) +
                              middle);
+          // So many that those inside are dropped.
+          if (variant & 4)
+            for (int i = 0; i < 40; ++i) points.push_back(points[i % 3] / 2 + points[i % 8] / 2);
           for (std::size_t i = 0; i + 2 < points.size(); ++i)
             triangles.push_back({points[i], points[i + 1], points[i + 2]});
           for (const auto& start : {principal_axes(points), principal_axes(points, triangles)}) {
@@ -224,6 +229,57 @@ TEST(TightBoxes, AxesAreOrthonormalWhateverThePoints) {
             expect_orthonormal(tight_axes(start, points));
           }
         }
+}
+
+/// The vertices of a range of triangles in any order, each once; also of triangles that have one
+/// vertex twice.
+TEST(OrderedTriangles, HaveEachVertexOnce) {
+  TriangleMesh mesh = formula_mesh("torus", 200);
+  mesh.triangles[7] = {5, 5, 9}, mesh.triangles[8] = {4, 4, 4};
+  std::vector<std::uint32_t> order(mesh.triangles.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::mt19937 random(7);
+  std::shuffle(order.begin(), order.end(), random);
+  Threads alone;
+  const OrderedTriangles triangles(mesh, order, alone);
+  for (std::uint32_t begin = 0; begin < order.size(); begin += 3)
+    for (std::uint32_t end = begin + 1; end <= order.size(); end += 1 + end / 4) {
+      std::set<std::uint32_t> vertices;
+      for (std::uint32_t k = begin; k < end; ++k)
+        vertices.insert(mesh.triangles[order[k]].begin(), mesh.triangles[order[k]].end());
+      std::multiset<std::array<double, 3>> wanted, found;
+      for (const std::uint32_t v : vertices)
+        wanted.insert({mesh.vertices[v][0], mesh.vertices[v][1], mesh.vertices[v][2]});
+      for (const auto& p : triangles.points(begin, end)) found.insert({p[0], p[1], p[2]});
+      ASSERT_EQ(found, wanted) << begin << " to " << end;
+    }
+}
+
+/// A hull has all points on the left of its edges, whatever was dropped before: scattered points,
+/// points of a grid, on a line, and in one place.
+TEST(TightBoxes, HullHasAllPointsInside) {
+  std::mt19937_64 random(6);
+  std::vector<Eigen::Vector2d> hull;
+  for (int round = 0; round < 400; ++round) {
+    const int cells = std::array{1000000, 5, 2, 1}[static_cast<std::size_t>(round % 4)];
+    std::uniform_int_distribution<int> cell(0, cells - 1);
+    const bool on_a_line = round % 5 == 0;
+    std::vector<Eigen::Vector2d> points;
+    for (int i = 0; i < 2 + round; ++i) {
+      const double x = 1.0 * cell(random) / cells, y = 1.0 * cell(random) / cells;
+      points.emplace_back(x, on_a_line ? x / 4 : y);
+    }
+    auto left = points;
+    detail::find_hull(left, hull);
+    ASSERT_GE(hull.size(), 2u);
+    for (std::size_t e = 0; e < hull.size(); ++e) {
+      const Eigen::Vector2d side = hull[(e + 1) % hull.size()] - hull[e];
+      for (const auto& p : points) {
+        const Eigen::Vector2d q = p - hull[e];
+        EXPECT_GE(side.x() * q.y() - side.y() * q.x(), -1e-15);
+      }
+    }
+  }
 }
 
 /// A turned box is found again, but for what a last round may still gain, from principal axes that

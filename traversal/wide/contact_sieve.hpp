@@ -19,6 +19,31 @@
 
 namespace bvlab {
 
+/// The leaves of a that a traversal has transformed last: each in the slot of its number, which is
+/// that of its first triangle.
+template <class Tree, std::size_t slots>
+class TransformedLeaves {
+  static constexpr int F = Tree::fan_out;
+
+ public:
+  void begin() { held_.fill(none); }
+  bool has(std::uint32_t leaf) const { return held_[slot_of(leaf)] == leaf; }
+  [[gnu::always_inline]] const TransformedLeaf<F>& of(const Tree& tree, std::uint32_t leaf,
+                                                      const CornerTransform& transform) {
+    const std::size_t slot = slot_of(leaf);
+    if (std::exchange(held_[slot], leaf) != leaf)
+      leaves_[slot].transform_all(tree.corners(leaf), transform);
+    return leaves_[slot];
+  }
+
+ private:
+  static std::size_t slot_of(std::uint32_t leaf) { return leaf / F % slots; }
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+  std::array<std::uint32_t, slots> held_;
+  std::array<TransformedLeaf<F>, slots> leaves_;
+};
+
 /// Triangles of a against all triangles of a leaf of b. Tree is a WideTree.
 template <class Tree>
 class SiblingsSieve {
@@ -27,15 +52,13 @@ class SiblingsSieve {
   using Trees = std::array<const Tree*, 2>;
 
  public:
-  void begin() { held_ = none; }
+  void begin() { leaves_.begin(); }
 
   /// The triangles of the leaf of a whose first one has the number `first`.
   [[gnu::always_inline]] const TransformedLeaf<F>& leaf_of_a(const Trees& trees,
                                                              const CornerTransform& a_to_b,
                                                              std::uint32_t first) {
-    if (std::exchange(held_, first) != first)
-      leaf_of_a_.transform_all(trees[0]->corners(first), a_to_b);
-    return leaf_of_a_;
+    return leaves_.of(*trees[0], first, a_to_b);
   }
 
   /// Tests and takes the last pairs of the queue that have one leaf of b, until the batch is full.
@@ -58,10 +81,7 @@ class SiblingsSieve {
   }
 
  private:
-  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-
-  std::uint32_t held_ = none;  // the number of that leaf
-  TransformedLeaf<F> leaf_of_a_;
+  TransformedLeaves<Tree, 1> leaves_;
 };
 
 /// Up to four triangles of a leaf of a against up to four of a leaf of b. Tree is a TreeInBlocks.
@@ -71,7 +91,7 @@ class BlocksSieve {
   using Trees = std::array<const Tree*, 2>;
 
  public:
-  void begin() { held_.fill(none); }
+  void begin() { leaves_.begin(); }
 
   template <class Counter>
   [[gnu::noinline]] void sift(const Trees& trees, const CornerTransform& a_to_b,
@@ -89,15 +109,11 @@ class BlocksSieve {
                  &b = trees[1]->node(Tree::number_of(pair.b));
       const std::uint64_t lanes = four_by_four(a.children, b.children);
       counter.primitives(static_cast<std::uint64_t>(std::popcount(lanes)));
-      const std::size_t slot = a.first / Tree::fan_out % slots;
-      if (held_[slot] != a.first) {
-        add();  // whatever has the corners of the leaf that is replaced
-        held_[slot] = a.first;
-        leaves_[slot].transform_all(trees[0]->corners(a.first), a_to_b);
-      }
+      if (!leaves_.has(a.first)) add();  // whatever has the corners of the leaf that is replaced
+      const TransformedLeaf<4>& own = leaves_.of(*trees[0], a.first, a_to_b);
       const auto& others = trees[1]->corners(b.first);
-      const std::uint64_t near = lanes & near_of(leaves_[slot], others);
-      found[count] = {near, &leaves_[slot], &others, a.first, b.first};
+      const std::uint64_t near = lanes & near_of(own, others);
+      found[count] = {near, &own, &others, a.first, b.first};
       count += near != 0;
       if (count == found.size()) add();
     } while (!batch.full() && !triangles.empty());
@@ -153,12 +169,7 @@ class BlocksSieve {
             each_of_four(leaf_of_a.least().data(), part));
   }
 
-  static constexpr std::size_t slots = 32;
-  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-
-  // Leaves of a that were tested, transformed: each in the slot of its number, which `held_` has.
-  std::array<std::uint32_t, slots> held_;
-  std::array<TransformedLeaf<4>, slots> leaves_;
+  TransformedLeaves<Tree, 32> leaves_;
 };
 
 }  // namespace bvlab
