@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The recommended configuration for distances, on any mesh and motion: rectangle swept spheres,
 /// which bound the distances of single triangles best (rss.hpp), up to four children per node, and
-/// margins from frame to frame. With the published fit: a tight one takes six times as long to
-/// build, and frames a tenth less time.
+/// margins from frame to frame. With the published fit: trees of a tight one take six times as
+/// long, and frames a tenth less time.
 #pragma once
 
 #include "hierarchies/builds.hpp"

@@ -10,7 +10,6 @@
 /// (experiments/replay/trials.hpp).
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <string_view>
@@ -78,7 +77,7 @@ void for_each_candidate(Do&& what) {
 }
 
 /// Meshes of more triangles get slab-boxes in unknown motion, whatever their shape: the trees of
-/// oriented boxes take over 50 ms.
+/// oriented boxes take about 50 ms or more.
 inline constexpr std::size_t many_triangles = 40'000;
 
 /// Calls `visit` with std::type_identity of the candidate for these meshes in unknown motion, and

@@ -42,8 +42,9 @@ constexpr Configuration list[] = {
      "margins, and goes on with what takes the least time in trials of ten frames beside it, as "
      "far as the run repays trials and trees. touching and contacts: (2) the same, recursive; (3) "
      "slab-box, kernel mixed, built top-down-surface-area, leaves of 4, margins; (4) obb, kernel "
-     "mixed, built bottom-up, leaves of 4, margins, or (5) recursive, or (6) fit tight, margins. "
-     "distance: rss as obb in (4). What goes on depends on "
+     "mixed, built bottom-up, leaves of 4, margins, (5) the same, recursive, or (6) as (4) "
+     "with fit tight. distance: (1), then rss, kernel mixed, built bottom-up, leaves of 4, "
+     "margins. What goes on depends on "
      "times: counts, the last bits of distances, and which of several nearest pairs is named may "
      "differ from run to run",
      set_recommended},

@@ -31,7 +31,7 @@ class PairsFrom {
   /// The trees that a variant asks for: made now by `make`, or kept since then.
   template <class Trees, class Make>
   std::shared_ptr<Trees> trees(const Variant& variant, const Make& make) {
-    std::shared_ptr<void>& of = kept_[key_of(variant)];
+    std::shared_ptr<void>& of = kept_[trees_of(variant)];
     if (!of) {
       const auto start = Clock::now();
       of = std::shared_ptr<Trees>(make());
@@ -42,13 +42,14 @@ class PairsFrom {
   /// What making trees took.
   double build_seconds() const { return build_seconds_; }
 
- private:
-  static std::string key_of(const Variant& variant) {
+  /// What distinguishes the trees of a variant.
+  static std::string trees_of(const Variant& variant) {
     return variant.kernel + ' ' + variant.volume + ' ' + variant.build + ' ' + variant.fit + ' ' +
            std::to_string(variant.leaf_size) + ' ' + std::to_string(variant.fan_out) + ' ' +
            variant.frame;
   }
 
+ private:
   std::map<std::string, std::shared_ptr<void>> kept_;
   double build_seconds_ = 0;
 };

@@ -77,10 +77,8 @@ std::unique_ptr<PairsUnderSome> begun(const std::shared_ptr<PairsFrom>& from,
   std::vector<Trials::Candidate> candidates;
   std::vector<Variant> variants;
   for (const Recommendation& each : all) {
-    candidates.push_back(
-        {each.name, each.build * triangles,
-         each.variant.kernel + ' ' + each.variant.volume + ' ' + each.variant.build,
-         each.in_frames * triangles});
+    candidates.push_back({each.name, each.build * triangles, PairsFrom::trees_of(each.variant),
+                          each.in_frames * triangles});
     variants.push_back(each.variant);
   }
   return query_entry(variant.query)

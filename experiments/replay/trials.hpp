@@ -2,9 +2,10 @@
 /// Which of several configurations answers the frames of a run, as the run finds out by itself.
 ///
 /// One of them answers all frames. Now and then another is tried: it answers the same ten frames
-/// beside it, and its answers are dropped. Both are timed, and the one that takes less time goes
-/// on. No property of meshes or motions that was tried predicts which one that is, and counts of
-/// tests do only with unit costs that hold for one processor. Frames below 200 ns tell nothing.
+/// (seven, if it takes much longer) beside it, and its answers are dropped. Both are timed, and the
+/// one that takes less time goes on. No property of meshes or motions that was tried predicts which
+/// one that is, and counts of tests do only with unit costs that hold for one processor. Frames
+/// below 200 ns tell nothing.
 ///
 /// Cost. The first trials, with the trees that have to be built for them, take at most a sixth of
 /// the run: of its expected time where its length is known, else of the time so far. Where trees
@@ -102,7 +103,9 @@ class Trials {
  private:
   /// Frames of a trial, of which the first are not counted: they write fronts. A frame of so many
   /// is timed where nothing is tried.
-  static constexpr std::size_t trial = 10, uncounted = 4, enough = 6, every = 8;
+  static constexpr std::size_t trial = 10, uncounted = 4, enough = 7, every = 8;
+  /// A trial ends after `enough` frames if the candidate takes more than `hopeless` times as long;
+  /// to go on, it must take less than `better` times as long.
   static constexpr double hopeless = 1.3, better = 0.97, shortest = 200;
   static constexpr double first_share = 6, later_share = 32;
 

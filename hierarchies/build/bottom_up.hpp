@@ -134,8 +134,9 @@ class Clustering {
                      std::vector<double>& least) const {
     const std::size_t n = active_.size(), radius = std::max(1u, options_.radius),
                       width = Several::size();
-    const Several lane([](auto i) { return static_cast<double>(i()); });
-    // Where all costs overflow, the next one.
+    const Several lane([](auto i) { return static_cast<double>(i()); }),
+        infinity(std::numeric_limits<double>::infinity());
+    // Where no cost is finite: the cluster before; for the first, the one after.
     for (std::size_t i = begin; i < end; ++i) partner[i] = i > 0 ? static_cast<double>(i) - 1 : 1;
     for (std::size_t i = begin - std::min(begin, radius); i < end; ++i) {
       std::array<Several, 6> own, others;
@@ -144,8 +145,9 @@ class Clustering {
         for (std::size_t k = 0; k < 6; ++k)
           others[k].copy_from(&lanes_[k][j], stdx::element_aligned);
         Several costs = cost(own, others);
-        stdx::where(lane > Several(static_cast<double>(i + radius - j)), costs) =
-            Several(std::numeric_limits<double>::infinity());
+        // Lanes beyond the radius, and what overflows to infinity or NaN.
+        stdx::where(lane > Several(static_cast<double>(i + radius - j)) || !(costs < infinity),
+                    costs) = infinity;
         if (const double c = stdx::hmin(costs); i >= begin && c < least[i])
           least[i] = c,
           partner[i] = static_cast<double>(j) + std::countr_zero(bits(costs == Several(c)));

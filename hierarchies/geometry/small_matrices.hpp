@@ -30,8 +30,8 @@ inline double stable_norm(const Vec3<double>& v) {
   return scale * std::sqrt((a * a + b * b) + c * c);
 }
 
-/// The largest norm of some vectors, by the largest of their squares. Where that may have over- or
-/// underflowed, `each` is called with a function that takes each of them.
+/// The largest norm of some vectors, given the largest squared norm. Only if that may have over- or
+/// underflowed, each(take) is called, which must call take(v) for every vector.
 template <class Each>
 double largest_norm(double largest_squared, const Each& each) {
   if (largest_squared > 1e-280 && largest_squared < 1e300) return std::sqrt(largest_squared);

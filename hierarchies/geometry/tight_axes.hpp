@@ -2,16 +2,15 @@
 /// Axes of a small box around points: starting from given axes, the box is rotated about each axis
 /// in turn to the rectangle of least surface, found among the edges of a projected convex hull
 /// (toussaint1983solving), until a round gains less than 1 %. A local minimum: the gain over
-/// principal axes depends on the points. O(n log n) per rotation for n points.
+/// principal axes depends on the points. O(n log n + h^2) per rotation for n points, of which h are
+/// on the hull.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <limits>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -94,8 +93,8 @@ class RotatedBox {
   const Vec3<double>& sides() const { return sides_; }
   double half_surface() const { return detail::half_surface(sides_); }
 
-  /// Rotates the box about its k-th axis. Returns whether that makes it smaller; elsewhere it stays
-  /// as it is.
+  /// Rotates the box about its k-th axis. Returns whether that makes it smaller; otherwise it is
+  /// unchanged.
   bool rotate_about(int k) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
     const auto [along, surface] = best_rectangle(i, j, sides_[k]);
@@ -135,7 +134,7 @@ class RotatedBox {
     constexpr std::size_t width = Several::size();
     std::pair<Eigen::Vector2d, double> best({0, 0}, infinity);
     const std::size_t edges = hull_.size();
-    // Closed, and filled up with the first corner: edges without a direction.
+    // The first corner is repeated at the end as padding: edges of length 0, which are ignored.
     for (int k = 0; k < 2; ++k) {
       corners_[k].assign(edges + 1 + width, hull_[0][k]);
       for (std::size_t e = 0; e < edges; ++e) corners_[k][e] = hull_[e][k];
@@ -186,7 +185,7 @@ Mat3<double> tight_axes(const Mat3<double>& start, std::span<const Vec3<double>>
   scaled.reserve(points.size());
   for (const auto& p : points) scaled.push_back((p - origin) / extent);
   detail::RotatedBox box(start, std::move(scaled));
-  int rejected = 0;  // in a row: what three axes have rejected all would reject again
+  int rejected = 0;  // consecutive rotations: after three, no axis has an improvement left
   for (double before = std::numeric_limits<double>::infinity();
        box.half_surface() < 0.99 * before && rejected < 3;) {
     before = box.half_surface();

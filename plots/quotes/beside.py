@@ -93,6 +93,7 @@ def distances(record):
     each = rows.groupby(["mesh", "seed", "method"], sort=False)[["us", "whole", "volumes", "triangles"]].median()
     us, whole, volumes, triangles = (each[name].unstack() for name in each)
     ours = us["witness, world"]
+    build = rows.groupby(["mesh", "seed", "method"], sort=False).build_ns.median().unstack()
     lead, run = us[libraries].min(axis=1) / ours, whole[libraries].min(axis=1) / whole.recommended
 
     def by_mesh(series):
@@ -107,7 +108,8 @@ def distances(record):
     claim((by_mesh(run) > 1).all(), "recommended's whole run is faster than the fastest library's")
     return {"rows": lines, "lead": Interval(by_mesh(lead)), "run": Interval(by_mesh(run)), "witness": Interval(by_mesh(ours / us["both, world"])),
             "frame": Interval(by_mesh(us["both, body"] / us["both, world"])), "volumes": Interval(by_mesh(volumes["witness, world"] / volumes["both, world"])),
-            "triangles": Interval(by_mesh(triangles["witness, world"] / triangles["both, world"])), "margins": Interval(by_mesh(us["margins, world"] / ours))}
+            "triangles": Interval(by_mesh(triangles["witness, world"] / triangles["both, world"])), "margins": Interval(by_mesh(us["margins, world"] / ours)),
+            "mixed": Interval(by_mesh(us["mixed, margins"] / ours)), "mixed_build": Interval(by_mesh(build["mixed, margins"] / build["witness, world"]))}
 
 
 PLANNED = ["bugtrap", "abstract", "env-rob"]  # scenes of others without a path: our planner's (experiments/definitions/real-motions.md)

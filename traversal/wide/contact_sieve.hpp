@@ -19,8 +19,8 @@
 
 namespace bvlab {
 
-/// The leaves of a that a traversal has transformed last: each in the slot of its number, which is
-/// that of its first triangle.
+/// A direct-mapped cache of leaves of body a, transformed into the frame of b. A leaf has the
+/// number of its first triangle.
 template <class Tree, std::size_t slots>
 class TransformedLeaves {
   static constexpr int F = Tree::fan_out;
