@@ -121,6 +121,7 @@ class Trials {
 
   void begin_trial(double frame) {
     State* best = nullptr;
+    bool may_be_tried = false;
     for (State& state : states_) {
       if (&state == &states_[current_] || !state.is_possible) continue;
       const double price = state.candidate.build + making_ +
@@ -136,13 +137,14 @@ class Trials {
       if (!may_pay) continue;
       if (!state.is_known) {
         if (first_share * (first_spent_ + price) > run) continue;
-        best = &state;
+        best = &state, may_be_tried = true;
         break;
       }
-      if (later_share * (later_spent_ + price) > elapsed_) continue;
-      if (!best || state.last < best->last) best = &state;
+      // Not the cheapest, or others would wait for ever.
+      if (!best || state.last < best->last)
+        best = &state, may_be_tried = later_share * (later_spent_ + price) <= elapsed_;
     }
-    if (!best) return;
+    if (!may_be_tried) return;
     tried_ = static_cast<std::size_t>(best - states_.data());
     is_first_ = !best->is_known;
     timed_ = 0;
