@@ -31,8 +31,8 @@ def cost(record):
     claim(share.quantile(0.9) < 0.9, "the model predicts too little in nine of ten cells")
     busy = rows[rows.density != "sparse"]
     near, everywhere = fitted(busy), fitted(rows)
-    claim(all((constants > 0).all() for constants, _ in near.values()), "where bodies are near each other all fitted costs are positive")
-    negative = [volume for volume, (constants, _) in everywhere.items() if constants[2] < 0]
+    claim(all((constants[:2] > 0).all() for constants, _ in near.values()), "where bodies are near each other all fitted costs of volumes are positive")
+    near_negative, negative = (sum(constants[2] < 0 for constants, _ in fits.values()) for fits in (near, everywhere))
     left = ((busy.time_ns - busy.predicted_ns) / busy.n_v).groupby(busy.volume)
     claim(all(batched[volume] < middle for volume, middle in left.median().items() if volume != "shell"),
           "C_v is less than the engine around it for all volumes but the shell")
@@ -40,7 +40,7 @@ def cost(record):
             "test_most": batched["shell"], "alone": Interval(cost["alone"] for cost in costs.values()),
             "triangle": triangle, "inner": Interval(share.quantile([0.05, 0.95])), "median": share.median(),
             "most": share.max(), "fitted": Interval(100 * error for _, error in near.values()),
-            "fitted_all": Interval(100 * error for _, error in everywhere.values()), "negative": len(negative), "volumes": len(everywhere),
+            "fitted_all": Interval(100 * error for _, error in everywhere.values()), "near_negative": int(near_negative), "negative": int(negative), "volumes": len(everywhere),
             "left": Interval(left.median()), "quartiles": Interval([left.quantile(0.25).min(), left.quantile(0.75).max()])}
 
 
