@@ -22,13 +22,16 @@ int main() {
     const std::vector<Pose> poses{pose_from({0, 0, 0}, 1, 0, 0, 0).value(),
                                   pose_from({4, 0, 0}, 1, 0, 0, 0).value(),
                                   pose_from({0, 4 - frame * 0.5, 0}, 1, 0, 0, 0).value()};
-    std::printf("frame %d:", frame);
+    // Pairs are answered in any order.
+    std::vector<double> distances(bodies.pairs().size());
     bodies.frame(
         poses, counter, [](std::size_t) { return Distance(); },
-        [&](std::size_t pair, const Distance& query) {
-          const auto& [i, j] = bodies.pairs()[pair];
-          std::printf(" %u-%u %.3f", i, j, query.distance());
-        });
+        [&](std::size_t pair, const Distance& query) { distances[pair] = query.distance(); });
+    std::printf("frame %d:", frame);
+    for (std::size_t pair = 0; pair < distances.size(); ++pair) {
+      const auto& [i, j] = bodies.pairs()[pair];
+      std::printf(" %u-%u %.3f", i, j, distances[pair]);
+    }
     std::printf("\n");
   }
 }
