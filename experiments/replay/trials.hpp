@@ -120,12 +120,14 @@ class Trials {
   void spend(double time) { (is_first_ ? first_spent_ : later_spent_) += time; }
 
   void begin_trial(double frame) {
+    const auto price_of = [&](const State& state) {
+      return state.candidate.build + making_ +
+             trial * frame * (state.base > 0 ? state.own / state.base : 1);
+    };
     State* best = nullptr;
-    bool may_be_tried = false;
     for (State& state : states_) {
       if (&state == &states_[current_] || !state.is_possible) continue;
-      const double price = state.candidate.build + making_ +
-                           trial * frame * (state.base > 0 ? state.own / state.base : 1);
+      const double price = price_of(state);
       // What made trees on demand until now is no sign of what later frames take.
       const double frames = state.candidate.build > 0
                                 ? std::max(0.0, elapsed_ - states_[0].candidate.in_frames)
@@ -137,14 +139,15 @@ class Trials {
       if (!may_pay) continue;
       if (!state.is_known) {
         if (first_share * (first_spent_ + price) > run) continue;
-        best = &state, may_be_tried = true;
+        best = &state;
         break;
       }
-      // Not the cheapest, or others would wait for ever.
-      if (!best || state.last < best->last)
-        best = &state, may_be_tried = later_share * (later_spent_ + price) <= elapsed_;
+      if (!best || state.last < best->last) best = &state;
     }
-    if (!may_be_tried) return;
+    if (!best) return;
+    // Of those that are known, not the next one that is cheap enough, or dear ones would wait for
+    // ever.
+    if (best->is_known && later_share * (later_spent_ + price_of(*best)) > elapsed_) return;
     tried_ = static_cast<std::size_t>(best - states_.data());
     is_first_ = !best->is_known;
     timed_ = 0;
