@@ -52,13 +52,13 @@ class GatheredPair {
   template <TestFor wanted>
   using StepFor = Step<wanted != TestFor::overlap>;
 
-  /// Takes the next step's pairs from the stack and passes them to `visit`.
-  template <TestFor wanted, class Counter, class Recorder, class Visit>
-  [[gnu::always_inline]] void next(Query&, Counter&, Recorder&, Visit&& visit) {
-    StepFor<wanted> step;
+  /// Takes the next step's pairs from the stack and visits them.
+  template <class Traversal>
+  [[gnu::always_inline]] void next(Traversal& traversal) {
+    StepFor<Traversal::wanted> step;
     step.count = std::min(W, open_.size());
     for (std::size_t i = 0; i < step.count; ++i) step.pairs.put(i, open_.pop());
-    visit(step);
+    traversal.visit(step, traversal.recorder().no_entries());
   }
 
   /// In the world frame, poses the two volumes unless that has been done since the last move.

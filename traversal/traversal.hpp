@@ -15,7 +15,7 @@
 ///
 /// Members of a pair. `visit(step)` is the loop's; the lanes of a step are bits of a mask.
 ///   done()                            whether no pair is open
-///   next<wanted>(query, counter, recorder, visit)  visits the next step, several, or none
+///   next(traversal)                   visits the next step, several, or none
 ///   test<wanted>(step, query, counter)    what is apart: a LanesApart, or more in a derived class
 ///   pass_on(step, found, lanes, entries, recorder, leaves, query, counter)
 ///                                     queues what a step has found near
@@ -95,7 +95,7 @@ class Traversal {
   /// Tests a step's volumes and passes on what is near. Always inlined: what it finds stays in
   /// registers.
   template <class Step, class Entries>
-  [[gnu::always_inline]] void visit(Step& step, const Entries& entries) {
+  [[gnu::always_inline]] void visit(Step&& step, const Entries& entries) {
     const std::uint64_t lanes = step.lanes() & recorder_.tested(entries);
     count_tests(static_cast<std::size_t>(std::popcount(lanes)));
     const auto found = pair_.template test<wanted>(step, query_, counter_);
@@ -106,10 +106,7 @@ class Traversal {
 
   /// Visits what the kernel takes next; returns whether the query is satisfied.
   bool next() {
-    pair_.template next<wanted>(
-        query_, counter_, recorder_, [this](auto&& step) __attribute__((always_inline)) {
-          visit(step, recorder_.no_entries());
-        });
+    pair_.next(*this);
     return leaves_.test_due();
   }
 

@@ -65,10 +65,11 @@ class FourByFourTest {
   };
   [[gnu::always_inline]] Posed posed(std::size_t part) const {
     const auto pose = [&]() __attribute__((always_inline))->Posed {
-      return SiblingTest::in_lanes(detail::volumes_of_fields<V>([&](std::size_t k) {
-                                     return each_of_four(row_a.volume[k].data(), part);
-                                   }),
-                                   into_b_);
+      return SiblingTest::in_lanes(
+          detail::volumes_of_fields<V>([&](std::size_t k) __attribute__((always_inline)) {
+            return each_of_four(row_a.volume[k].data(), part);
+          }),
+          into_b_);
     };
     if constexpr (S::size() >= 4) {
       return pose();
@@ -79,8 +80,9 @@ class FourByFourTest {
     }
   }
   [[gnu::always_inline]] Over<V, S> others(std::size_t part) const {
-    return detail::volumes_of_fields<V>(
-        [&](std::size_t k) { return four_repeated(row_b.volume[k].data(), part); });
+    return detail::volumes_of_fields<V>([&](std::size_t k) __attribute__((always_inline)) {
+      return four_repeated(row_b.volume[k].data(), part);
+    });
   }
   [[gnu::always_inline]] S sizes(std::size_t part) const {
     return each_of_four(row_a.size.data(), part) + four_repeated(row_b.size.data(), part);
@@ -123,8 +125,9 @@ class OneBySixteenTest {
 
  private:
   [[gnu::always_inline]] Over<V, S> others(std::size_t part) const {
-    return detail::volumes_of_fields<V>(
-        [&](std::size_t k) { return of_sixteen(block.volume[k].data(), part); });
+    return detail::volumes_of_fields<V>([&](std::size_t k) __attribute__((always_inline)) {
+      return of_sixteen(block.volume[k].data(), part);
+    });
   }
   [[gnu::always_inline]] S sizes(std::size_t part) const {
     return of_sixteen(block.size.data(), part) + S(posed_.size);

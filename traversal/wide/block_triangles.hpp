@@ -11,7 +11,7 @@
 #include "hierarchies/wide/lanes.hpp"
 #include "traversal/node_pair.hpp"
 #include "traversal/primitives/triangle_filter.hpp"
-#include "traversal/primitives/triangle_gap.hpp"
+#include "traversal/wide/leaf_tests.hpp"
 #include "traversal/wide/relative_frame.hpp"
 #include "traversal/wide/sixteen_lanes.hpp"
 
@@ -60,15 +60,12 @@ class BlockTriangles {
   }
   /// A lower bound on the distance of any pair; not positive where none is known.
   template <class Counter>
-  [[gnu::noinline]] float gap(Counter&) const {
-    float least = std::numeric_limits<float>::infinity();
-    for_each_part<S, parts>(
-        lanes(), [&](std::size_t part) __attribute__((always_inline)) {
-          const auto [x, y] = corners(part);
-          least =
-              std::min(least, stdx::hmin(triangle_gap<S>(x, y, S(transforms_[0].error_bound()))));
-        });
-    return least;
+  float gap(Counter&) const {
+    const auto gaps = triangle_gaps<S, parts>(*this, transforms_[0].error_bound());
+    S least(std::numeric_limits<float>::infinity());
+    for_each_part<S, parts>(lanes(),
+                            [&](std::size_t part) { least = stdx::min(least, gaps[part]); });
+    return stdx::hmin(least);
   }
   ReferenceSphere reference_sphere() const {
     return reference_sphere_of_smaller(trees_[0]->node_sphere(node_.a),

@@ -33,6 +33,7 @@
 #include "hierarchies/wide/lanes.hpp"
 #include "hierarchies/wide/triangle_lanes.hpp"
 #include "traversal/primitives/triangle_filter.hpp"
+#include "traversal/wide/leaf_tests.hpp"
 #include "traversal/wide/relative_frame.hpp"
 
 #if defined(__AVX512F__)
@@ -223,10 +224,9 @@ class ContactBatch {
     constexpr std::size_t width = S::size();
     const std::size_t end = which == Decide::all ? size_ : size_ / width * width;
     for (std::size_t first = 0; first < end; first += width) {
-      const auto verdict = certainly_within<S>(corners<S>(0, first), corners<S>(1, first), S(off));
-      const std::uint64_t meeting = bits(verdict.meeting);
+      const auto [meeting, apart] = verdicts<S>(first, off);
       const std::size_t used = std::min(width, end - first);
-      std::uint64_t left = ~bits(verdict.apart) & ((std::uint64_t{1} << used) - 1);
+      std::uint64_t left = ~apart & ((std::uint64_t{1} << used) - 1);
       for (; left; left &= left - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(left));
         if (take(number_[0][first + lane], number_[1][first + lane], (meeting >> lane & 1) != 0))
@@ -241,6 +241,12 @@ class ContactBatch {
   /// Four times sixteen pairs may be added to a batch that is not full.
   static constexpr std::size_t enough = 64, room = enough + 4 * 16;
 
+  /// Tests a register of pairs. Out of line: it knows neither the query nor the memory.
+  template <Batched S>
+  [[gnu::noinline]] VerdictLanes verdicts(std::size_t first, float off) const {
+    const auto verdict = certainly_within<S>(corners<S>(0, first), corners<S>(1, first), S(off));
+    return {bits(verdict.meeting), bits(verdict.apart)};
+  }
   template <Batched S>
   [[gnu::always_inline]] Corners<S> corners(std::size_t side, std::size_t first) const {
     Corners<S> of;

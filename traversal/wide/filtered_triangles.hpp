@@ -14,10 +14,9 @@
 
 #include "hierarchies/wide/lanes.hpp"
 #include "traversal/measured_gaps.hpp"
-#include "traversal/primitives/triangle_filter.hpp"
-#include "traversal/primitives/triangle_gap.hpp"
 #include "traversal/queries/candidate.hpp"
 #include "traversal/queries/query.hpp"
+#include "traversal/wide/leaf_tests.hpp"
 #include "traversal/wide/wide_front.hpp"
 #include "traversal/wide/work_queue.hpp"
 
@@ -27,7 +26,7 @@ namespace bvlab {
 template <class PairFrame, class Body, class Query, class Counter, class Recorder>
 class FilteredTriangles {
   using S = typename PairFrame::S;
-  static constexpr std::size_t parts = PairFrame::parts, width = S::size();
+  static constexpr std::size_t parts = PairFrame::parts;
   template <class T>
   static constexpr std::uint64_t all_lanes = (std::uint64_t{2} << (T::size() - 1)) - 1;
 
@@ -117,14 +116,7 @@ class FilteredTriangles {
     const auto triangles = frame_.triangles(pair);
     const std::uint64_t lanes = triangles.lanes();
     counter_.primitives(static_cast<std::uint64_t>(std::popcount(lanes)));
-    std::uint64_t met = 0, apart = 0;
-    for_each_part<S, parts>(
-        lanes, [&](std::size_t part) __attribute__((always_inline)) {
-          const auto [x, y] = triangles.corners(part);
-          const auto verdict = certainly_within<S>(x, y, S(frame_.a_to_b().error_bound()));
-          met |= bits(verdict.meeting) << (part * width);
-          apart |= bits(verdict.apart) << (part * width);
-        });
+    auto [met, apart] = verdicts<S, parts>(triangles, frame_.a_to_b().error_bound());
     for (std::uint64_t rest = met &= lanes; rest; rest &= rest - 1) {
       const int lane = std::countr_zero(rest);
       const NodePair hit = in_meshes(triangles.numbers(lane));
@@ -144,13 +136,11 @@ class FilteredTriangles {
   /// Where a distance is sought: the query tests the pairs that are not certainly too far apart.
   [[gnu::noinline]] bool measure(const OpenPair& pair, std::size_t entry) {
     const auto triangles = frame_.triangles(pair);
-    std::array<S, parts> gaps;
+    const auto gaps = triangle_gaps<S, parts>(triangles, frame_.a_to_b().error_bound());
     std::uint64_t near = 0;
     for_each_part<S, parts>(
         triangles.lanes(), [&](std::size_t part) __attribute__((always_inline)) {
-          const auto [x, y] = triangles.corners(part);
-          gaps[part] = triangle_gap<S>(x, y, S(frame_.a_to_b().error_bound()));
-          near |= (~bits(query_.culls(gaps[part])) & all_lanes<S>) << (part * width);
+          near |= (~bits(query_.culls(gaps[part])) & all_lanes<S>) << (part * S::size());
         });
     near &= triangles.lanes();
     counter_.primitives(static_cast<std::uint64_t>(std::popcount(near)));

@@ -293,20 +293,12 @@ class FrontRecord {
     for (std::size_t i = 0; i < size; ++i) {
       if (raised_) drop_if_raised(i);
       if (front[i].kind == WideFront::Kind::gone) continue;
-      retest_step(traversal, i);
+      traversal.pair().visit(traversal, {front[i].pair, front[i].from}, i);
       if (start_.rises) front.propose(i);
       if (traversal.leaves().test_due()) return true;
     }
     return false;
   }
-  template <class Traversal>
-  [[gnu::always_inline]] void retest_step(Traversal& traversal, std::size_t i) {
-    const WideFront::Entry& entry = (*start_.front)[i];
-    traversal.pair().template step<typename Traversal::Query>(
-        OpenPair{entry.pair, entry.from}, traversal.counter(),
-        [&](auto&& step) __attribute__((always_inline)) { traversal.visit(step, i); });
-  }
-
   /// Finds the entries that are due, that is, may have come within the query's limit. Returns
   /// whether the front has worn out.
   template <class Traversal>
@@ -350,9 +342,10 @@ class FrontRecord {
       for (std::uint64_t rest = due[k]; rest; rest &= rest - 1) {
         const std::size_t i = k * MeasuredGaps::width +
                               static_cast<std::size_t>(std::countr_zero(rest));
+        const OpenPair pair{front[i].pair, front[i].from};
         if (front[i].kind == WideFront::Kind::step)
-          retest_step(traversal, i);
-        else if (traversal.leaves().test({front[i].pair, front[i].from}, i))
+          traversal.pair().visit(traversal, pair, i);
+        else if (traversal.leaves().test(pair, i))
           return true;
       }
     return traversal.leaves().test_due();

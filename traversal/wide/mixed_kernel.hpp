@@ -116,9 +116,10 @@ struct MixedKernel {
       }
     };
 
+    /// Out of line: the loop over open pairs and that over a front share its two copies of the
+    /// test.
     template <class Counter, class Sieve, class Test>
-    [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Sieve&,
-                                     Test&& test) const {
+    [[gnu::noinline]] void step(const NodePair& pair, Counter& counter, Sieve&, Test&& test) const {
       const std::uint32_t i = Tree::number_of(pair.a), j = Tree::number_of(pair.b);
       const Node &a = trees_[0]->node(i), &b = trees_[1]->node(j);
       const bool inner = !((pair.a | pair.b) & Tree::leaf_flag);
@@ -134,20 +135,15 @@ struct MixedKernel {
         return;
       }
       frames_.count_posed(counter, 0, 1);
-      if (!a.leaf && (b.leaf || a.size > b.size))
-        test(OneBySixteen{{b, trees_[0]->block(a.first), frames_.change[0]},
-                          *this,
-                          0,
-                          j,
-                          pair.b,
-                          a.grandchildren});
-      else
-        test(OneBySixteen{{a, trees_[1]->block(b.first), frames_.change[1]},
-                          *this,
-                          1,
-                          i,
-                          pair.a,
-                          b.grandchildren});
+      // One call: each holds a copy of the test.
+      const std::size_t side = !a.leaf && (b.leaf || a.size > b.size) ? 0 : 1;
+      const Node& many = side ? b : a;
+      test(OneBySixteen{{side ? a : b, trees_[side]->block(many.first), frames_.change[side]},
+                        *this,
+                        side,
+                        side ? i : j,
+                        side ? pair.a : pair.b,
+                        many.grandchildren});
     }
 
     /// Begins to load what the step of a pair of nodes will read.

@@ -11,7 +11,6 @@
 #include <limits>
 #include <span>
 
-#include "traversal/primitives/triangle_gap.hpp"
 #include "traversal/wide/contact_batch.hpp"
 #include "traversal/wide/filtered_triangles.hpp"
 
@@ -72,18 +71,17 @@ class SiftedTriangles : public FilteredTriangles<PairFrame, Body, Query, Counter
     const auto triangles = frame_.triangles(pair);
     const std::uint64_t lanes = triangles.lanes() & recorder_.tested(entry);
     counter_.primitives(static_cast<std::uint64_t>(std::popcount(lanes)));
+    const auto gaps = triangle_gaps<S, PairFrame::parts>(triangles, frame_.a_to_b().error_bound());
     std::uint64_t near = 0;
     float least = std::numeric_limits<float>::infinity();
-    alignas(64) std::array<float, 16> gaps;
     for_each_part<S, PairFrame::parts>(
         lanes, [&](std::size_t part) __attribute__((always_inline)) {
-          const auto [x, y] = triangles.corners(part);
-          const S gap = triangle_gap<S>(x, y, S(frame_.a_to_b().error_bound()));
-          gap.copy_to(&gaps[part * S::size()], stdx::element_aligned);
-          near |= bits(!(gap > S(recorder_.least_useful()))) << (part * S::size());
+          near |= bits(!(gaps[part] > S(recorder_.least_useful()))) << (part * S::size());
         });
-    for (std::uint64_t rest = lanes & ~near; rest; rest &= rest - 1)
-      least = std::min(least, gaps[static_cast<std::size_t>(std::countr_zero(rest))]);
+    for (std::uint64_t rest = lanes & ~near; rest; rest &= rest - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
+      least = std::min(least, float(gaps[lane / S::size()][lane % S::size()]));
+    }
     recorder_.set_margin(least, triangles.reference_sphere(), entry);
     for (std::uint64_t rest = lanes & near; rest; rest &= rest - 1) {
       const int lane = std::countr_zero(rest);

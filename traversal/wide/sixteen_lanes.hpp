@@ -11,7 +11,7 @@
 #include "hierarchies/geometry/scalar.hpp"
 #include "traversal/wide/work_queue.hpp"
 
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
+#if defined(__AVX__)
 #include <immintrin.h>
 #endif
 
@@ -28,6 +28,10 @@ using SixteenLanes = Batch<float, (native_width<float> < 16 ? native_width<float
     const __m512i index = _mm512_set_epi32(3, 3, 3, 3, 2, 2, 2, 2, 1, 1, 1, 1, 0, 0, 0, 0);
     return SixteenLanes(_mm512_permutexvar_ps(index, _mm512_castps128_ps512(_mm_load_ps(four))));
   }
+#elif defined(__AVX__)
+  if constexpr (SixteenLanes::size() == 8)
+    return SixteenLanes(
+        _mm256_set_m128(_mm_set1_ps(four[2 * part + 1]), _mm_set1_ps(four[2 * part])));
 #endif
   constexpr std::size_t W = SixteenLanes::size();
   if constexpr (W <= 4)
@@ -42,6 +46,9 @@ using SixteenLanes = Batch<float, (native_width<float> < 16 ? native_width<float
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
   if constexpr (SixteenLanes::size() == 16)
     return SixteenLanes(_mm512_broadcast_f32x4(_mm_load_ps(four)));
+#elif defined(__AVX__)
+  if constexpr (SixteenLanes::size() == 8)
+    return SixteenLanes(_mm256_broadcast_ps(reinterpret_cast<const __m128*>(four)));
 #endif
   constexpr std::size_t W = SixteenLanes::size();
   if constexpr (W <= 4)

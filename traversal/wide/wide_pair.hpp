@@ -66,28 +66,23 @@ class WidePair {
   typename PairFrame::ContactSieve& sieve() { return sieve_; }
   bool done() const { return nodes_.empty(); }
 
-  template <TestFor wanted, class Query, class Counter, class Recorder, class Visit>
-  [[gnu::always_inline]] void next(Query& query, Counter& counter, Recorder& recorder,
-                                   Visit&& visit) {
-    if constexpr (wanted == TestFor::bound) {
+  template <class Traversal>
+  [[gnu::always_inline]] void next(Traversal& traversal) {
+    using Query = typename Traversal::Query;
+    if constexpr (Traversal::wanted == TestFor::bound) {
       if (nodes_.empty()) return;  // a front was retested, and nothing is near
       float order;
       const OpenPair pair = nodes_.take_least(order);
       // Where it is positive, `order` is a lower bound on the distance of the pair.
-      if (order > 0 && bits(query.culls(order)))
-        recorder.culled(pair.from, order, frame_);
+      if (order > 0 && bits(traversal.query().culls(order)))
+        traversal.recorder().culled(pair.from, order, frame_);
       else
-        step<Query>(pair, counter, visit);
-    } else if constexpr (FindsAllHits<Query>) {
-      several<Query>(counter, visit);
+        visit(traversal, pair, traversal.recorder().no_entries());
     } else {
-      if (!triangles_.empty()) return;  // those of the pair that touched come first
-      float order;
-      if (++steps_ <= most_in_order)
-        step<Query>(Kernel::nearest_child_first ? nodes_.take_last() : nodes_.take_least(order),
-                    counter, visit);
-      else
-        several<Query>(counter, visit);
+      std::array<OpenPair, at_once> taken;
+      const std::size_t count = take<Query>(taken);
+      for (std::size_t k = 0; k < count; ++k)
+        visit(traversal, taken[k], traversal.recorder().no_entries());
     }
   }
 
@@ -101,18 +96,18 @@ class WidePair {
   };
 
   /// Has the kernel make the step of a pair, and visits it.
-  template <class Query, class Counter, class Visit>
-  [[gnu::always_inline]] void step(const OpenPair& pair, Counter& counter, Visit&& visit) {
+  template <class Traversal>
+  [[gnu::always_inline]] void visit(Traversal& traversal, const OpenPair& pair, std::size_t entry) {
     const auto named = [&]<class KernelStep>(const KernelStep& step)
         __attribute__((always_inline)) {
-      visit(Step<KernelStep>{step, pair});
+      traversal.visit(Step<KernelStep>{step, pair}, entry);
     };
-    if constexpr (FindsAllHits<Query>) {
-      frame_.step(pair, counter, sieve_, named);
+    if constexpr (FindsAllHits<typename Traversal::Query>) {
+      frame_.step(pair, traversal.counter(), sieve_, named);
     } else {
       struct {
       } no_sieve;
-      frame_.step(pair, counter, no_sieve, named);
+      frame_.step(pair, traversal.counter(), no_sieve, named);
     }
   }
 
@@ -153,14 +148,22 @@ class WidePair {
   static constexpr int most_in_order = 16;
   static constexpr std::size_t at_once = 4;
 
-  template <class Query, class Counter, class Visit>
-  [[gnu::always_inline]] void several(Counter& counter, Visit& visit) {
-    std::array<OpenPair, at_once> taken;
+  /// Takes the pairs that are visited next: one where the order matters; returns how many.
+  template <class Query>
+  [[gnu::always_inline]] std::size_t take(std::array<OpenPair, at_once>& taken) {
+    if constexpr (!FindsAllHits<Query>) {
+      if (!triangles_.empty()) return 0;  // those of the pair that touched come first
+      if (++steps_ <= most_in_order) {
+        float order;
+        taken[0] = Kernel::nearest_child_first ? nodes_.take_last() : nodes_.take_least(order);
+        return 1;
+      }
+    }
     const std::size_t count = std::min(nodes_.size(), at_once);
     for (std::size_t k = 0; k < count; ++k) taken[k] = nodes_.take_last();
     if constexpr (FindsAllHits<Query>)
       for (std::size_t k = 1; k < count; ++k) frame_.prefetch(taken[k]);
-    for (std::size_t k = 0; k < count; ++k) step<Query>(taken[k], counter, visit);
+    return count;
   }
 
   template <TestFor wanted, class Step, class Query>

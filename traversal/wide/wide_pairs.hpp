@@ -43,14 +43,14 @@ class WidePairs {
  public:
   /// One body for each shape, which must outlive this.
   /// `frame` is for bodies of AnyVolume; all others are tested in a body's frame.
-  explicit WidePairs(std::span<const WideShape<V, F, Kernel>> shapes, Memory memory = {},
-                     Frame frame = Frame::body)
+  [[gnu::noinline]] explicit WidePairs(std::span<const WideShape<V, F, Kernel>> shapes,
+                                       Memory memory = {}, Frame frame = Frame::body)
       : memory_(std::move(memory)), frame_(frame) {
     bodies_.reserve(shapes.size());
     for (const auto& shape : shapes) add(shape);
   }
 
-  void add(const WideShape<V, F, Kernel>& shape) {
+  [[gnu::noinline]] void add(const WideShape<V, F, Kernel>& shape) {
     const auto& [mesh, hierarchy] = shape;
     if constexpr (takes_frames)
       bodies_.emplace_back(*mesh, *hierarchy, frame_);
@@ -89,16 +89,8 @@ class WidePairs {
   template <class Counter, class MakeQuery>
   void begin_all(std::span<const Pose> poses, const Vec3<double>& origin, Threads& threads,
                  Counter&, MakeQuery& make_query) {
-    make_room(threads);
-    make_supports();
-    poses_ = poses, origin_ = &origin;
-    memory_.template begin_frame<std::remove_cvref_t<decltype(make_query(0, ObjectPair{}))>>();
-    if (threads.count() == 1)
-      for (std::size_t i = 0; i < bodies_.size(); ++i) move(i);
-    else
-      threads.share_out(bodies_.size(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
-        for (std::size_t i = begin; i < end; ++i) set_pose(static_cast<std::uint32_t>(i));
-      });
+    begin_frame<std::remove_cvref_t<decltype(make_query(0, ObjectPair{}))>>(poses, origin, threads);
+    move_all(threads);
   }
 
   /// Begins a frame in which `movers` have moved. `poses`, of all bodies, and `origin` must remain
@@ -106,15 +98,12 @@ class WidePairs {
   template <class Query>
   void begin(std::span<const std::uint32_t> movers, std::span<const Pose> poses,
              const Vec3<double>& origin, const Threads& threads) {
-    make_room(threads);
-    make_supports();
-    poses_ = poses, origin_ = &origin;
-    memory_.template begin_frame<Query>();
+    begin_frame<Query>(poses, origin, threads);
     for (const auto i : moved_) memory_.rest(i);
     moved_.assign(movers.begin(), movers.end());
   }
   /// Sets the pose of one of the movers, on any thread.
-  void set_pose(std::uint32_t i) {
+  [[gnu::noinline]] void set_pose(std::uint32_t i) {
     move(i);
     require(i);
   }
@@ -182,6 +171,23 @@ class WidePairs {
     without_supports_.clear(), cost_of_supports_ = 0;
   }
 
+  template <class Query>
+  void begin_frame(std::span<const Pose> poses, const Vec3<double>& origin,
+                   const Threads& threads) {
+    make_room(threads);
+    make_supports();
+    poses_ = poses, origin_ = &origin;
+    memory_.template begin_frame<Query>();
+  }
+  /// Out of line, as all that is the same for every query.
+  [[gnu::noinline]] void move_all(Threads& threads) {
+    if (threads.count() == 1)
+      for (std::size_t i = 0; i < bodies_.size(); ++i) move(i);
+    else
+      threads.share_out(bodies_.size(), 16, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) set_pose(static_cast<std::uint32_t>(i));
+      });
+  }
   void move(std::size_t i) { memory_.move(i, bodies_[i], poses_[i], culling_, *origin_); }
   void require(std::size_t i) {
     memory_.require(bodies_[i], poses_[i]);
