@@ -13,9 +13,11 @@
 ///   the recorder  what a run keeps of tested pairs: nothing, a list, or a front with gaps
 ///   the leaves    the pair's leaf stage (HeldPrimitives; FilteredTriangles or SiftedTriangles)
 ///
-/// Members of a pair. `visit(step)` is the loop's; the lanes of a step are bits of a mask.
+/// Members of a pair. The lanes of a step are bits of a mask.
 ///   done()                            whether no pair is open
-///   next(traversal)                   visits the next step, several, or none
+///   next(traversal)                   calls traversal.visit(step, entries) for the next step, for
+///                                     several, or for none
+///   visit(traversal, pair, entry)     the same for an entry of a front (WidePair alone)
 ///   test<wanted>(step, query, counter)    what is apart: a LanesApart, or more in a derived class
 ///   pass_on(step, found, lanes, entries, recorder, leaves, query, counter)
 ///                                     queues what a step has found near
