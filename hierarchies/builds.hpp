@@ -49,10 +49,12 @@ struct BottomUpLocal {
   static constexpr std::string_view name = "bottom-up";
   static constexpr std::string_view description =
       "clusters that choose each other merge (Meister and Bittner 2018)";
+  template <class = double>
   static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size) {
     return BottomUp{leaf_size}(mesh);
   }
   /// The same, on several threads.
+  template <class = double>
   static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size, Threads& threads) {
     return BottomUp{leaf_size}(mesh, threads);
   }
@@ -61,11 +63,13 @@ struct TopDownSurfaceArea {
   static constexpr std::string_view name = "top-down-surface-area";
   static constexpr std::string_view description =
       "surface-area heuristic over 32 bins, along the best axis";
+  template <class = double>
   static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size) {
     Threads alone;
     return topology(mesh, leaf_size, alone);
   }
   /// The same, on several threads.
+  template <class = double>
   static Topology topology(const TriangleMesh& mesh, std::uint32_t leaf_size, Threads& threads) {
     return RangeSplits(LocalMesh(mesh).mesh()).binary(leaf_size, threads);
   }

@@ -31,12 +31,16 @@ struct BottomUp {
   std::uint32_t leaf_size = 1;  ///< the most triangles in a leaf
   std::uint32_t radius = 16;    ///< neighbours examined on either side
 
+  template <class = double>
   Topology operator()(const TriangleMesh& mesh) const;
+  template <class = double>
   Topology operator()(const TriangleMesh& mesh, Threads& threads) const;
 };
 
 namespace detail {
 
+// A template, so that only those who call it compile it.
+template <class = double>
 class Clustering {
  public:
   Clustering(const TriangleMesh& mesh, const BottomUp& options) : options_(options) {
@@ -249,10 +253,12 @@ class Clustering {
 
 }  // namespace detail
 
-inline Topology BottomUp::operator()(const TriangleMesh& mesh, Threads& threads) const {
-  return detail::Clustering(LocalMesh(mesh).mesh(), *this).build(threads);
+template <class>
+Topology BottomUp::operator()(const TriangleMesh& mesh, Threads& threads) const {
+  return detail::Clustering<>(LocalMesh(mesh).mesh(), *this).build(threads);
 }
-inline Topology BottomUp::operator()(const TriangleMesh& mesh) const {
+template <class>
+Topology BottomUp::operator()(const TriangleMesh& mesh) const {
   Threads alone;
   return (*this)(mesh, alone);
 }

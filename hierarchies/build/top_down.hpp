@@ -37,13 +37,17 @@ struct TopDown {
   SplitAt at = SplitAt::mean;
   std::uint32_t leaf_size = 1;  ///< the most triangles in a leaf
 
+  template <class = double>
   Topology operator()(const TriangleMesh& mesh) const;
+  template <class = double>
   Topology operator()(const TriangleMesh& mesh, Threads& threads) const;
 };
 
 namespace detail {
 
 /// Partitions triangles' centroids, not indices: a range is contiguous in memory at any depth.
+// A template, so that only those who call it compile it.
+template <class = double>
 class Splitter {
   using Four = Eigen::Array4d;
   /// A triangle's centroid, and in the fourth number its index in the mesh, exact in double.
@@ -272,10 +276,12 @@ class Splitter {
 
 }  // namespace detail
 
-inline Topology TopDown::operator()(const TriangleMesh& mesh, Threads& threads) const {
-  return detail::Splitter(LocalMesh(mesh).mesh(), *this).build(threads);
+template <class>
+Topology TopDown::operator()(const TriangleMesh& mesh, Threads& threads) const {
+  return detail::Splitter<>(LocalMesh(mesh).mesh(), *this).build(threads);
 }
-inline Topology TopDown::operator()(const TriangleMesh& mesh) const {
+template <class>
+Topology TopDown::operator()(const TriangleMesh& mesh) const {
   Threads alone;
   return (*this)(mesh, alone);
 }

@@ -84,6 +84,7 @@ double half_surface(const Vec3<double>& sides) {
 }
 
 /// A box around points whose coordinates are at most 1, with given axes.
+template <class = double>
 class RotatedBox {
  public:
   RotatedBox(const Mat3<double>& axes, std::vector<Vec3<double>> points)
@@ -184,7 +185,7 @@ Mat3<double> tight_axes(const Mat3<double>& start, std::span<const Vec3<double>>
   std::vector<Vec3<double>> scaled;
   scaled.reserve(points.size());
   for (const auto& p : points) scaled.push_back((p - origin) / extent);
-  detail::RotatedBox box(start, std::move(scaled));
+  detail::RotatedBox<> box(start, std::move(scaled));
   int rejected = 0;  // consecutive rotations: after three, no axis has an improvement left
   for (double before = std::numeric_limits<double>::infinity();
        box.half_surface() < 0.99 * before && rejected < 3;) {

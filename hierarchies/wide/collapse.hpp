@@ -25,6 +25,8 @@ namespace bvlab {
 
 namespace detail {
 
+// A template, so that only those who call it compile it.
+template <class = double>
 class Collapsing {
  public:
   static constexpr std::uint32_t most = 16;  ///< the largest fan-out
@@ -196,14 +198,16 @@ class Collapsing {
 }  // namespace detail
 
 /// A leaf of `binary` remains a leaf, so it must hold at most `fan_out` triangles.
-inline WideTopology collapsed(const TriangleMesh& mesh, const Topology& binary,
-                              std::uint32_t fan_out, std::uint32_t leaf_size) {
-  return detail::Collapsing(mesh, binary, leaf_size).collapse(fan_out);
+template <class = double>
+WideTopology collapsed(const TriangleMesh& mesh, const Topology& binary, std::uint32_t fan_out,
+                       std::uint32_t leaf_size) {
+  return detail::Collapsing<>(mesh, binary, leaf_size).collapse(fan_out);
 }
 
 /// The same tree with at most `most` children per node, of which there were at most the square of
 /// that: the children of a wider node are put in rows, each a node of its own.
-inline WideTopology in_rows(const WideTopology& wide, std::uint32_t most) {
+template <class = double>
+WideTopology in_rows(const WideTopology& wide, std::uint32_t most) {
   /// Some siblings; alone, the node itself.
   struct Row {
     std::span<const std::uint32_t> nodes;
