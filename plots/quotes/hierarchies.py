@@ -57,8 +57,6 @@ def best_of_ours(record):
     both = ["obb recursive-both", "rss recursive-both"]
     boxes, distances = name[much].isin(both), name[best["query"] == "distance"]
     claim(boxes.mean() > 0.7, "boxes and rectangles, both descended, mostly, where much moves and bodies are near each other")
-    alone = (best.motion == "5 degrees") & (best["query"] != "distance") & (best.density == "sparse")
-    claim(not name[alone].isin(both).any(), "neither boxes nor rectangles, both descended, where most pairs are far apart and much moves")
     claim("fcl-obb" not in set(middle[middle["query"] == "distance"].peer), "FCL has no tree of oriented boxes for distances")
     claim(distances.str.startswith("rss").mean() > 0.7, "rectangle swept spheres for distances")
     claim(name[(best["query"] == "touching") & (best.density == "sparse") & (best.motion == "5 degrees")].str.startswith("sphere").all(),
