@@ -4,6 +4,7 @@ fails leaves the old one. The program here is a small one that writes what its d
 
 import csv
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -65,7 +66,7 @@ class Made(unittest.TestCase):
 
     def make(self, *words):
         return subprocess.run([sys.executable, self.root / "experiments/records", self.root / "program", *words], cwd=self.root,
-                              capture_output=True, text=True, check=False)
+                              env={**os.environ, "BVLAB_MEMORY_AS_IT_IS": "1"}, capture_output=True, text=True, check=False)
 
     def machine(self, name):
         return json.loads((self.root / f"experiments/record/{name}/machine.json").read_text())
