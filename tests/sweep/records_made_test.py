@@ -90,6 +90,34 @@ class Made(unittest.TestCase):
         self.assertEqual(command, "bvlab run experiments/definitions/old.toml --record experiments/record/old --counts\n")
         self.assertEqual(self.make("--list").stdout, "")
 
+    def test_a_change_ages_what_it_is_measured_by(self):
+        def git(*words):
+            return subprocess.run(["git", "-c", "user.name=nobody", "-c", "user.email=nobody", *words], cwd=self.root, check=True,
+                                  capture_output=True, text=True).stdout.strip()
+
+        def commit(**changed):
+            for name, text in changed.items():
+                path = self.root / f"{name.replace('_', '/')}.hpp"
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text)
+            git("add", "-A")
+            git("commit", "-q", "--allow-empty", "-m", "a change")
+            return git("rev-parse", "HEAD")
+
+        git("init", "-q")
+        self.hold("boxes", 'kind = "boxes"\n')
+        self.hold("pairs")
+        old = commit(broadphase_grid='#include "hierarchies/geometry/near.hpp"\n', hierarchies_geometry_far="int far;\n",
+                     hierarchies_geometry_near='#include "hierarchies/sorted.hpp"\n', hierarchies_sorted="int sorted;\n")
+        for changed, due in (({"hierarchies_sorted": "// As it was.\nint sorted;\n"}, []),
+                             ({"hierarchies_geometry_far": "int farther;\n"}, ["pairs"]),
+                             ({"hierarchies_sorted": "int sorted_twice;\n"}, ["boxes", "pairs"])):
+            for name, text in (("boxes", 'kind = "boxes"\n'), ("pairs", "")):
+                self.hold(name, text, commit=old)
+            old = commit(**changed)
+            self.program_of(old)
+            self.assertEqual(self.make("--list").stdout.split(), due)
+
     def test_disturbed_rows_are_made_again_twice_at_most(self):
         self.hold("some", 'seeds = 5\nbusy = "03"\n')
         self.hold("most", 'seeds = 3\nbusy = "02"\n')
