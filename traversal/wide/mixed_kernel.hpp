@@ -116,10 +116,9 @@ struct MixedKernel {
       }
     };
 
-    /// Out of line: the loop over open pairs and that over a front share its two copies of the
-    /// test.
     template <class Counter, class Sieve, class Test>
-    [[gnu::noinline]] void step(const NodePair& pair, Counter& counter, Sieve&, Test&& test) const {
+    [[gnu::always_inline]] void step(const NodePair& pair, Counter& counter, Sieve&,
+                                     Test&& test) const {
       const std::uint32_t i = Tree::number_of(pair.a), j = Tree::number_of(pair.b);
       const Node &a = trees_[0]->node(i), &b = trees_[1]->node(j);
       const bool inner = !((pair.a | pair.b) & Tree::leaf_flag);
